@@ -1,0 +1,32 @@
+// Vectors, rotations and rigid transforms. T_a_b maps coordinates in b to coordinates in a.
+// Camera frame: x right, y down, z forward (REP-103 optical). Pixel centres are at integer + 0.5.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace glint {
+
+using Vector2 = Eigen::Vector2d;
+using Vector3 = Eigen::Vector3d;
+using Matrix3 = Eigen::Matrix3d;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Quaternion = Eigen::Quaterniond;
+
+struct Pose {
+  Quaternion rotation = Quaternion::Identity();
+  Vector3 translation = Vector3::Zero();
+
+  // Maps a point's coordinates.
+  [[nodiscard]] Vector3 operator*(const Vector3& point) const { return rotation * point + translation; }
+  // T_a_c = T_a_b * T_b_c
+  [[nodiscard]] Pose operator*(const Pose& other) const {
+    return {(rotation * other.rotation).normalized(), rotation * other.translation + translation};
+  }
+  [[nodiscard]] Pose inverse() const {
+    const Quaternion back = rotation.conjugate();
+    return {back, -(back * translation)};
+  }
+};
+
+}  // namespace glint

@@ -1,0 +1,40 @@
+// One camera frame: borrowed pixels and when they were exposed.
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/units.hpp"
+
+namespace glint {
+
+// Borrowed rows of pixels, top left first, without padding between rows.
+template <class Pixel>
+struct ImageView {
+  const Pixel* pixels = nullptr;
+  int width = 0;
+  int height = 0;
+  [[nodiscard]] const Pixel* row(int y) const {
+    return pixels + static_cast<std::ptrdiff_t>(y) * width;
+  }
+  [[nodiscard]] bool empty() const { return pixels == nullptr; }
+};
+
+// Exactly one of the two reflectivity planes is set; depth may be absent. Depth is in the sensor's
+// raw unit (DepthSettings says what that is); 0 means that the pixel has none.
+struct Frame {
+  Time mid_exposure;            // what every measurement's time means
+  Time arrival;                 // the last byte in memory; only for latency figures
+  std::uint32_t sequence = 0;
+  ImageView<std::uint8_t> reflectivity_8;
+  ImageView<std::uint16_t> reflectivity_16;
+  ImageView<std::uint16_t> depth;
+
+  [[nodiscard]] int width() const {
+    return reflectivity_8.empty() ? reflectivity_16.width : reflectivity_8.width;
+  }
+  [[nodiscard]] int height() const {
+    return reflectivity_8.empty() ? reflectivity_16.height : reflectivity_8.height;
+  }
+};
+
+}  // namespace glint

@@ -1,0 +1,46 @@
+// Pixel <-> ray, for the lenses that time-of-flight headsets have.
+//
+// What:     unproject: pixel -> unit ray in the camera frame; project: point -> pixel.
+// Cost:     pinhole a division; brown and rational at most k_undistort_iterations_max Newton steps;
+//           lut one bilinear look-up to unproject, at most k_lut_search_iterations_max to project.
+// Source:   pinhole: the seed, section III (m = (Z x/f, Z y/f, Z)); brown and rational: OpenCV's
+//           distortion model with k1,k2,p1,p2,k3,k4,k5,k6; lut: HoloLens 2 research mode's table of
+//           unit rays, sampled at pixel centres (integer + 0.5).
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "kernels/geometry.hpp"
+#include "kernels/result.hpp"
+
+namespace glint {
+
+enum class Lens : std::uint8_t { pinhole, brown, rational, lut };
+
+// Borrowed: height rows of width unit rays (x, y, z), float, zero where the lens maps nothing.
+struct RayTable {
+  int width = 0;
+  int height = 0;
+  const float* rays = nullptr;
+};
+
+struct CameraModel {
+  Lens lens = Lens::pinhole;
+  int width = 0;
+  int height = 0;
+  double fx = 0, fy = 0, cx = 0, cy = 0;    // pixels; unused by lut, but kept as its nearest pinhole
+  std::array<double, 8> distortion{};       // k1,k2,p1,p2,k3,k4,k5,k6; brown uses the first five
+  RayTable table;                           // lut only
+};
+
+inline constexpr int k_undistort_iterations_max = 20;
+inline constexpr int k_lut_search_iterations_max = 20;
+
+// Reason::out_of_range: outside the table, or the lens has no ray there.
+[[nodiscard]] Result<Vector3> unproject(const CameraModel& camera, const Vector2& pixel) noexcept;
+
+// Reason::out_of_range: behind the camera or outside the lens; the pixel may lie outside the frame.
+[[nodiscard]] Result<Vector2> project(const CameraModel& camera, const Vector3& point) noexcept;
+
+}  // namespace glint

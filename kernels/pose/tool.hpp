@@ -1,0 +1,35 @@
+// A rigid body of markers, as a tool file describes it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "kernels/geometry.hpp"
+#include "kernels/limits.hpp"
+
+namespace glint {
+
+enum class MarkerShape : std::uint8_t { sphere, disc };
+
+struct Tool {
+  std::array<Vector3, k_markers_per_tool_max> markers_m;   // tool frame
+  std::array<std::array<double, k_markers_per_tool_max>, k_markers_per_tool_max> distance_m{};
+  int marker_count = 0;
+  double marker_radius_m = 0;
+  MarkerShape shape = MarkerShape::sphere;
+  Vector3 tip_m = Vector3::Zero();                         // tool frame
+  std::array<char, 32> name{};                             // zero-terminated
+
+  // How far behind the surface that the camera sees the marker's centre lies, along the ray.
+  [[nodiscard]] double centre_offset_m() const {
+    return shape == MarkerShape::sphere ? marker_radius_m : 0.0;
+  }
+};
+
+// The tools in use. A slot keeps its number while the set changes, for it numbers CAN frames.
+struct ToolSet {
+  std::array<Tool, k_tools_max> items;
+  int count = 0;
+};
+
+}  // namespace glint
