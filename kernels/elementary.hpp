@@ -1,5 +1,15 @@
 // Sine, cosine, logarithm and arc functions with equal bits on every machine: glibc picks its
 // variants by CPU, so the core may not call libm's.
+//
+// What:     range reduction to a short interval, then a Taylor series with exact coefficients.
+// Cost:     no loop, at most one division and one square root; 5 to 25 ns.
+// Worst:    any double: a value outside the stated range is clamped to it, NaN counts as zero.
+// Accuracy: within 2 units in the last place (arc cosine: 3), measured over 10^6 random
+//           arguments against glibc 2.36, itself within 1; see elementary_test.cpp. Sine and
+//           cosine next to their zeros: 2e-16 absolute.
+// Source:   Taylor series of the functions; the remainder is stated at each series. Reduction in
+//           several exact pieces: Cody and Waite 1980, Software Manual for the Elementary
+//           Functions.
 #pragma once
 
 namespace glint {
@@ -9,10 +19,10 @@ struct SineCosine {
   double cosine = 1;
 };
 
-[[nodiscard]] SineCosine sine_cosine(double radians) noexcept;      // |radians| <= 1e5
-[[nodiscard]] double logarithm(double x) noexcept;                  // natural, x > 0
-[[nodiscard]] double exponential(double x) noexcept;                // |x| <= 700
-[[nodiscard]] double arc_tangent(double y, double x) noexcept;      // atan2
-[[nodiscard]] double arc_cosine(double x) noexcept;                 // clamped to [-1, 1]
+[[nodiscard]] SineCosine sine_cosine(double radians) noexcept;  // |radians| <= 1e5
+[[nodiscard]] double logarithm(double x) noexcept;              // natural, x > 0
+[[nodiscard]] double exponential(double x) noexcept;            // |x| <= 700
+[[nodiscard]] double arc_tangent(double y, double x) noexcept;  // atan2
+[[nodiscard]] double arc_cosine(double x) noexcept;             // clamped to [-1, 1]
 
 }  // namespace glint
