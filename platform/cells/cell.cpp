@@ -1,0 +1,175 @@
+#include "platform/cells/cell.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "glint_default_cell.hpp"
+#include "kernels/elementary.hpp"
+#include "platform/cells/tool_file.hpp"
+#include "platform/cells/toml_reader.hpp"
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+constexpr double k_radians_per_degree = 3.14159265358979323846 / 180.0;
+
+// ${NAME} becomes the environment's NAME; a relative path starts at the cell file's folder.
+std::string resolved(const std::string& path, const std::string& key, const std::string& cell) {
+  if (path.empty()) return path;
+  std::string text = path;
+  for (std::size_t from = text.find("${"); from != std::string::npos; from = text.find("${")) {
+    const std::size_t to = text.find('}', from);
+    const std::string name =
+        to == std::string::npos ? "" : text.substr(from + 2, to - from - 2);
+    const char* value = name.empty() ? nullptr : std::getenv(name.c_str());
+    if (value == nullptr) {
+      throw InputError(cell + ": " + key + " is \"" + path + "\": the environment has no " +
+                       (name.empty() ? "closing }" : name) + "; expected it to be set");
+    }
+    text.replace(from, to - from + 1, value);
+  }
+  const std::filesystem::path file(text);
+  if (file.is_absolute()) return text;
+  return (std::filesystem::path(cell).parent_path() / file).lexically_normal().string();
+}
+
+Quaternion from_fixed_axes(const std::vector<double>& degrees) {
+  const auto about = [&](int axis) {
+    const SineCosine half = sine_cosine(0.5 * degrees[static_cast<std::size_t>(axis)] * k_radians_per_degree);
+    Vector3 v = Vector3::Zero();
+    v[axis] = half.sine;
+    return Quaternion(half.cosine, v.x(), v.y(), v.z());
+  };
+  return about(2) * about(1) * about(0);
+}
+
+void read_camera(const toml::table* table, Cell& cell) {
+  static const toml::table k_empty;
+  TomlReader reader(table ? *table : k_empty, cell.file, "camera.");
+  const std::string model =
+      reader.one_of("model", "hololens2_ahat", {"hololens2_ahat", "hololens1_short_throw"});
+  cell.camera = model == "hololens2_ahat" ? hololens2_ahat() : hololens1_short_throw();
+  cell.ray_table = resolved(reader.text("ray_table", ""), "camera.ray_table", cell.file);
+  const int top = cell.camera.reflectivity_bits == 8 ? 255 : 65535;
+  cell.camera.threshold = static_cast<std::uint16_t>(
+      reader.integer("threshold", cell.camera.threshold, 1, top - 1));
+  reader.done();
+  if (!cell.ray_table.empty()) cell.camera = with_ray_table(cell.camera, cell.ray_table);
+}
+
+void read_simulator(const toml::table* table, Cell& cell) {
+  if (table == nullptr) return;
+  TomlReader reader(*table, cell.file, "simulator.");
+  SimulatorSettings& sim = cell.simulator;
+  sim.scenario = reader.one_of("scenario", sim.scenario, {"default", "still", "trajectories"});
+  sim.duration_s = reader.real("duration_s", sim.duration_s, 0.1, 3600);
+  sim.seed = static_cast<std::uint64_t>(reader.integer("seed", 1, 0, INT64_MAX));
+  sim.pen_scale = reader.real("pen_scale", sim.pen_scale, 0.001, 10);
+  sim.background_layout =
+      reader.one_of("background_layout", sim.background_layout, {"adi", "ahat", "pgm"});
+  const auto path = [&](const char* key) {
+    return resolved(reader.text(key, ""), std::string("simulator.") + key, cell.file);
+  };
+  sim.head_trajectory = path("head_trajectory");
+  sim.pen_trajectory = path("pen_trajectory");
+  sim.background = path("background");
+  reader.done();
+  if (sim.scenario == "trajectories" &&
+      (sim.head_trajectory.empty() || sim.pen_trajectory.empty())) {
+    throw InputError(cell.file + ":" + std::to_string(table->source().begin.line) +
+                     ": scenario \"trajectories\"; expected head_trajectory and pen_trajectory");
+  }
+}
+
+void read_rates(const toml::table* table, Cell& cell) {
+  if (table == nullptr) return;
+  TomlReader reader(*table, cell.file, "rates.");
+  cell.realtime = reader.boolean("realtime", cell.realtime);
+  cell.tick_hz = reader.real("tick_hz", cell.tick_hz, 1, 1000);
+  cell.workers = static_cast<int>(reader.integer("workers", cell.workers, 1, 2));
+  cell.lost_after = milliseconds(reader.integer("lost_after_ms", 250, 1, 400));
+  cell.actuation_delay = {static_cast<std::int64_t>(
+      reader.real("actuation_delay_ms", 0, 0, 100) * 1e6)};
+  reader.done();
+}
+
+void read_sinks(TomlReader& root, Cell& cell) {
+  if (const toml::table* table = root.table("can")) {
+    TomlReader reader(*table, cell.file, "can.");
+    cell.can.sink = reader.text("sink", cell.can.sink);
+    cell.can.fd = reader.one_of("frames", "classic", {"classic", "fd"}) == "fd";
+    cell.can.base_id = static_cast<std::uint32_t>(reader.integer("base_id", 0x1A0, 0x001, 0x7FF));
+    cell.can.bit_rate = reader.integer("bit_rate", cell.can.bit_rate, 10'000, 1'000'000);
+    cell.can.data_bit_rate =
+        reader.integer("data_bit_rate", cell.can.data_bit_rate, 10'000, 8'000'000);
+    cell.can.node = static_cast<int>(reader.integer("node", cell.can.node, 1, 127));
+    reader.done();
+  }
+  if (const toml::table* table = root.table("dds")) {
+    TomlReader reader(*table, cell.file, "dds.");
+    cell.dds.on = reader.boolean("on", cell.dds.on);
+    cell.dds.interface = reader.text("interface", cell.dds.interface);
+    cell.dds.domain = static_cast<int>(reader.integer("domain", cell.dds.domain, 0, 232));
+    reader.done();
+  }
+  if (const toml::table* table = root.table("record")) {
+    TomlReader reader(*table, cell.file, "record.");
+    cell.record.file = reader.text("file", cell.record.file);
+    cell.record.level =
+        reader.one_of("level", cell.record.level, {"full", "roi", "blobs", "outputs"});
+    reader.done();
+  }
+}
+
+void read_robot(const toml::table* table, Cell& cell) {
+  cell.robot_given = table != nullptr;
+  if (table == nullptr) return;
+  TomlReader reader(*table, cell.file, "robot.");
+  if (const auto position = reader.reals("position_mm", 3)) {
+    cell.T_world_robot.translation =
+        Vector3((*position)[0], (*position)[1], (*position)[2]) * 1e-3;
+  }
+  if (const auto rotation = reader.reals("rotation_deg", 3)) {
+    cell.T_world_robot.rotation = from_fixed_axes(*rotation);
+  }
+  reader.done();
+}
+
+void read_tools(TomlReader& root, Cell& cell) {
+  cell.tool_files = root.texts("tools");
+  if (cell.tool_files.empty()) cell.tool_files = {"pen"};
+  if (cell.tool_files.size() > static_cast<std::size_t>(k_tools_max)) {
+    throw InputError(cell.file + ": " + std::to_string(cell.tool_files.size()) +
+                     " tools; expected at most " + std::to_string(k_tools_max));
+  }
+  for (const std::string& name : cell.tool_files) {
+    cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] =
+        name == "pen" ? default_pen() : load_tool(resolved(name, "tools", cell.file));
+  }
+}
+
+}  // namespace
+
+Cell cell_from_text(const std::string& text, const std::string& file) {
+  Cell cell;
+  cell.file = file;
+  cell.text = text;
+  const toml::table table = parse_toml(text, file);
+  TomlReader root(table, file, "");
+  (void)root.text("name", "");
+  read_camera(root.table("camera"), cell);
+  read_tools(root, cell);
+  read_simulator(root.table("simulator"), cell);
+  read_rates(root.table("rates"), cell);
+  read_sinks(root, cell);
+  read_robot(root.table("robot"), cell);
+  root.done();
+  return cell;
+}
+
+Cell default_cell() { return cell_from_text(k_default_cell, "built-in default cell"); }
+
+Cell load_cell(const std::string& file) { return cell_from_text(read_text(file), file); }
+
+}  // namespace glint

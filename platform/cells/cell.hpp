@@ -1,0 +1,74 @@
+// A cell file: everything a user sets, in one TOML file with its units in the names of its keys.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kernels/geometry.hpp"
+#include "kernels/pose/tool.hpp"
+#include "kernels/units.hpp"
+#include "platform/sensors/camera.hpp"
+
+namespace glint {
+
+struct CanSettings {
+  std::string sink = "log:can.log";      // log:FILE or socketcan:IF; FILE is relative to --out
+  bool fd = false;                       // the FD frame instead of the classic ones
+  std::uint32_t base_id = 0x1A0;
+  std::int64_t bit_rate = 1'000'000;
+  std::int64_t data_bit_rate = 4'000'000;
+  int node = 32;                         // heartbeat 0x700 + node
+};
+
+struct DdsCellSettings {
+  bool on = true;
+  std::string interface = "lo";
+  int domain = 0;
+};
+
+struct RecordSettings {
+  std::string file = "run.mcap";         // relative to --out; empty: no recording
+  std::string level = "roi";             // full, roi, blobs, outputs
+};
+
+// Where simulated frames come from; everything else about the simulator has one declared default.
+struct SimulatorSettings {
+  std::string scenario = "default";      // default, still, or trajectories
+  double duration_s = 60;
+  std::uint64_t seed = 1;
+  std::string head_trajectory, pen_trajectory;   // files; scenario = "trajectories"
+  double pen_scale = 1.0;                        // pen motion is scaled into view
+  std::string background;                        // a frame file, or empty for the drawn room
+  std::string background_layout = "adi";
+};
+
+struct Cell {
+  std::string file;                      // where it was read, for messages
+  std::string text;                      // as read: goes into every recording
+  Camera camera;
+  std::string ray_table;                 // path, or empty
+  ToolSet tools;
+  std::vector<std::string> tool_files;
+  SimulatorSettings simulator;
+  bool realtime = true;                  // frames arrive at their time; otherwise as fast as can be
+  double tick_hz = 250;
+  Duration lost_after = milliseconds(250);
+  Duration actuation_delay;
+  int workers = 2;
+  CanSettings can;
+  DdsCellSettings dds;
+  RecordSettings record;
+  bool robot_given = true;               // T_world_robot holds; otherwise the pose stays in the world
+  Pose T_world_robot;
+};
+
+// The cell that `glint run` uses when none is named.
+[[nodiscard]] Cell default_cell();
+
+// Throws InputError: file:line, what was found, what was expected.
+[[nodiscard]] Cell load_cell(const std::string& file);
+[[nodiscard]] Cell cell_from_text(const std::string& text, const std::string& file);
+
+}  // namespace glint

@@ -1,0 +1,173 @@
+#include "platform/cells/toml_reader.hpp"
+
+#include <fstream>
+#include <sstream>
+
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+std::string place(const std::string& file, const toml::source_region& region) {
+  return file + ":" + std::to_string(region.begin.line);
+}
+
+std::string number_text(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+std::string shown(const toml::node& node) {
+  if (const auto text = node.value_exact<std::string>()) return "\"" + *text + "\"";
+  if (const auto whole = node.value_exact<std::int64_t>()) return std::to_string(*whole);
+  if (const auto real = node.value_exact<double>()) return number_text(*real);
+  if (const auto flag = node.value_exact<bool>()) return *flag ? "true" : "false";
+  return node.is_array() ? "an array" : node.is_table() ? "a table" : "a date or time";
+}
+
+}  // namespace
+
+std::string read_text(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(file + ": cannot be read; expected a TOML file there");
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+toml::table parse_toml(const std::string& text, const std::string& file) {
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    throw InputError(place(file, error.source()) + ": " + std::string(error.description()) +
+                     "; expected TOML");
+  }
+}
+
+void TomlReader::complain(const toml::node& where, const char* key,
+                          const std::string& expected) const {
+  throw InputError(place(file_, where.source()) + ": " + section_ + key + " is " + shown(where) +
+                   "; expected " + expected);
+}
+
+const toml::node* TomlReader::find(const char* key) {
+  known_.insert(key);
+  return table_.get(key);
+}
+
+double TomlReader::real(const char* key, double otherwise, double low, double high) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return otherwise;
+  const auto value = node->value<double>();
+  if (!value || !(*value >= low && *value <= high)) {
+    complain(*node, key, "a number from " + number_text(low) + " to " + number_text(high));
+  }
+  return *value;
+}
+
+std::int64_t TomlReader::integer(const char* key, std::int64_t otherwise, std::int64_t low,
+                                 std::int64_t high) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return otherwise;
+  const auto value = node->value_exact<std::int64_t>();
+  if (!value || *value < low || *value > high) {
+    complain(*node, key,
+             "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+  }
+  return *value;
+}
+
+bool TomlReader::boolean(const char* key, bool otherwise) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return otherwise;
+  const auto value = node->value_exact<bool>();
+  if (!value) complain(*node, key, "true or false");
+  return *value;
+}
+
+std::string TomlReader::text(const char* key, const std::string& otherwise) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return otherwise;
+  const auto value = node->value_exact<std::string>();
+  if (!value) complain(*node, key, "a text in quotes");
+  return *value;
+}
+
+std::string TomlReader::one_of(const char* key, const std::string& otherwise,
+                               std::initializer_list<const char*> allowed) {
+  const std::string value = text(key, otherwise);
+  std::string list;
+  for (const char* option : allowed) {
+    if (value == option) return value;
+    list += (list.empty() ? "\"" : ", \"") + std::string(option) + "\"";
+  }
+  complain(*table_.get(key), key, "one of " + list);
+}
+
+std::optional<std::vector<double>> TomlReader::reals(const char* key, std::size_t count) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const std::string expected = std::to_string(count) + " numbers in [ ]";
+  const toml::array* array = node->as_array();
+  if (array == nullptr || array->size() != count) complain(*node, key, expected);
+  std::vector<double> values;
+  for (const toml::node& item : *array) {
+    const auto value = item.value<double>();
+    if (!value || !(*value > -1e12 && *value < 1e12)) complain(item, key, expected);
+    values.push_back(*value);
+  }
+  return values;
+}
+
+std::vector<std::string> TomlReader::texts(const char* key) {
+  std::vector<std::string> values;
+  const toml::node* node = find(key);
+  if (node == nullptr) return values;
+  const toml::array* array = node->as_array();
+  if (array == nullptr) complain(*node, key, "a list of texts in [ ]");
+  for (const toml::node& item : *array) {
+    const auto value = item.value_exact<std::string>();
+    if (!value) complain(item, key, "a list of texts in [ ]");
+    values.push_back(*value);
+  }
+  return values;
+}
+
+std::vector<std::pair<double, double>> TomlReader::intervals(const char* key) {
+  std::vector<std::pair<double, double>> values;
+  const toml::node* node = find(key);
+  if (node == nullptr) return values;
+  const std::string expected = "a list of [from, to] with from < to";
+  const toml::array* array = node->as_array();
+  if (array == nullptr) complain(*node, key, expected);
+  for (const toml::node& item : *array) {
+    const toml::array* pair = item.as_array();
+    if (pair == nullptr || pair->size() != 2) complain(item, key, expected);
+    const auto from = pair->get(0)->value<double>();
+    const auto to = pair->get(1)->value<double>();
+    if (!from || !to || !(*from < *to)) complain(item, key, expected);
+    values.emplace_back(*from, *to);
+  }
+  return values;
+}
+
+const toml::table* TomlReader::table(const char* key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return nullptr;
+  if (!node->is_table()) complain(*node, key, "a table [" + section_ + key + "]");
+  return node->as_table();
+}
+
+void TomlReader::done() const {
+  for (const auto& [key, node] : table_) {
+    const std::string name(key.str());
+    if (known_.count(name) != 0) continue;
+    std::string list;
+    for (const std::string& known : known_) list += (list.empty() ? "" : ", ") + known;
+    throw InputError(place(file_, node.source()) + ": unknown key " + section_ + name +
+                     "; expected one of " + list);
+  }
+}
+
+}  // namespace glint
