@@ -1,0 +1,85 @@
+// Lists of types at compile time: just what wiring a graph needs.
+#pragma once
+
+#include <type_traits>
+#include <utility>
+
+namespace glint::graph {
+
+template <class... T>
+struct TypeList {
+  static constexpr int size = sizeof...(T);
+};
+
+// Position of T in the list, -1 where it is absent.
+template <class T, class... U>
+[[nodiscard]] consteval int index_of(TypeList<U...> /*list*/) {
+  int index = -1;
+  int i = 0;
+  ((index = (index < 0 && std::is_same_v<T, U>) ? i : index, ++i), ...);
+  return index;
+}
+
+namespace detail {
+
+template <int index, class T>
+struct Indexed {};
+
+template <class Sequence, class... T>
+struct IndexedList;
+template <int... index, class... T>
+struct IndexedList<std::integer_sequence<int, index...>, T...> : Indexed<index, T>... {};
+
+template <int index, class T>
+std::type_identity<T> pick(const Indexed<index, T>*);
+
+template <class List>
+struct Pick;
+template <class... T>
+struct Pick<TypeList<T...>> {
+  using Table = IndexedList<std::make_integer_sequence<int, sizeof...(T)>, T...>;
+};
+
+template <class Result, class... T>
+struct UniqueStep {
+  using Type = Result;
+};
+template <class... Kept, class First, class... Rest>
+struct UniqueStep<TypeList<Kept...>, First, Rest...>
+    : UniqueStep<std::conditional_t<(std::is_same_v<Kept, First> || ...), TypeList<Kept...>,
+                                    TypeList<Kept..., First>>,
+                 Rest...> {};
+
+template <class... Lists>
+struct JoinStep {
+  using Type = TypeList<>;
+};
+template <class... T>
+struct JoinStep<TypeList<T...>> {
+  using Type = TypeList<T...>;
+};
+template <class... T, class... U, class... Rest>
+struct JoinStep<TypeList<T...>, TypeList<U...>, Rest...> : JoinStep<TypeList<T..., U...>, Rest...> {
+};
+
+template <class List>
+struct UniqueOf;
+template <class... T>
+struct UniqueOf<TypeList<T...>> : UniqueStep<TypeList<>, T...> {};
+
+}  // namespace detail
+
+// The type at a position, 0 <= index < size.
+template <int index, class List>
+using At = typename decltype(detail::pick<index>(
+    static_cast<typename detail::Pick<List>::Table*>(nullptr)))::type;
+
+// All lists one after another.
+template <class... Lists>
+using Join = typename detail::JoinStep<Lists...>::Type;
+
+// The list without repetitions; the first of equals stays.
+template <class List>
+using Unique = typename detail::UniqueOf<List>::Type;
+
+}  // namespace glint::graph
