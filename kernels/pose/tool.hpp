@@ -6,19 +6,20 @@
 
 #include "kernels/geometry.hpp"
 #include "kernels/limits.hpp"
+#include "kernels/reason.hpp"
 
 namespace glint {
 
 enum class MarkerShape : std::uint8_t { sphere, disc };
 
 struct Tool {
-  std::array<Vector3, k_markers_per_tool_max> markers_m;   // tool frame
+  std::array<Vector3, k_markers_per_tool_max> markers_m;  // tool frame
   std::array<std::array<double, k_markers_per_tool_max>, k_markers_per_tool_max> distance_m{};
   int marker_count = 0;
   double marker_radius_m = 0;
   MarkerShape shape = MarkerShape::sphere;
-  Vector3 tip_m = Vector3::Zero();                         // tool frame
-  std::array<char, 32> name{};                             // zero-terminated
+  Vector3 tip_m = Vector3::Zero();  // tool frame
+  std::array<char, 32> name{};      // zero-terminated
 
   // How far behind the surface that the camera sees the marker's centre lies, along the ray.
   [[nodiscard]] double centre_offset_m() const {
@@ -31,5 +32,13 @@ struct ToolSet {
   std::array<Tool, k_tools_max> items;
   int count = 0;
 };
+
+// Two markers nearer to each other than this are one: no marker is that small.
+inline constexpr double k_marker_distance_min_m = 0.001;
+
+// Fills distance_m from markers_m. Reason: too_few_markers (< 3), out_of_range (more than
+// k_markers_per_tool_max, or a coordinate that is not finite), degenerate (two markers in one
+// place) or collinear. Such a tool must not be used.
+[[nodiscard]] Reason prepare_tool(Tool& tool) noexcept;
 
 }  // namespace glint

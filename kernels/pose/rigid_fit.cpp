@@ -1,0 +1,88 @@
+#include "kernels/pose/rigid_fit.hpp"
+
+#include <Eigen/SVD>
+#include <cmath>
+
+namespace glint {
+namespace {
+
+Vector3 mean_of(std::span<const Vector3> points) {
+  Vector3 sum = Vector3::Zero();
+  for (const Vector3& point : points) sum += point;
+  return sum / static_cast<double>(points.size());
+}
+
+// The eigenvalues' relation through the invariants: with e1 the trace and e2 the sum of the
+// principal minors, e2/e1^2 lies between 1 and 2 times the ratio of the two largest where it is
+// small. No decomposition is needed.
+Reason judge_spread(const Matrix3& covariance) {
+  const double e1 = covariance(0, 0) + covariance(1, 1) + covariance(2, 2);
+  if (!std::isfinite(e1)) return Reason::out_of_range;
+  if (e1 <= k_coincident_variance_m2) return Reason::degenerate;
+  const double e2 = (covariance(0, 0) * covariance(1, 1) - covariance(0, 1) * covariance(0, 1)) +
+                    (covariance(0, 0) * covariance(2, 2) - covariance(0, 2) * covariance(0, 2)) +
+                    (covariance(1, 1) * covariance(2, 2) - covariance(1, 2) * covariance(1, 2));
+  return e2 <= k_collinear_variance_ratio * e1 * e1 ? Reason::collinear : Reason::none;
+}
+
+}  // namespace
+
+Reason rotation_is_fixed_by(std::span<const Vector3> points_m) noexcept {
+  if (points_m.size() < 3) return Reason::too_few_markers;
+  const Vector3 mean = mean_of(points_m);
+  Matrix3 covariance = Matrix3::Zero();
+  for (const Vector3& point : points_m) {
+    const Vector3 offset = point - mean;
+    covariance += offset * offset.transpose();
+  }
+  return judge_spread(covariance / static_cast<double>(points_m.size()));
+}
+
+RigidFit fit_rigid(std::span<const Vector3> model_m, std::span<const Vector3> measured_m) noexcept {
+  RigidFit fit;
+  if (model_m.size() != measured_m.size() || model_m.size() < 3) {
+    fit.reason = Reason::too_few_markers;
+    return fit;
+  }
+  const Vector3 model_mean = mean_of(model_m);
+  const Vector3 measured_mean = mean_of(measured_m);
+  Matrix3 model_covariance = Matrix3::Zero();
+  Matrix3 cross_covariance = Matrix3::Zero();
+  for (std::size_t i = 0; i < model_m.size(); ++i) {
+    const Vector3 x = model_m[i] - model_mean;
+    const Vector3 y = measured_m[i] - measured_mean;
+    model_covariance += x * x.transpose();
+    cross_covariance += y * x.transpose();
+  }
+  const double n = static_cast<double>(model_m.size());
+  model_covariance /= n;
+  cross_covariance /= n;
+  fit.reason = judge_spread(model_covariance);
+  if (fit.reason != Reason::none) return fit;
+  if (!std::isfinite(cross_covariance.sum())) {
+    fit.reason = Reason::out_of_range;
+    return fit;
+  }
+
+  const Eigen::JacobiSVD<Matrix3> svd(cross_covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Vector3 w = svd.singularValues();
+  if (w(1) <= k_collinear_variance_ratio * w(0)) {
+    fit.reason = Reason::collinear;
+    return fit;
+  }
+  Matrix3 u = svd.matrixU();
+  const Matrix3& v = svd.matrixV();
+  if (u.determinant() * v.determinant() < 0) u.col(2) = -u.col(2);
+  const Matrix3 rotation = u * v.transpose();
+  fit.transform.rotation = Quaternion(rotation).normalized();
+  fit.transform.translation = measured_mean - fit.transform.rotation * model_mean;
+
+  double squares = 0;
+  for (std::size_t i = 0; i < model_m.size(); ++i) {
+    squares += (measured_m[i] - fit.transform * model_m[i]).squaredNorm();
+  }
+  fit.rms_m = std::sqrt(squares / n);
+  return fit;
+}
+
+}  // namespace glint
