@@ -1,0 +1,103 @@
+#include "kernels/image/roi_threshold.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "kernels/image/bright_mask.hpp"
+#include "kernels/image/run_writer.hpp"
+
+namespace glint {
+namespace {
+
+// The ROIs clipped to the frame's rows of this band, from left to right: a total order.
+Rois clipped(const Rois& rois, int width, int top, int bottom) {
+  Rois out;
+  const int count = std::clamp(rois.count, 0, static_cast<int>(rois.items.size()));
+  for (int i = 0; i < count; ++i) {
+    const Roi& roi = rois.items[static_cast<std::size_t>(i)];
+    const Roi cut{std::max(roi.x0, 0), std::max(roi.y0, top), std::min(roi.x1, width),
+                  std::min(roi.y1, bottom)};
+    if (cut.x0 >= cut.x1 || cut.y0 >= cut.y1) continue;
+    int at = out.count++;
+    for (; at > 0; --at) {
+      const Roi& before = out.items[static_cast<std::size_t>(at - 1)];
+      if (before.x0 < cut.x0 || (before.x0 == cut.x0 && before.y0 <= cut.y0)) break;
+      out.items[static_cast<std::size_t>(at)] = before;
+    }
+    out.items[static_cast<std::size_t>(at)] = cut;
+  }
+  return out;
+}
+
+// Calls scan(pixels of the row, y, x0, x1) for each stretch of a row that lies in an ROI.
+template <class Pixel, class Scan>
+void for_each_stretch(const ImageView<Pixel>& image, const Rois& rois, RowBand band, Scan scan) {
+  const int top = image.height * band.index / band.count;
+  const int bottom = image.height * (band.index + 1) / band.count;
+  const Rois cut = clipped(rois, image.width, top, bottom);
+  for (int y = top; y < bottom; ++y) {
+    int end = 0;
+    for (int i = 0; i < cut.count; ++i) {
+      const Roi& roi = cut.items[static_cast<std::size_t>(i)];
+      if (y < roi.y0 || y >= roi.y1) continue;
+      const int x0 = std::max(roi.x0, end);
+      if (x0 < roi.x1) scan(image.row(y), y, x0, roi.x1);
+      end = std::max(end, roi.x1);
+    }
+  }
+}
+
+bool usable(const Frame& frame, RowBand band) {
+  return band.count > 0 && band.index >= 0 && band.index < band.count &&
+         frame.width() <= k_width_max && frame.height() <= k_height_max;
+}
+
+template <class Pixel>
+void scan_fast(const ImageView<Pixel>& image, const Rois& rois, Pixel threshold, RowBand band,
+               RunWriter& writer) {
+  for_each_stretch(image, rois, band, [&](const Pixel* row, int y, int x0, int x1) {
+    if (any_above(row + x0, x1 - x0, threshold)) {
+      for (int x = x0; x < x1; x += k_mask_pixels<Pixel>) {
+        const int n = std::min(k_mask_pixels<Pixel>, x1 - x);
+        for_each_bit_run(bright_mask(row + x, n, threshold),
+                         [&](int from, int to) { writer.add(y, x + from, x + to); });
+      }
+    }
+  });
+}
+
+template <class Pixel>
+void scan_reference(const ImageView<Pixel>& image, const Rois& rois, std::uint16_t threshold,
+                    RowBand band, RunWriter& writer) {
+  for_each_stretch(image, rois, band, [&](const Pixel* row, int y, int x0, int x1) {
+    for (int x = x0; x < x1; ++x) {
+      if (row[x] > threshold) writer.add(y, x, x + 1);
+    }
+  });
+}
+
+}  // namespace
+
+void threshold_runs(const Frame& frame, const Rois& rois, std::uint16_t threshold, RowBand band,
+                    Runs& out) noexcept {
+  RunWriter writer(out);
+  if (!usable(frame, band)) return;
+  if (!frame.reflectivity_16.empty()) {
+    scan_fast(frame.reflectivity_16, rois, threshold, band, writer);
+  } else if (!frame.reflectivity_8.empty() && threshold < 0xFF) {
+    scan_fast(frame.reflectivity_8, rois, static_cast<std::uint8_t>(threshold), band, writer);
+  }
+}
+
+void threshold_runs_reference(const Frame& frame, const Rois& rois, std::uint16_t threshold,
+                              RowBand band, Runs& out) noexcept {
+  RunWriter writer(out);
+  if (!usable(frame, band)) return;
+  if (!frame.reflectivity_16.empty()) {
+    scan_reference(frame.reflectivity_16, rois, threshold, band, writer);
+  } else if (!frame.reflectivity_8.empty()) {
+    scan_reference(frame.reflectivity_8, rois, threshold, band, writer);
+  }
+}
+
+}  // namespace glint
