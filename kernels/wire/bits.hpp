@@ -1,0 +1,45 @@
+// Numbers in bytes, spelled out so that no machine's own byte order shows.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace glint {
+
+// The low `width` bits of `value` at bit `at` of a word whose bit 0 is the first byte's lowest
+// (Intel order, as a DBC file counts).
+[[nodiscard]] constexpr std::uint64_t bits_at(std::uint64_t value, int at, int width) noexcept {
+  return (value & (~std::uint64_t{0} >> (64 - width))) << at;
+}
+
+[[nodiscard]] constexpr std::uint64_t unsigned_at(std::uint64_t word, int at, int width) noexcept {
+  return (word >> at) & (~std::uint64_t{0} >> (64 - width));
+}
+
+[[nodiscard]] constexpr std::int64_t signed_at(std::uint64_t word, int at, int width) noexcept {
+  return static_cast<std::int64_t>(word << (64 - at - width)) >> (64 - width);
+}
+
+// bytes.size() 1..8 says how many bytes are written, lowest first.
+constexpr void put_little_endian(std::span<std::uint8_t> bytes, std::uint64_t value) noexcept {
+  for (std::uint8_t& byte : bytes) {
+    byte = static_cast<std::uint8_t>(value & 0xFFU);
+    value >>= 8;
+  }
+}
+
+[[nodiscard]] constexpr std::uint64_t get_little_endian(
+    std::span<const std::uint8_t> bytes) noexcept {
+  std::uint64_t value = 0;
+  for (std::size_t i = bytes.size(); i-- > 0;) value = value << 8 | bytes[i];
+  return value;
+}
+
+constexpr void put_big_endian(std::span<std::uint8_t> bytes, std::uint64_t value) noexcept {
+  for (std::size_t i = bytes.size(); i-- > 0;) {
+    bytes[i] = static_cast<std::uint8_t>(value & 0xFFU);
+    value >>= 8;
+  }
+}
+
+}  // namespace glint

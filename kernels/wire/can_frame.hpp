@@ -1,0 +1,53 @@
+// A CAN frame as Glint hands it to a bus, whatever the bus is made of.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "kernels/limits.hpp"
+
+namespace glint {
+
+inline constexpr std::uint32_t k_can_identifier_max = 0x7FF;                // 11 bits
+inline constexpr std::uint32_t k_can_extended_identifier_max = 0x1FFFFFFF;  // 29 bits
+
+enum class CanFormat : std::uint8_t {
+  classic,  // five frames of 8 bytes for one pose
+  fd,       // one frame of 64 bytes for one pose, data phase at the fast bit rate
+};
+
+struct CanFrame {
+  std::uint32_t identifier = 0;
+  std::uint8_t length = 0;  // bytes of data: 0..8, FD also 12,16,20,24,32,48,64
+  bool extended = false;    // 29-bit identifier
+  bool fd = false;
+  bool bit_rate_switch = false;  // FD only
+  std::array<std::uint8_t, 64> data{};
+
+  [[nodiscard]] std::span<const std::uint8_t> bytes() const { return {data.data(), length}; }
+};
+
+// All that one tick sends: a pose of each tool, then the node's own frames.
+inline constexpr int k_can_frames_per_pose_max = 5;
+inline constexpr int k_can_node_frames_max = 3 + k_tools_max;  // SYNC, FUP, heartbeat, EMCYs
+inline constexpr int k_can_frames_max =
+    k_tools_max * k_can_frames_per_pose_max + k_can_node_frames_max;
+
+struct CanFrames {
+  std::array<CanFrame, k_can_frames_max> items;
+  int count = 0;
+  std::uint32_t dropped = 0;  // did not fit; stays 0 while a tick sends what is said above
+
+  void add(const CanFrame& frame) noexcept {
+    if (count < k_can_frames_max)
+      items[static_cast<std::size_t>(count++)] = frame;
+    else
+      ++dropped;
+  }
+  [[nodiscard]] std::span<const CanFrame> frames() const {
+    return {items.data(), static_cast<std::size_t>(count)};
+  }
+};
+
+}  // namespace glint

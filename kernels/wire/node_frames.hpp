@@ -1,0 +1,57 @@
+// The frames that a node sends once, whatever the number of its tools: that it is alive, what time
+// it is, what went wrong.
+//
+// What:     CANopen heartbeat and emergency, AUTOSAR CanTSyn SYNC and follow-up.
+// Cost:     at most one CRC over 7 bytes.
+// Worst:    the same for every call.
+// Accuracy: time to the nanosecond.
+// Source:   CiA 301, 7.2.7 (EMCY) and 7.2.8 (heartbeat); AUTOSAR Time Synchronization over
+// CAN, 7.2.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "kernels/reason.hpp"
+#include "kernels/result.hpp"
+#include "kernels/wire/can_frame.hpp"
+#include "kernels/wire/pose_sample.hpp"
+
+namespace glint {
+
+enum class CanNodeState : std::uint8_t {
+  boot_up = 0x00,
+  operational = 0x05,
+  pre_operational = 0x7F
+};
+
+// Identifier 0x700 + node, node 1..127 (taken modulo 128).
+[[nodiscard]] CanFrame heartbeat_frame(unsigned node, CanNodeState state) noexcept;
+
+// Identifier 0x80 + node. Error code FF00 + reason (0000: the error is over), error register 81
+// (generic, manufacturer's), then tool, track state, reason, registration state, 0.
+[[nodiscard]] CanFrame emergency_frame(unsigned node, const PoseSample& sample) noexcept;
+
+// Offsets from the base identifier of tool 0.
+inline constexpr std::uint32_t k_can_time_sync = 0xE;
+inline constexpr std::uint32_t k_can_time_follow_up = 0xF;
+
+// Both frames of one pair carry the same sequence counter (0..15) and domain.
+struct TimeSync {
+  std::uint32_t base_identifier = 0x1A0;
+  std::uint8_t domain = 0;  // 0..15
+  std::array<std::uint8_t, 16> data_ids{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+};
+
+// SYNC: the whole seconds of `unix_ns`, the time just before it is sent. The time must lie in
+// 1970..2106, as the field has 32 bits: else Reason::out_of_range.
+[[nodiscard]] Result<CanFrame> time_sync_frame(const TimeSync& sync, std::uint8_t counter,
+                                               std::int64_t unix_ns) noexcept;
+
+// Follow-up: the time at which the SYNC went out. The field has two bits for whole seconds since
+// SYNC's: more than that, or a time before SYNC's seconds, is Reason::out_of_range.
+[[nodiscard]] Result<CanFrame> time_follow_up_frame(const TimeSync& sync, std::uint8_t counter,
+                                                    std::int64_t sync_unix_ns,
+                                                    std::int64_t sent_unix_ns) noexcept;
+
+}  // namespace glint

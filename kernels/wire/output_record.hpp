@@ -1,0 +1,46 @@
+// The bytes that output_sha256 is taken over: one record for each tool and tick.
+//
+// What:     PoseSample <-> 448 bytes, little endian, no padding.
+//   at  size  field                              at  size  field
+//    0   8    tick, ns                           32  3x8   translation x,y,z, m
+//    8   8    measurement, ns                    56  4x8   rotation x,y,z,w
+//   16   4    tick number                        88  3x8   velocity, m/s
+//   20   4    frame sequence                    112  3x8   angular velocity, rad/s
+//   24   1    tool                              136 36x8   covariance, row after row
+//   25   1    marker mask                       424   8    sigma position, m
+//   26   1    buttons                           432   8    sigma orientation, rad
+//   27   1    track state                       440   8    registration rms, m
+//   28   1    registration state
+//   29   1    reference frame
+//   30   1    reason
+//   31   1    layout, k_output_record_layout
+//   Doubles are IEEE 754 binary64; -0.0 is written as +0.0 and what is not finite as +0.0 (the core
+//   makes neither NaN nor infinity; a record could not be compared with one in it).
+//   CAN payloads are not inside, for they follow from a record and the cell file.
+// Cost:     448 bytes moved.
+// Worst:    the same for every sample.
+// Accuracy: exact, but for the signs of zeros.
+// Source:   the layout is Glint's own. A change of it gets a new layout number.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "kernels/result.hpp"
+#include "kernels/wire/pose_sample.hpp"
+
+namespace glint {
+
+inline constexpr std::size_t k_output_record_bytes = 448;
+inline constexpr std::uint8_t k_output_record_layout = 1;
+
+void encode(const PoseSample& sample,
+            std::span<std::uint8_t, k_output_record_bytes> record) noexcept;
+
+// Reason::out_of_range: another layout, a state that is not in its list, or a number that is not
+// finite; that is, no record of ours.
+[[nodiscard]] Result<PoseSample> decode(
+    std::span<const std::uint8_t, k_output_record_bytes> record) noexcept;
+
+}  // namespace glint

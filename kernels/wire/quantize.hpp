@@ -1,0 +1,61 @@
+// From SI values in double to the integers of a wire format and back.
+//
+// What:     nearest integer, half away from zero; out of range or NaN is said, never wrapped.
+// Cost:     a multiplication, a floor and two comparisons.
+// Worst:    any double, infinities and NaN included.
+// Accuracy: exact: the nearest integer to the double product.
+// Source:   written out here, since the rounding of libm's nearbyint is a setting of the process.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "kernels/geometry.hpp"
+
+namespace glint {
+
+struct Quantized {
+  std::int64_t value = 0;  // 0 when it does not fit
+  bool fits = false;
+};
+
+// round(value * per_unit), if that lies in [low, high], |low|, |high| < 2^53.
+[[nodiscard]] inline Quantized quantize(double value, double per_unit, std::int64_t low,
+                                        std::int64_t high) noexcept {
+  const double scaled = value * per_unit;
+  const double size = std::abs(scaled);
+  if (!(size < 0x1p53)) return {};
+  const double below = std::floor(size);
+  const double nearest = size - below >= 0.5 ? below + 1 : below;
+  const auto whole = static_cast<std::int64_t>(scaled < 0 ? -nearest : nearest);
+  if (whole < low || whole > high) return {};
+  return {whole, true};
+}
+
+// For values that only ever grow worse, like an uncertainty: `over` where the value does not fit
+// below it, so that a reader sees "this or more, or unknown".
+[[nodiscard]] inline std::uint64_t quantize_or(double value, double per_unit,
+                                               std::uint64_t over) noexcept {
+  const Quantized q = quantize(value, per_unit, 0, static_cast<std::int64_t>(over) - 1);
+  return q.fits ? static_cast<std::uint64_t>(q.value) : over;
+}
+
+struct QuantizedVector {
+  std::array<std::int64_t, 3> value{};  // all 0 when one of them does not fit
+  bool fits = false;
+};
+
+[[nodiscard]] inline QuantizedVector quantize(const Vector3& vector, double per_unit,
+                                              std::int64_t low, std::int64_t high) noexcept {
+  QuantizedVector result;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Quantized q = quantize(vector[axis], per_unit, low, high);
+    if (!q.fits) return {};
+    result.value[static_cast<std::size_t>(axis)] = q.value;
+  }
+  result.fits = true;
+  return result;
+}
+
+}  // namespace glint
