@@ -1,0 +1,50 @@
+// A blob to a candidate marker: its ray, and the range to the surface that the camera sees.
+//
+// What:     ray of the centroid (the seed's m = (Z x / f, Z y / f, Z) for a pinhole, divided by its
+//           length); range: the median over the blob's inner half of valid, unsaturated depth
+//           pixels, then the mean of those near it. Each is first taken back to the front point of
+//           a sphere with the nominal radius: a pixel s beside the ray through the middle sees the
+//           sphere r - sqrt(r^2 - s^2) further away. Centre saturated or without depth: the same
+//           over the ring between the inner half and the rim. z depth becomes radial by each
+//           pixel's own ray. A range that has wrapped is told by the blob's size.
+// Cost:     3 unprojections, at most k_inner_samples_max samples; with the ring
+//           (2 k_scan_radius_max_px + 1)^2 pixels and k_ring_samples_max samples; twice if wrapped.
+// Worst:    a large blob with a saturated middle.
+// Accuracy: noise of one pixel / sqrt(samples); bias on a sphere of the nominal radius 0.1 mm, by
+//           the ring 1 mm; a disc taken for a sphere comes out 0.14 of the nominal radius short.
+// Source:   the seed, section III; AHAT's wrap: hl2ss, "alias".
+#pragma once
+
+#include "kernels/image/blob.hpp"
+#include "kernels/image/frame.hpp"
+#include "kernels/pose/camera_model.hpp"
+#include "kernels/pose/depth_settings.hpp"
+#include "kernels/pose/marker.hpp"
+#include "kernels/pose/tool.hpp"
+
+namespace glint {
+
+// The size of marker that is looked for before it is known whose it is; of several tools' markers
+// one in the middle. Radius 0: neither is depth taken back to the front point nor a wrap searched.
+struct NominalMarker {
+  double radius_m = 0.006;
+  MarkerShape shape = MarkerShape::sphere;
+};
+
+inline constexpr int k_inner_samples_max = 49;
+inline constexpr int k_ring_samples_max = 64;
+inline constexpr int k_scan_radius_max_px = 40;
+
+// blob_index: its place in Blobs. True: out has a ray; without any depth k_marker_no_depth is set
+// and surface_range_m is 0. False: the lens has no ray for the centroid.
+// surface_range_m: radial, from the camera to the marker's front point along the centroid's ray.
+[[nodiscard]] bool measure_marker(const Frame& frame, const Blob& blob, std::uint16_t blob_index,
+                                  const CameraModel& camera, const DepthSettings& depth,
+                                  const NominalMarker& nominal, Marker& out) noexcept;
+
+// Pixels that a sphere (or a disc that faces the camera) of this radius covers around a pixel with
+// its centre at this range (metres, radial): its solid angle over the pixel's. 0: no ray there.
+[[nodiscard]] double expected_area_px(const CameraModel& camera, const Vector2& pixel,
+                                      double radius_m, double range_m) noexcept;
+
+}  // namespace glint
