@@ -14,12 +14,16 @@
 #include <utility>
 
 #include "graph/check.hpp"
+#include "graph/describe.hpp"
 #include "graph/executor.hpp"
 #include "graph/latest.hpp"
 #include "graph/port.hpp"
+#include "graph/rate_group.hpp"
+#include "graph/ring.hpp"
 #include "graph/storage.hpp"
 #include "graph/type_name.hpp"
 #include "graph/wiring.hpp"
+#include "graph/workers.hpp"
 
 namespace glint::graph {
 
@@ -105,8 +109,7 @@ class Graph {
   void activate(T& trace) noexcept {
     begin_activation();
     in_order([&]<int unit>() {
-      [&]<int... copy>(std::integer_sequence<int, copy...>) { (call<unit, copy>(trace), ...); }
-      (std::make_integer_sequence<int, Wires::copies[unit]>{});
+      for_each_index<Wires::copies[unit]>([&]<int copy>() { call<unit, copy>(trace); });
     });
   }
   template <class Executor>
@@ -121,7 +124,8 @@ class Graph {
     using Listed = At<unit, typename Wires::Listed>;
     auto& node = static_cast<detail::NodeSlot<Listed>&>(nodes_).copies[copy].node;
     trace.on_node_begin(number);
-    [&]<class... P>(TypeList<P...>) { node(argument<Listed, P, copy>()...); }(Parameters<Listed>{});
+    const auto run = [&]<class... P>(TypeList<P...>) { node(argument<Listed, P, copy>()...); };
+    run(Parameters<Listed>{});
     trace.on_node_end(number);
   }
 
@@ -134,10 +138,8 @@ class Graph {
   // Calls f<unit>() for every listed node in the order of execution.
   template <class F>
   static void in_order(F&& f) {
-    [&]<int... step>(std::integer_sequence<int, step...>) {
-      (f.template operator()<Wires::order.units[step]>(), ...);
-    }
-    (std::make_integer_sequence<int, unit_count>{});
+    for_each_index<unit_count>(
+        [&]<int step>() { f.template operator()<Wires::order.units[step]>(); });
   }
 
   template <int unit>

@@ -82,4 +82,13 @@ using Join = typename detail::JoinStep<Lists...>::Type;
 template <class List>
 using Unique = typename detail::UniqueOf<List>::Type;
 
+// Calls f.operator()<0>() to f.operator()<n - 1>(), in this order.
+template <int n, class F>
+constexpr void for_each_index(F&& f) {
+  const auto call = [&]<int... i>(std::integer_sequence<int, i...>) {
+    (f.template operator()<i>(), ...);
+  };
+  call(std::make_integer_sequence<int, n>{});
+}
+
 }  // namespace glint::graph
