@@ -1,0 +1,3 @@
+add_library(glint_picture STATIC picture.cpp)
+target_link_libraries(glint_picture PUBLIC glint_kernels
+  PRIVATE opencv_imgcodecs opencv_imgproc opencv_core)
