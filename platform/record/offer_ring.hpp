@@ -1,0 +1,56 @@
+// A bounded ring of records of any size between one real-time thread and one writing thread.
+//
+// Records lie in one piece, so that pixels are copied once. Wait-free on both sides; the memory is
+// taken and touched by reserve(). Cost: one acquire load, one release store; worst input: a record
+// that does not fit before the ring's end, which costs the rest of the ring until it is read.
+// Source: Lamport 1983, "Specifying concurrent program modules", bounded buffer of two counters.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace glint {
+
+// One record as both sides see it. Its bytes are aligned to k_offer_alignment.
+struct OfferSlot {
+  std::uint32_t kind = 0;
+  std::uint64_t ticket = 0;
+  std::span<std::byte> bytes;
+  [[nodiscard]] bool empty() const { return bytes.data() == nullptr; }
+};
+
+inline constexpr std::size_t k_offer_alignment = 16;
+
+class OfferRing {
+ public:
+  void reserve(std::size_t bytes);
+
+  // Producer: room for one record of `bytes`, empty() if there is none; then hand it over.
+  [[nodiscard]] OfferSlot claim(std::size_t bytes) noexcept;
+  void publish(const OfferSlot& slot) noexcept;
+
+  // Consumer: the oldest record, empty() if there is none; then give its room back.
+  [[nodiscard]] OfferSlot front() noexcept;
+  void release() noexcept;
+
+ private:
+  struct Heading {
+    std::uint64_t bytes;  // of the record with this heading, a multiple of the alignment
+    std::uint64_t payload_bytes;
+    std::uint64_t ticket;
+    std::uint32_t kind;
+    std::uint32_t is_gap;  // nothing here: the next record is at the ring's start
+  };
+  static_assert(sizeof(Heading) % k_offer_alignment == 0);
+
+  std::unique_ptr<std::byte[]> memory_;
+  std::size_t capacity_ = 0;
+  alignas(64) std::uint64_t claimed_ = 0;  // producer's own: where the record being filled starts
+  std::atomic<std::uint64_t> pushed_{0};   // bytes ever handed over
+  alignas(64) std::atomic<std::uint64_t> popped_{0};  // bytes ever given back
+};
+
+}  // namespace glint

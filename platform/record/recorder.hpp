@@ -1,0 +1,100 @@
+// Records from real-time threads: each offer copies into a ring of its thread, a thread of the
+// recorder's own writes the file.
+//
+// An offer neither allocates, locks nor waits. Where its ring is full it is dropped and counted,
+// and the recording says that it is incomplete. Offers of all threads are numbered by one counter;
+// the file holds them in that order, so what was offered before a value was published stands in
+// front of every offer made by a thread that had read it.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <thread>
+
+#include "kernels/image/roi.hpp"
+#include "platform/record/offer_ring.hpp"
+#include "platform/record/recording_writer.hpp"
+
+namespace glint {
+
+enum class WhenFull : std::uint8_t {
+  drop,  // real time: the offer is lost and counted
+  wait,  // as fast as can be (simulation, replay): the caller sleeps until there is room
+};
+
+struct RecorderSettings {
+  std::size_t frame_lane_bytes = std::size_t{26} << 20;  // 24 whole AHAT frames
+  std::size_t tick_lane_bytes = std::size_t{4} << 20;    // 5 s of 1 kHz
+  std::size_t input_lane_bytes = std::size_t{1} << 16;
+  WhenFull when_full = WhenFull::drop;
+  int roi_margin_px = 8;  // beyond each region, see roi_layout
+  RecordingSettings file;
+};
+
+// The offers of one thread. False: dropped. What the level leaves out is taken and ignored.
+class RecorderLane {
+ public:
+  // The frame's pixels are copied: rois at level roi, all of them at level full.
+  bool offer_frame(const Frame& frame, const Rois& rois) noexcept;
+  bool offer_head_pose(const HeadPose& pose) noexcept;
+  bool offer_markers(const MarkerFrame& frame) noexcept;
+  bool offer_choice(const ChoiceRecord& choice) noexcept;
+  // record: at most k_offered_record_bytes_max, else dropped.
+  bool offer_output(const PoseSample& sample, std::span<const std::uint8_t> record) noexcept;
+  bool offer_dropped(const DroppedInput& input) noexcept;
+
+ private:
+  friend class Recorder;
+  template <class Item>
+  bool offer(const Item& item) noexcept;
+  OfferSlot claim(std::uint32_t kind, std::size_t bytes) noexcept;
+
+  OfferRing ring_;
+  std::atomic<std::uint64_t>* ticket_ = nullptr;
+  std::atomic<std::uint64_t> dropped_{0};
+  RecordingLevel level_ = RecordingLevel::roi;
+  WhenFull when_full_ = WhenFull::drop;
+  int roi_margin_px_ = 0;
+};
+
+class Recorder {
+ public:
+  // Throws InputError where the file cannot be made. Touches all its memory.
+  Recorder(const std::string& path, const RecordingInfo& info, RecorderSettings settings = {});
+  ~Recorder();  // closes
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  // One thread each at any time.
+  [[nodiscard]] RecorderLane& frame_lane() noexcept { return lanes_[0]; }
+  [[nodiscard]] RecorderLane& tick_lane() noexcept { return lanes_[1]; }
+  [[nodiscard]] RecorderLane& input_lane() noexcept { return lanes_[2]; }
+
+  // Offers that were dropped so far; any thread may ask.
+  [[nodiscard]] std::uint64_t dropped() const noexcept;
+
+  // Before close(); not from a real-time thread.
+  void add_closing_fact(const std::string& name, const std::string& value);
+
+  // After the last offer: writes what waits, closes the file. Again: the same outcome.
+  RecordingOutcome close();
+
+ private:
+  void run();
+  bool write_next();
+  void write_item(const OfferSlot& offer);
+
+  RecordingWriter writer_;
+  std::array<RecorderLane, 3> lanes_;
+  alignas(64) std::atomic<std::uint64_t> ticket_{0};
+  std::uint64_t next_ = 0;
+  std::atomic<bool> ending_{false};
+  RecordingOutcome outcome_;
+  std::thread thread_;
+};
+
+}  // namespace glint
