@@ -18,13 +18,9 @@
 #include "kernels/image/roi.hpp"
 #include "platform/record/offer_ring.hpp"
 #include "platform/record/recording_writer.hpp"
+#include "platform/when_full.hpp"
 
 namespace glint {
-
-enum class WhenFull : std::uint8_t {
-  drop,  // real time: the offer is lost and counted
-  wait,  // as fast as can be (simulation, replay): the caller sleeps until there is room
-};
 
 struct RecorderSettings {
   std::size_t frame_lane_bytes = std::size_t{26} << 20;  // 24 whole AHAT frames

@@ -1,0 +1,46 @@
+// Admits each frame once and in order. A late, doubled or unusable frame is counted and passed on
+// as refused, so that no later node takes it for a measurement.
+//
+// Should the sensor's clock restart, every new frame would be late for ever: after
+// k_resync_frames refused frames whose own stamps advance, their clock is believed instead.
+#pragma once
+
+#include "kernels/image/frame.hpp"
+#include "nodes/tokens.hpp"
+
+namespace glint {
+
+inline constexpr int k_resync_frames = 8;   // 0.2 s at 45 Hz: below lost_after, above any reordering
+
+// Takes the stamp off a frame and checks its size against the camera's.
+struct StampFrame {
+  int width = 0;
+  int height = 0;
+  int reflectivity_bits = 16;
+
+  void operator()(const Frame& frame, FrameStamp& stamp) const noexcept {
+    stamp.mid_exposure = frame.mid_exposure;
+    stamp.arrival = frame.arrival;
+    stamp.sequence = frame.sequence;
+    const bool plane_there =
+        reflectivity_bits == 8 ? !frame.reflectivity_8.empty() : !frame.reflectivity_16.empty();
+    const bool depth_fits = !frame.depth.empty() && frame.depth.width == width &&
+                            frame.depth.height == height;
+    const bool fits = plane_there && depth_fits && frame.width() == width &&
+                      frame.height() == height;
+    stamp.reason = fits ? Reason::none : Reason::frame_invalid;
+  }
+};
+
+struct CheckFrame {
+  void operator()(const FrameStamp& stamp, FrameVerdict& verdict) noexcept;
+
+ private:
+  Time newest_;                 // of the frames accepted
+  std::uint32_t sequence_ = 0;
+  Time refused_newest_;         // of the frames refused in a row
+  int refused_in_row_ = 0;
+  FrameVerdict counts_;
+};
+
+}  // namespace glint

@@ -1,0 +1,17 @@
+// The tick group: from what is known of every tool to what leaves, at a steady rate.
+//
+//   Now, Latest<Estimates>, Latest<RobotFrame> ─► PredictTools ─► PoseSamples ─► PackCan ─► CanFrames
+#pragma once
+
+#include "graph/graph.hpp"
+#include "nodes/pack_can.hpp"
+#include "nodes/predict_tools.hpp"
+
+namespace glint {
+
+using Output =
+    graph::Graph<graph::Inputs<Now, graph::Latest<Estimates>, graph::Latest<RobotFrame>>,
+                 graph::Outputs<PoseSamples, CanFrames>, PredictTools, PackCan>;
+static_assert(graph::valid<Output>);
+
+}  // namespace glint

@@ -1,0 +1,46 @@
+#include "nodes/pack_can.hpp"
+
+namespace glint {
+
+// True once a period; a tick that skipped several makes up for none of them.
+bool PackCan::due(Time tick, Duration period, Time& next) const noexcept {
+  if (tick < next) return false;
+  next = tick + period;
+  return true;
+}
+
+void PackCan::operator()(const Now& now, const PoseSamples& samples, CanFrames& frames) noexcept {
+  frames.count = 0;
+  frames.dropped = 0;
+  const CanPacking packing{settings.format, settings.base_identifier, now.unix_offset_ns};
+  for (int t = 0; t < samples.count; ++t) {
+    add_pose_frames(samples.items[static_cast<std::size_t>(t)], packing, frames);
+  }
+
+  if (due(now.tick, settings.heartbeat_period, next_heartbeat_)) {
+    frames.add(heartbeat_frame(settings.node, CanNodeState::operational));
+  }
+  for (int t = 0; t < samples.count; ++t) {
+    const PoseSample& sample = samples.items[static_cast<std::size_t>(t)];
+    TrackState& last = last_state_[static_cast<std::size_t>(t)];
+    const bool lost_now = sample.state == TrackState::lost && last != TrackState::lost;
+    const bool found_again = sample.has_pose() && last == TrackState::lost;
+    if (lost_now || found_again) {
+      frames.add(emergency_frame(settings.node, sample));
+    }
+    last = sample.state;
+  }
+  if (due(now.tick, settings.time_sync_period, next_time_sync_)) {
+    const TimeSync sync{.base_identifier = settings.base_identifier};
+    const std::int64_t unix_ns = now.tick.nanoseconds + now.unix_offset_ns;
+    const auto begin = time_sync_frame(sync, time_sync_counter_, unix_ns);
+    const auto follow_up = time_follow_up_frame(sync, time_sync_counter_, unix_ns, unix_ns);
+    if (begin && follow_up) {
+      frames.add(begin.value);
+      frames.add(follow_up.value);
+    }
+    time_sync_counter_ = static_cast<std::uint8_t>((time_sync_counter_ + 1) % 16);
+  }
+}
+
+}  // namespace glint

@@ -1,0 +1,37 @@
+// The tick's CAN frames: every tool's pose, then the node's heartbeat, emergencies and time.
+//
+// The poses come first, since a controller waits for them. Heartbeat every 100 ms, an emergency
+// frame when a tool is lost and when it is found again, CanTSyn once a second. Time in SYNC and
+// follow-up is the tick's nominal release: the bus sees it as late as the tick itself is.
+#pragma once
+
+#include <array>
+
+#include "kernels/wire/can_frames.hpp"
+#include "kernels/wire/node_frames.hpp"
+#include "nodes/tokens.hpp"
+
+namespace glint {
+
+struct PackCanSettings {
+  CanFormat format = CanFormat::classic;
+  std::uint32_t base_identifier = k_can_base_default;
+  unsigned node = 32;
+  Duration heartbeat_period = milliseconds(100);
+  Duration time_sync_period = milliseconds(1000);
+};
+
+struct PackCan {
+  PackCanSettings settings;
+  void operator()(const Now& now, const PoseSamples& samples, CanFrames& frames) noexcept;
+
+ private:
+  [[nodiscard]] bool due(Time tick, Duration period, Time& next) const noexcept;
+
+  Time next_heartbeat_;
+  Time next_time_sync_;
+  std::uint8_t time_sync_counter_ = 0;
+  std::array<TrackState, k_tools_max> last_state_{};
+};
+
+}  // namespace glint

@@ -1,0 +1,98 @@
+#include "nodes/pose_nodes.hpp"
+
+#include <span>
+
+namespace glint {
+namespace {
+
+template <class T>
+std::span<T> first(std::array<T, k_tools_max>& all, int count) {
+  return {all.data(), static_cast<std::size_t>(count)};
+}
+
+// Where the labelled markers' centres are, in the camera's frame, and where the tool has them.
+struct PointPairs {
+  std::array<Vector3, k_markers_per_tool_max> model, measured;
+  std::size_t count = 0;
+  std::uint8_t mask = 0;
+};
+
+PointPairs pairs_of(const Tool& tool, const Markers& markers, const Labeling& labeling) {
+  PointPairs pairs;
+  for (int i = 0; i < tool.marker_count; ++i) {
+    const int seen = labeling.marker[static_cast<std::size_t>(i)];
+    if (seen < 0) continue;
+    const Marker& marker = markers.items[static_cast<std::size_t>(seen)];
+    pairs.model[pairs.count] = tool.markers_m[static_cast<std::size_t>(i)];
+    pairs.measured[pairs.count] = marker.ray * (marker.surface_range_m + tool.centre_offset_m());
+    ++pairs.count;
+    pairs.mask = static_cast<std::uint8_t>(pairs.mask | (1u << i));
+  }
+  return pairs;
+}
+
+}  // namespace
+
+void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
+                            const graph::Latest<ToolSet>& tools, const Predictions& predictions,
+                            graph::Slice slice, ToolLabelings& labelings) noexcept {
+  const ToolSet& set = tools.value();
+  for (int t = slice.index; t < set.count; t += slice.count) {
+    Labelings& out = labelings.tools[static_cast<std::size_t>(t)];
+    if (!verdict.usable()) {
+      out.count = 0;
+      out.reason = verdict.reason;
+      continue;
+    }
+    const Prediction& prediction = predictions.tools[static_cast<std::size_t>(t)];
+    CorrespondSettings gated = settings;
+    gated.prior_gate_m = settings.prior_gate_m + prediction.reach_m;
+    propose_labelings(markers, set.items[static_cast<std::size_t>(t)], gated,
+                      prediction.has_prior ? &prediction.T_camera_tool : nullptr, out);
+  }
+}
+
+void AssignMarkers::operator()(const FrameVerdict& verdict, const graph::Latest<ToolSet>& tools,
+                               const graph::Parts<ToolLabelings, k_tool_slices>& labelings,
+                               Assignment& assignment) noexcept {
+  const int count = tools.value().count;
+  assignment.reason.fill(verdict.reason);
+  if (!verdict.usable()) return;
+  for (int t = 0; t < count; ++t) {
+    const auto i = static_cast<std::size_t>(t);
+    per_tool_[i] = labelings[t % k_tool_slices].tools[i];
+  }
+  assign_markers(first(per_tool_, count), first(chosen_, count), first(assignment.reason, count));
+  for (int t = 0; t < count; ++t) {
+    const auto i = static_cast<std::size_t>(t);
+    if (chosen_[i] < 0) continue;
+    assignment.labeling[i] = per_tool_[i].items[static_cast<std::size_t>(chosen_[i])];
+  }
+}
+
+void FitRigid::operator()(const FrameVerdict& verdict, const Markers& markers,
+                          const graph::Latest<ToolSet>& tools, const Assignment& assignment,
+                          graph::Slice slice, FittedTools& fitted) const noexcept {
+  const ToolSet& set = tools.value();
+  for (int t = slice.index; t < set.count; t += slice.count) {
+    const auto i = static_cast<std::size_t>(t);
+    FittedTool& out = fitted.tools[i];
+    out = FittedTool{};
+    out.reason = verdict.usable() ? assignment.reason[i] : verdict.reason;
+    if (out.reason != Reason::none) continue;
+
+    const PointPairs pairs = pairs_of(set.items[i], markers, assignment.labeling[i]);
+    const std::span model(pairs.model.data(), pairs.count);
+    const std::span measured(pairs.measured.data(), pairs.count);
+    const RigidFit fit = fit_rigid(model, measured);
+    out.reason = fit.reason;
+    if (fit.reason != Reason::none) continue;
+    out.T_camera_tool = fit.transform;
+    out.rms_m = fit.rms_m;
+    out.marker_mask = pairs.mask;
+    out.covariance = fit_covariance(model, measured, fit.transform, noise,
+                                    fit.transform * set.items[i].tip_m);
+  }
+}
+
+}  // namespace glint

@@ -1,0 +1,114 @@
+// The values that travel between nodes, beyond those a kernel already names (Frame, Rois, Runs,
+// Blobs, Markers, ToolSet, HeadPose).
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "kernels/limits.hpp"
+#include "kernels/motion/interpolate.hpp"
+#include "kernels/pose/labeling.hpp"
+#include "kernels/reason.hpp"
+#include "kernels/units.hpp"
+#include "kernels/wire/can_frames.hpp"
+#include "kernels/wire/pose_sample.hpp"
+
+namespace glint {
+
+// What is known of a frame without its pixels.
+struct FrameStamp {
+  Time mid_exposure;
+  Time arrival;
+  std::uint32_t sequence = 0;
+  Reason reason = Reason::none;   // frame_invalid: wrong size, or a plane is missing
+};
+
+// Whether this activation's frame may be used, and what had to be refused so far.
+struct FrameVerdict {
+  FrameStamp stamp;
+  Reason reason = Reason::none;   // frame_late, frame_doubled, frame_invalid
+  bool resynchronised = false;    // the stamps restarted: older tracks mean nothing any more
+  std::uint32_t accepted = 0;     // counters since the start
+  std::uint32_t late = 0, doubled = 0, invalid = 0, resynchronisations = 0;
+  [[nodiscard]] bool usable() const { return reason == Reason::none; }
+};
+
+// Where each tool should be seen at this frame's mid-exposure.
+struct Prediction {
+  bool has_prior = false;
+  bool missed_last = false;   // the last frame did not show it: search the whole frame
+  Pose T_camera_tool;
+  double reach_m = 0;         // how far the tool may be from there
+};
+struct Predictions {
+  std::array<Prediction, k_tools_max> tools;
+  std::array<Vector2, k_tools_max * k_markers_per_tool_max> markers_px;
+  int marker_count = 0;
+};
+
+struct ToolLabelings {
+  std::array<Labelings, k_tools_max> tools;
+};
+
+// One labeling for each tool, no marker given twice.
+struct Assignment {
+  std::array<Labeling, k_tools_max> labeling;
+  std::array<Reason, k_tools_max> reason{};   // none: labeling holds
+};
+
+// The pose of each tool in this frame.
+struct FittedTool {
+  Reason reason = Reason::no_frame_yet;
+  std::uint8_t marker_mask = 0;
+  double rms_m = 0;
+  Pose T_camera_tool;
+  Matrix6 covariance = Matrix6::Zero();   // of the tip, about the camera's axes
+};
+struct FittedTools {
+  std::array<FittedTool, k_tools_max> tools;
+};
+
+// What is known of a tool after a frame: its newest pose and the one before, from which velocity
+// follows. `base` is the frame both are in: the world, or the camera where no head pose was valid.
+struct Track {
+  bool alive = false;            // a pose younger than lost_after exists
+  bool seen_now = false;         // this frame gave it
+  bool has_previous = false;     // `previous` is in the same base and recent enough
+  Reason reason = Reason::no_frame_yet;   // why this frame gave none
+  ReferenceFrame base = ReferenceFrame::camera;
+  std::uint8_t marker_mask = 0;
+  std::uint32_t frame_sequence = 0;
+  double rms_m = 0;
+  StampedPose newest, previous;  // T_base_tool
+  Pose T_camera_tool;            // the newest, as the camera saw it
+  Matrix6 covariance = Matrix6::Zero();   // of the tip, about the base's axes
+};
+
+// The frame group's result.
+struct Estimates {
+  FrameVerdict verdict;
+  int tool_count = 0;
+  std::array<Vector3, k_tools_max> tip_m;   // tool frame: the tick group needs no tool set
+  std::array<Track, k_tools_max> tracks;
+};
+
+// The tick's nominal release: the only clock that the output ever sees.
+struct Now {
+  Time tick;
+  std::uint32_t number = 0;
+  std::int64_t unix_offset_ns = 0;   // added to a Time it gives nanoseconds since 1970 (UTC)
+};
+
+// Where the robot's base is in the headset's world.
+struct RobotFrame {
+  RegistrationState state = RegistrationState::none;
+  Pose T_world_robot;
+  double rms_m = 0;
+};
+
+struct PoseSamples {
+  std::array<PoseSample, k_tools_max> items;
+  int count = 0;
+};
+
+}  // namespace glint

@@ -1,0 +1,71 @@
+#include "nodes/track_tools.hpp"
+
+namespace glint {
+namespace {
+
+// The covariance about the axes of another frame.
+Matrix6 rotated(const Matrix6& covariance, const Quaternion& rotation) {
+  Matrix6 turn = Matrix6::Zero();
+  turn.topLeftCorner<3, 3>() = rotation.toRotationMatrix();
+  turn.bottomRightCorner<3, 3>() = turn.topLeftCorner<3, 3>();
+  return turn * covariance * turn.transpose();
+}
+
+void accept(const FittedTool& found, const FrameStamp& stamp, const HeadPose& head,
+            Duration velocity_gap_max, Track& track) {
+  const ReferenceFrame base = head.valid ? ReferenceFrame::world : ReferenceFrame::camera;
+  const Pose pose = head.valid ? head.T_world_camera * found.T_camera_tool : found.T_camera_tool;
+  track.has_previous = track.alive && track.base == base &&
+                       stamp.mid_exposure - track.newest.time <= velocity_gap_max;
+  track.previous = track.newest;
+  track.newest = {stamp.mid_exposure, pose};
+  track.base = base;
+  track.alive = true;
+  track.seen_now = true;
+  track.reason = Reason::none;
+  track.marker_mask = found.marker_mask;
+  track.frame_sequence = stamp.sequence;
+  track.rms_m = found.rms_m;
+  track.T_camera_tool = found.T_camera_tool;
+  track.covariance =
+      head.valid ? rotated(found.covariance, head.T_world_camera.rotation) : found.covariance;
+}
+
+}  // namespace
+
+void TrackTools::operator()(const FrameVerdict& verdict, const HeadPose& head,
+                            const graph::Latest<ToolSet>& tools,
+                            const graph::Parts<FittedTools, 2>& fitted,
+                            const graph::Previous<Estimates>& last,
+                            Estimates& estimates) const noexcept {
+  const ToolSet& set = tools.value();
+  estimates.verdict = verdict;
+  estimates.tool_count = set.count;
+  for (int t = 0; t < k_tools_max; ++t) {
+    Track& track = estimates.tracks[t];
+    if (t >= set.count) {
+      track = Track{};
+      estimates.tip_m[t] = Vector3::Zero();
+      continue;
+    }
+    estimates.tip_m[t] = set.items[t].tip_m;
+    track = last.value().tracks[t];
+    if (!verdict.usable()) continue;   // a refused frame changes nothing that is known of a tool
+    if (verdict.resynchronised) track = Track{};
+
+    const FittedTool& found = fitted[t % fitted.size()].tools[t];
+    if (found.reason == Reason::none) {
+      accept(found, verdict.stamp, head, settings.velocity_gap_max, track);
+      continue;
+    }
+    track.seen_now = false;
+    track.reason = found.reason;
+    if (verdict.stamp.mid_exposure - track.newest.time > settings.lost_after) {
+      const Reason why = track.reason;
+      track = Track{};
+      track.reason = why;
+    }
+  }
+}
+
+}  // namespace glint

@@ -1,0 +1,34 @@
+// The frame group: from a camera frame to what is known of every tool.
+//
+//   Frame ─► StampFrame ─► CheckFrame ─► PredictTracks ─► LocateRois ─► RoiThreshold x2 ─► FindBlobs
+//     ─► BackProject ─► Correspond x2 ─► AssignMarkers ─► FitRigid x2 ─► TrackTools ─► Estimates
+//                           ▲ PredictTracks and TrackTools read Previous<Estimates>
+//
+// MarkerTracker is the same from BackProject's output on: recordings without images feed it.
+#pragma once
+
+#include "graph/graph.hpp"
+#include "nodes/check_frame.hpp"
+#include "nodes/image_nodes.hpp"
+#include "nodes/locate_rois.hpp"
+#include "nodes/pose_nodes.hpp"
+#include "nodes/track_tools.hpp"
+
+namespace glint {
+
+using Tracker =
+    graph::Graph<graph::Inputs<Frame, HeadPose, graph::Latest<ToolSet>>, graph::Outputs<Estimates>,
+                 StampFrame, CheckFrame, PredictTracks, LocateRois,
+                 graph::Split<RoiThreshold, k_row_bands>, FindBlobs, BackProject,
+                 graph::Split<Correspond, k_tool_slices>, AssignMarkers,
+                 graph::Split<FitRigid, k_tool_slices>, TrackTools>;
+static_assert(graph::valid<Tracker>);
+
+using MarkerTracker =
+    graph::Graph<graph::Inputs<FrameStamp, Markers, HeadPose, graph::Latest<ToolSet>>,
+                 graph::Outputs<Estimates>, CheckFrame, PredictTracks,
+                 graph::Split<Correspond, k_tool_slices>, AssignMarkers,
+                 graph::Split<FitRigid, k_tool_slices>, TrackTools>;
+static_assert(graph::valid<MarkerTracker>);
+
+}  // namespace glint

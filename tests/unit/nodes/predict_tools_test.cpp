@@ -1,0 +1,105 @@
+#include "nodes/predict_tools.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace glint {
+namespace {
+
+class PredictTools : public testing::Test {
+ protected:
+  PredictTools() {
+    estimates_->tool_count = 1;
+    estimates_->tip_m[0] = Vector3(0.1, 0, 0);
+    Track& track = estimates_->tracks[0];
+    track.alive = true;
+    track.seen_now = true;
+    track.reason = Reason::none;
+    track.base = ReferenceFrame::world;
+    track.newest = {Time{} + milliseconds(1000), {}};
+    track.newest.pose.translation = Vector3(0, 0, 0.5);
+  }
+
+  PoseSample at(std::int64_t tick_ms) {
+    graph::Latest<Estimates> estimates;
+    estimates.set(*estimates_, 1, 0);
+    graph::Latest<RobotFrame> robot;
+    robot.set(robot_, 1, 0);
+    node_(Now{Time{} + milliseconds(tick_ms), 7, 0}, estimates, robot, *samples_);
+    return samples_->items[0];
+  }
+
+  std::unique_ptr<Estimates> estimates_ = std::make_unique<Estimates>();
+  std::unique_ptr<PoseSamples> samples_ = std::make_unique<PoseSamples>();
+  RobotFrame robot_{RegistrationState::given, {}, 0};
+  glint::PredictTools node_;
+};
+
+TEST_F(PredictTools, SaysNoneBeforeTheFirstPose) {
+  estimates_->tracks[0] = Track{};
+  EXPECT_EQ(at(1000).state, TrackState::none);
+  EXPECT_EQ(at(1000).reason, Reason::no_frame_yet);
+}
+
+TEST_F(PredictTools, IsMeasuredUpToOneAndAHalfNominalGaps) {
+  node_.settings.nominal_gap = milliseconds(20);
+  EXPECT_EQ(at(1030).state, TrackState::measured);
+  EXPECT_EQ(at(1031).state, TrackState::predicted);
+}
+
+TEST_F(PredictTools, IsPredictedUpToLostAfterAndThenLostWithoutAPose) {
+  EXPECT_EQ(at(1250).state, TrackState::predicted);
+  const PoseSample lost = at(1251);
+  EXPECT_EQ(lost.state, TrackState::lost);
+  EXPECT_EQ(lost.reason, Reason::too_old);
+  EXPECT_TRUE(lost.pose.translation.isZero());
+}
+
+TEST_F(PredictTools, GivesTheTipInTheRobotsFrame) {
+  robot_.T_world_robot.translation = Vector3(1, 2, 3);
+  const PoseSample sample = at(1010);
+  EXPECT_EQ(sample.frame, ReferenceFrame::robot);
+  EXPECT_TRUE(sample.pose.translation.isApprox(Vector3(0.1 - 1, -2, 0.5 - 3)));
+}
+
+TEST_F(PredictTools, StaysInTheWorldAndSaysSoWithoutARobotFrame) {
+  robot_.state = RegistrationState::none;
+  const PoseSample sample = at(1010);
+  EXPECT_EQ(sample.frame, ReferenceFrame::world);
+  EXPECT_EQ(sample.reason, Reason::no_reference);
+  EXPECT_EQ(sample.state, TrackState::measured);
+}
+
+TEST_F(PredictTools, StaysInTheCamerasFrameWithoutAHeadPose) {
+  estimates_->tracks[0].base = ReferenceFrame::camera;
+  const PoseSample sample = at(1010);
+  EXPECT_EQ(sample.frame, ReferenceFrame::camera);
+  EXPECT_EQ(sample.reason, Reason::head_pose_missing);
+}
+
+TEST_F(PredictTools, MovesAtConstantVelocityWithGrowingUncertainty) {
+  Track& track = estimates_->tracks[0];
+  track.has_previous = true;
+  track.previous = {Time{} + milliseconds(980), {}};
+  track.previous.pose.translation = Vector3(-0.02, 0, 0.5);
+  track.covariance = Matrix6::Identity() * 1e-6;
+  const PoseSample near = at(1000);
+  const PoseSample far = at(1040);
+  EXPECT_TRUE(far.velocity_m_s.isApprox(Vector3(1, 0, 0), 1e-9));
+  EXPECT_NEAR(far.pose.translation.x(), 0.1 + 0.04, 1e-9);
+  EXPECT_NEAR(near.sigma_position_m, 1e-3, 1e-9);
+  EXPECT_NEAR(far.sigma_position_m, 1e-3 * std::sqrt(3.0 * 3.0 + 2.0 * 2.0), 1e-9);
+}
+
+TEST_F(PredictTools, AddsTheActuationDelayToTheLead) {
+  Track& track = estimates_->tracks[0];
+  track.has_previous = true;
+  track.previous = {Time{} + milliseconds(980), {}};
+  track.previous.pose.translation = Vector3(-0.02, 0, 0.5);
+  node_.settings.actuation_delay = milliseconds(10);
+  EXPECT_NEAR(at(1000).pose.translation.x(), 0.1 + 0.01, 1e-9);
+}
+
+}  // namespace
+}  // namespace glint
