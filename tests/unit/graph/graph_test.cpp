@@ -1,0 +1,157 @@
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "small_graph.hpp"
+
+namespace glint::test {
+
+int total_with_core_flags();
+
+namespace {
+
+TEST(Graph, RunsNodesInTheOrderOfTheirDataNotOfTheirListing) {
+  static SmallGraph graph;
+  graph.latest<Scale>().set({10}, 1, 0);
+  graph.input<Row>().numbers = {1, 2, 3, 4, 5, 6, 7, 8};
+  graph.activate();
+  EXPECT_EQ(graph.output<Total>().value, 360);
+}
+
+TEST(Graph, GivesTheFirstActivationAnEmptyPreviousAndEachLaterOneTheLastToken) {
+  static SmallGraph graph;
+  graph.latest<Scale>().set({1}, 1, 0);
+  graph.input<Row>().numbers = {1, 1, 1, 1, 1, 1, 1, 1};
+  for (int activation = 1; activation <= 5; ++activation) {
+    graph.activate();
+    EXPECT_EQ(graph.output<Total>().activations, activation);
+    EXPECT_EQ(graph.output<Total>().value, 8 * activation);
+  }
+}
+
+TEST(Graph, WritesThePartsOfASplitInIndexOrderWithAStateForEachCopy) {
+  static SmallGraph graph;
+  graph.latest<Scale>().set({1}, 1, 0);
+  graph.input<Row>().numbers = {1, 1, 1, 1, 2, 2, 2, 2};
+  graph.activate();
+  EXPECT_EQ(graph.parts<Sum>(0).value, 4);
+  EXPECT_EQ(graph.parts<Sum>(1).value, 8);
+  EXPECT_EQ(graph.node<SumBand>(0).calls, 1);
+  EXPECT_EQ(graph.node<SumBand>(1).calls, 1);
+  int copies = 0;
+  graph.for_each<SumBand>([&](SumBand&) { ++copies; });
+  EXPECT_EQ(copies, 2);
+}
+
+TEST(Graph, UsesTheSettingsOfItsNodes) {
+  static SmallGraph graph;
+  graph.node<ScaleRow>().offset = 3;
+  graph.activate();
+  EXPECT_EQ(graph.output<Total>().value, 24);
+  EXPECT_EQ(graph.token<Scaled>().numbers[5], 3);
+}
+
+TEST(Graph, PreparesAllNodesAndNamesTheFirstThatFails) {
+  static SmallGraph graph;
+  EXPECT_TRUE(graph.prepare());
+  graph.node<ScaleRow>().offset = -1;
+  const Prepared prepared = graph.prepare();
+  EXPECT_FALSE(prepared);
+  EXPECT_EQ(prepared.node, 0);
+  EXPECT_EQ(prepared.name, "ScaleRow");
+  EXPECT_EQ(prepared.reason, static_cast<int>(Ready::no_offset));
+}
+
+struct Seen {
+  std::vector<int>* numbers;
+  void on_node_begin(int node) { numbers->push_back(node); }
+  void on_node_end(int node) { numbers->push_back(-node); }
+};
+
+TEST(Graph, ShowsATraceEveryCopyOfEveryNodeInOrder) {
+  static SmallGraph graph;
+  std::vector<int> numbers;
+  Seen trace{&numbers};
+  graph.activate(trace);
+  EXPECT_EQ(numbers, (std::vector<int>{0, 0, 1, -1, 2, -2, 3, -3}));
+}
+
+struct Big {
+  std::array<char, 1 << 20> bytes{};
+};
+struct Small {
+  int value = 0;
+};
+struct Fill {
+  void operator()(const Small& small, Big& big) const noexcept {
+    big.bytes[0] = static_cast<char>(small.value);
+  }
+};
+
+TEST(Graph, HoldsEachTokenOnceAndNothingOutsideItself) {
+  using OneToken = Graph<Inputs<Small>, Outputs<Big>, Fill>;
+  EXPECT_GE(sizeof(OneToken), sizeof(Big));
+  EXPECT_LT(sizeof(OneToken), sizeof(Big) + 512);
+}
+
+struct First {
+  int value = 0;
+};
+struct Second {
+  int value = 0;
+};
+struct MakeFirst {
+  void operator()(const Small& in, First& out) const noexcept { out.value = in.value; }
+};
+struct MakeSecond {
+  void operator()(const Small& in, Second& out) const noexcept { out.value = in.value; }
+};
+
+TEST(Graph, BreaksTiesInTheOrderListed) {
+  using OneWay = Graph<Inputs<Small>, Outputs<First, Second>, MakeSecond, MakeFirst>;
+  using OtherWay = Graph<Inputs<Small>, Outputs<First, Second>, MakeFirst, MakeSecond>;
+  EXPECT_EQ(Description<OneWay>::nodes[0].name, "MakeSecond");
+  EXPECT_EQ(Description<OtherWay>::nodes[0].name, "MakeFirst");
+}
+
+// Reads its own last token while it writes the next: the two buffers must be two.
+struct Fibonacci {
+  int last = 0;
+  int value = 0;
+};
+struct Step {
+  void operator()(const Previous<Fibonacci>& before, Fibonacci& now) const noexcept {
+    now.last = before.value().value;
+    now.value = before.value().value + before.value().last;
+    if (now.value == 0) now.value = 1;
+  }
+};
+
+TEST(Graph, KeepsThePreviousTokenWholeWhileTheNextIsWritten) {
+  static Graph<Inputs<>, Outputs<Fibonacci>, Step> graph;
+  for (int i = 0; i < 10; ++i) graph.activate();
+  EXPECT_EQ(graph.output<Fibonacci>().value, 55);
+}
+
+// Feedback of parts: each copy goes on from what it wrote itself.
+struct Track {
+  int value = 0;
+};
+struct Advance {
+  void operator()(const Previous<Parts<Track, 3>>& last, Slice slice, Track& track) const noexcept {
+    track.value = last.value()[slice.index].value + slice.index + 1;
+  }
+};
+
+TEST(Graph, FeedsPartsBackToTheirCopies) {
+  static Graph<Inputs<>, Outputs<Parts<Track, 3>>, Split<Advance, 3>> graph;
+  for (int i = 0; i < 4; ++i) graph.activate();
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(graph.parts<Track>(i).value, 4 * (i + 1));
+}
+
+TEST(Graph, BuildsAndRunsWithoutExceptionsAndTypeInformation) {
+  EXPECT_EQ(total_with_core_flags(), 144);
+}
+
+}  // namespace
+}  // namespace glint::test

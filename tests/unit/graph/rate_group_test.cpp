@@ -1,0 +1,85 @@
+#include <gtest/gtest.h>
+
+#include "small_graph.hpp"
+
+namespace glint::test {
+namespace {
+
+struct Fixture {
+  SmallGraph graph;
+  TripleBuffer<Scale> scales;
+  RateGroup<SmallGraph> group{graph, 3};
+  Fixture() {
+    graph.latest<Scale>().bind(scales);
+    graph.input<Row>().numbers = {1, 0, 0, 0, 0, 0, 0, 0};
+  }
+  void publish(int factor, std::uint64_t version) {
+    scales.write_slot().factor = factor;
+    scales.publish(version, 1000 * static_cast<std::int64_t>(version));
+  }
+};
+
+TEST(RateGroup, NotesTheReleaseAndTheVersionsItSampled) {
+  Fixture f;
+  f.publish(5, 1);
+  f.publish(6, 2);
+  const Choice& choice = f.group.release(4'000'000);
+  EXPECT_EQ(choice.group, 3u);
+  EXPECT_EQ(choice.activation, 1u);
+  EXPECT_EQ(choice.nominal_ns, 4'000'000);
+  ASSERT_EQ(choice.version_count, 1);
+  EXPECT_EQ(choice.versions[0], 2u);
+  EXPECT_EQ(f.graph.latest<Scale>().time_ns(), 2000);
+}
+
+TEST(RateGroup, ShowsAllNodesOneVersionUntilTheNextRelease) {
+  Fixture f;
+  f.publish(5, 1);
+  f.group.release(0);
+  f.publish(6, 2);
+  f.group.activate();
+  EXPECT_EQ(f.graph.output<Total>().value, 5);
+  f.group.release(1);
+  f.group.activate();
+  EXPECT_EQ(f.graph.output<Total>().value, 11);
+}
+
+TEST(RateGroup, StartsWithAnEmptyValueOfVersionZero) {
+  Fixture f;
+  EXPECT_EQ(f.group.release(0).versions[0], 0u);
+  EXPECT_EQ(f.graph.latest<Scale>().value().factor, 1);
+}
+
+TEST(RateGroup, ReplaysTheRecordedVersionsAlthoughNewerOnesAreThere) {
+  Fixture live;
+  std::array<Choice, 3> recorded;
+  std::array<int, 3> totals{};
+  for (int i = 0; i < 3; ++i) {
+    if (i != 1) live.publish(i + 1, static_cast<std::uint64_t>(i) + 1);
+    recorded[i] = live.group.release(i);
+    live.group.activate();
+    totals[i] = live.graph.output<Total>().value;
+  }
+  Fixture replay;
+  for (int i = 0; i < 3; ++i) {
+    if (i == 0) replay.publish(1, 1);
+    if (i == 1) replay.publish(3, 3);  // early: release 1 read version 1 and must do so again
+    EXPECT_TRUE(replay.group.release_as(recorded[i])) << i;
+    replay.group.activate();
+    EXPECT_EQ(replay.graph.output<Total>().value, totals[i]) << i;
+  }
+}
+
+TEST(RateGroup, SaysWhenARecordedVersionWasNotPublished) {
+  Fixture f;
+  Choice recorded = f.group.release(0);
+  recorded.activation = 2;
+  recorded.versions[0] = 7;
+  f.publish(5, 6);
+  EXPECT_FALSE(f.group.release_as(recorded));
+  f.publish(5, 7);
+  EXPECT_TRUE(f.group.release_as(recorded));
+}
+
+}  // namespace
+}  // namespace glint::test
