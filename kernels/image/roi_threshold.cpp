@@ -55,13 +55,16 @@ bool usable(const Frame& frame, RowBand band) {
 template <class Pixel>
 void scan_fast(const ImageView<Pixel>& image, const Rois& rois, Pixel threshold, RowBand band,
                RunWriter& writer) {
+  constexpr int block = k_mask_pixels<Pixel>;
   for_each_stretch(image, rois, band, [&](const Pixel* row, int y, int x0, int x1) {
-    if (any_above(row + x0, x1 - x0, threshold)) {
-      for (int x = x0; x < x1; x += k_mask_pixels<Pixel>) {
-        const int n = std::min(k_mask_pixels<Pixel>, x1 - x);
-        for_each_bit_run(bright_mask(row + x, n, threshold),
-                         [&](int from, int to) { writer.add(y, x + from, x + to); });
-      }
+    if (!any_above(row + x0, x1 - x0, threshold)) return;
+    for (int x = x0; x < x1; x += block) {
+      // The last block reaches back over pixels already seen, where the row has that many.
+      const int from = x + block > x1 ? std::max(x1 - block, 0) : x;
+      const int known = x - from;
+      const std::uint64_t mask =
+          bright_mask(row + from, std::min(block, x1 - from), threshold) >> known;
+      for_each_bit_run(mask, [&](int a, int b) { writer.add(y, x + a, x + b); });
     }
   });
 }
