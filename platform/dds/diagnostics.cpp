@@ -1,0 +1,67 @@
+#include "platform/dds/diagnostics.hpp"
+
+#include "platform/dds/pose_publisher.hpp"
+
+namespace glint {
+namespace {
+
+// diagnostic_msgs/DiagnosticStatus
+enum Level : std::uint8_t { k_ok = 0, k_warn = 1, k_error = 2 };
+
+struct StateText {
+  Level level;
+  const char* text;
+};
+
+StateText text_of(TrackState state) {
+  switch (state) {
+    case TrackState::measured:
+      return {k_ok, "measured"};
+    case TrackState::predicted:
+      return {k_warn, "predicted"};
+    case TrackState::lost:
+      return {k_error, "lost"};
+    case TrackState::none:
+      break;
+  }
+  return {k_error, "none"};
+}
+
+}  // namespace
+
+char* Diagnostics::keep(std::string_view text) { return texts_.emplace_back(text).data(); }
+
+void Diagnostics::add(std::string_view tool, const PoseSample& sample, const SinkFigures& figures) {
+  const StateText state = text_of(sample.state);
+  std::vector<Value>& values = values_.emplace_back();
+  const auto value = [&](std::string_view key, const std::string& text) {
+    values.push_back({keep(key), keep(text)});
+  };
+  value("state", state.text);
+  value("reason", std::string(name_of(sample.reason)));
+  if (sample.has_pose()) value("age_ms", std::to_string(sample.age().seconds() * 1e3));
+  value("tick", std::to_string(sample.tick_number));
+  value("frame", std::to_string(sample.frame_sequence));
+  value("offered", std::to_string(figures.offered));
+  value("written", std::to_string(figures.written));
+  value("ring_dropped", std::to_string(figures.ring_dropped));
+
+  Entry entry{};
+  entry.level = state.level;
+  entry.name = keep("glint: " + std::string(tool));
+  entry.message = sample.reason == Reason::none ? keep(state.text) : keep(name_of(sample.reason));
+  entry.hardware_id = keep("glint");
+  entry.values._length = entry.values._maximum = static_cast<std::uint32_t>(values.size());
+  entry.values._buffer = values.data();
+  entries_.push_back(entry);
+}
+
+DiagnosticsMessage Diagnostics::message(Time unix_time) {
+  DiagnosticsMessage message{};
+  message.header = header_message(unix_time, "");
+  message.status._length = message.status._maximum = static_cast<std::uint32_t>(entries_.size());
+  message.status._buffer = entries_.data();
+  return message;
+}
+
+}  // namespace glint

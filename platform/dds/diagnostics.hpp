@@ -1,0 +1,32 @@
+// The sink's state as /diagnostics shows it: one entry a tool.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "platform/dds/messages.hpp"
+
+namespace glint {
+
+struct SinkFigures;
+
+// Holds the text of one message; message() borrows it.
+class Diagnostics {
+ public:
+  void add(std::string_view tool, const PoseSample& sample, const SinkFigures& figures);
+  [[nodiscard]] DiagnosticsMessage message(Time unix_time);
+
+ private:
+  using Entry = diagnostic_msgs_msg_dds__DiagnosticStatus_;
+  using Value = diagnostic_msgs_msg_dds__KeyValue_;
+
+  char* keep(std::string_view text);
+
+  std::deque<std::string> texts_;
+  std::deque<std::vector<Value>> values_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace glint

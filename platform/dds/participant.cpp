@@ -1,0 +1,104 @@
+#include "platform/dds/participant.hpp"
+
+#include <memory>
+
+#include "platform/dds/network.hpp"
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+// A writer that finds no room waits no longer than this: it stands on the sink's only thread.
+constexpr dds_duration_t k_blocking_max = DDS_MSECS(10);
+constexpr int k_domain_max = 232;  // the last whose ports fit in 16 bits (DDSI-RTPS 2.2, 9.6.1)
+
+struct FreeQos {
+  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
+};
+using Qos = std::unique_ptr<dds_qos_t, FreeQos>;
+
+dds_entity_t checked(dds_entity_t entity, const std::string& what) {
+  if (entity < 0) throw std::runtime_error("dds: " + what + ": " + dds_strretcode(-entity));
+  return entity;
+}
+
+Qos qos_of(const TopicType& type, const Quality& quality) {
+  Qos qos(dds_create_qos());
+  dds_qset_reliability(qos.get(),
+                       quality.reliability == Reliability::reliable ? DDS_RELIABILITY_RELIABLE
+                                                                    : DDS_RELIABILITY_BEST_EFFORT,
+                       k_blocking_max);
+  const bool keep_all = quality.depth == k_keep_all;
+  const auto history = keep_all ? DDS_HISTORY_KEEP_ALL : DDS_HISTORY_KEEP_LAST;
+  const int depth = keep_all ? DDS_LENGTH_UNLIMITED : quality.depth;
+  dds_qset_history(qos.get(), history, depth);
+  if (quality.durability == Durability::transient_local) {
+    dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
+    // What late readers get is this history, not the other: without it Cyclone keeps one sample.
+    dds_qset_durability_service(qos.get(), 0, history, depth, DDS_LENGTH_UNLIMITED,
+                                DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  }
+  // A writer that offers XCDR2 only is matched by Fast DDS readers and never heard.
+  const dds_data_representation_id_t xcdr1 = DDS_DATA_REPRESENTATION_XCDR1;
+  dds_qset_data_representation(qos.get(), 1, &xcdr1);
+  const std::string user_data = std::string("typehash=RIHS01_") + type.type_hash + ";";
+  dds_qset_userdata(qos.get(), user_data.data(), user_data.size());
+  return qos;
+}
+
+dds_entity_t topic_of(dds_entity_t participant, const TopicType& type, const std::string& name) {
+  return checked(dds_create_topic(participant, type.descriptor, name.c_str(), nullptr, nullptr),
+                 "topic " + name);
+}
+
+}  // namespace
+
+Participant::Participant(const DdsSettings& settings) {
+  if (settings.domain < 0 || settings.domain > k_domain_max) {
+    throw InputError("dds.domain: found " + std::to_string(settings.domain) +
+                     "; expected 0 to 232");
+  }
+  require_network_interface(settings.interface);
+  const auto id = static_cast<dds_domainid_t>(settings.domain);
+  domain_ = dds_create_domain(id, cyclone_configuration(settings).c_str());
+  if (domain_ < 0) {
+    throw InputError("dds.domain: domain " + std::to_string(settings.domain) + " on interface " +
+                     settings.interface + ": " + dds_strretcode(-domain_) +
+                     "; expected one that this process has not yet opened");
+  }
+  // rmw_cyclonedds shows only participants that say where their security enclave is.
+  constexpr std::string_view enclave = "enclave=/;";
+  Qos qos(dds_create_qos());
+  dds_qset_userdata(qos.get(), enclave.data(), enclave.size());
+  participant_ = dds_create_participant(id, qos.get(), nullptr);
+  if (participant_ < 0) {
+    const int code = -participant_;
+    dds_delete(domain_);
+    throw InputError("dds: cannot join domain " + std::to_string(settings.domain) +
+                     " on interface " + settings.interface + ": " + dds_strretcode(code) +
+                     "; expected free UDP ports and an interface that can send");
+  }
+}
+
+Participant::~Participant() { dds_delete(domain_); }
+
+dds_entity_t Participant::writer(const TopicType& type, const std::string& topic,
+                                 const Quality& quality) {
+  const Qos qos = qos_of(type, quality);
+  dds_qset_writer_data_lifecycle(qos.get(), false);
+  return checked(
+      dds_create_writer(participant_, topic_of(participant_, type, topic), qos.get(), nullptr),
+      "writer of " + topic);
+}
+
+dds_entity_t Participant::reader(const TopicType& type, const std::string& topic,
+                                 const Quality& quality) {
+  const Qos qos = qos_of(type, quality);
+  return checked(
+      dds_create_reader(participant_, topic_of(participant_, type, topic), qos.get(), nullptr),
+      "reader of " + topic);
+}
+
+dds_entity_t Participant::waitset() { return checked(dds_create_waitset(participant_), "waitset"); }
+
+}  // namespace glint

@@ -1,0 +1,45 @@
+// Reads every tool's status and pose topic, keeping all, and counts.
+#pragma once
+
+#include <vector>
+
+#include "platform/dds/latency_histogram.hpp"
+#include "platform/dds/messages.hpp"
+#include "platform/dds/reader_result.hpp"
+#include "platform/dds/stream_counter.hpp"
+
+namespace glint {
+
+class StatusReader {
+ public:
+  // Throws as Participant does.
+  explicit StatusReader(const DdsSettings& settings);
+
+  // Waits for messages, at most `limit`, and counts all that are there.
+  void read(Duration limit);
+
+  // A sink was found, and by now every one found has gone.
+  [[nodiscard]] bool sink_has_left() const;
+  [[nodiscard]] bool sink_was_found() const;
+
+  [[nodiscard]] ReaderResult result() const;
+
+ private:
+  struct ToolReader {
+    dds_entity_t status = 0, pose = 0;
+    StreamCounter counter;
+  };
+
+  void take_statuses(ToolReader& tool);
+  void take_poses(const ToolReader& tool);
+  void count(ToolReader& tool, const StatusMessage& status, Time taken);
+
+  Participant participant_;
+  dds_entity_t waitset_ = 0;
+  std::vector<ToolReader> tools_;
+  ReaderResult result_;
+  bool any_received_ = false;
+  LatencyHistogram latency_;
+};
+
+}  // namespace glint

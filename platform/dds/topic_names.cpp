@@ -1,0 +1,27 @@
+#include "platform/dds/topic_names.hpp"
+
+namespace glint {
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+bool is_word(char c) {
+  return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+}  // namespace
+
+std::string ros_name(std::string_view text) {
+  std::string name;
+  for (const char c : text) name += is_word(c) ? c : '_';
+  return name.empty() || is_digit(name.front()) ? "tool_" + name : name;
+}
+
+ToolTopics topics_of(std::string_view prefix, std::string_view tool) {
+  const std::string base = ros_name(prefix), name = ros_name(tool);
+  const std::string topic = "rt/" + base + "/" + name;
+  return {topic + "_status", topic + "_pose", topic + "_pose_covariance",
+          base + "_" + name + "_tip"};
+}
+
+}  // namespace glint

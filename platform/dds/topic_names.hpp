@@ -1,0 +1,27 @@
+// Topic and frame names, made from a tool's name.
+//
+// ROS 2 puts "rt" before a topic's name and allows letters, digits and underscores, no digit first
+// (rmw_cyclonedds, namespace_prefix.hpp; ROS 2 design article "Topic and Service name mapping").
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace glint {
+
+// Any other character becomes '_'; "tool_" goes in front of a leading digit or an empty name.
+[[nodiscard]] std::string ros_name(std::string_view text);
+
+struct ToolTopics {
+  std::string status;           // rt/PREFIX/TOOL_status
+  std::string pose;             // rt/PREFIX/TOOL_pose
+  std::string pose_covariance;  // rt/PREFIX/TOOL_pose_covariance
+  std::string tip_frame;        // PREFIX_TOOL_tip
+};
+[[nodiscard]] ToolTopics topics_of(std::string_view prefix, std::string_view tool);
+
+inline constexpr const char* k_tf_topic = "rt/tf";
+inline constexpr const char* k_tf_static_topic = "rt/tf_static";
+inline constexpr const char* k_diagnostics_topic = "rt/diagnostics";
+
+}  // namespace glint
