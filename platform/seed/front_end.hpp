@@ -1,0 +1,52 @@
+// The published method's way from a frame to blobs: undistort the whole frame, threshold, halve,
+// detect blobs. Written with OpenCV to be fast, for it is the baseline of every comparison:
+// precomputed fixed-point maps, 8 bits throughout, one pass of the blob detector, buffers kept.
+//
+// Source: Puljiz et al., Inside-out Infrared Marker Tracking via Head Mounted Displays for Smart
+//         Robot Programming (arXiv 1903), section III: cv::undistort, threshold 250, half size,
+//         blob detection.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <opencv2/features2d.hpp>
+#include <span>
+#include <vector>
+
+#include "kernels/image/frame.hpp"
+#include "platform/seed/seed_settings.hpp"
+#include "platform/sensors/camera.hpp"
+
+namespace glint {
+
+struct SeedBlob {
+  Vector2 centre_px;     // of the undistorted frame, pixel centres at integer + 0.5
+  double radius_px = 0;  // full-size pixels
+};
+
+class SeedFrontEnd {
+ public:
+  SeedFrontEnd(const Camera& camera, const SeedSettings& settings);
+
+  // The four stages, each on what the last one left. `roi` in undistorted pixels.
+  void undistort(const Frame& frame);
+  void threshold(const cv::Rect& roi);
+  void halve();
+  void detect();
+
+  [[nodiscard]] std::span<const SeedBlob> blobs() const { return blobs_; }
+  [[nodiscard]] cv::Rect whole() const { return {0, 0, size_.width, size_.height}; }
+  // Where an undistorted pixel was in the frame.
+  [[nodiscard]] Vector2 raw_pixel(const Vector2& undistorted) const;
+
+ private:
+  cv::Size size_;
+  double scale_to_8_bits_ = 1;  // brings the 16-bit threshold to k_seed_threshold
+  cv::Mat map_, map_fraction_;
+  cv::Mat eight_bits_, undistorted_, binary_, half_;
+  cv::Rect roi_;
+  cv::Ptr<cv::SimpleBlobDetector> detector_;
+  std::vector<cv::KeyPoint> key_points_;
+  std::vector<SeedBlob> blobs_;
+};
+
+}  // namespace glint

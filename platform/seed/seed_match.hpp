@@ -1,0 +1,31 @@
+// The published method's correspondence and fit: every set of blobs whose distance matrix equals
+// the tool's within delta is fitted by SVD; most markers win, then the least rms.
+//
+// Source: the seed, section III: |d_R - d_M| < delta, SVD with the determinant's sign.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "kernels/geometry.hpp"
+#include "kernels/pose/tool.hpp"
+#include "platform/seed/seed_settings.hpp"
+
+namespace glint {
+
+struct SeedMatch {
+  Reason reason = Reason::no_labeling;
+  std::array<int, k_markers_per_tool_max> point{};  // index into the points, -1 where unseen
+  int count = 0;
+  int hypotheses = 0;  // partial assignments tried
+  double rms_m = 0;
+  Pose T_camera_tool;
+};
+
+inline constexpr int k_seed_points_max = 64;  // later ones are not looked at
+
+// points_m: marker centres in the camera's frame.
+[[nodiscard]] SeedMatch match_tool(std::span<const Vector3> points_m, const Tool& tool,
+                                   const SeedSettings& settings);
+
+}  // namespace glint

@@ -1,0 +1,24 @@
+// What a user of the published method could set.
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/units.hpp"
+
+namespace glint {
+
+struct SeedSettings {
+  // Two distances are equal if they differ by less: 6 sigma of two ranges with 1 mm each would be
+  // 8.5 mm, and the built-in pen's sides differ by 8 mm; every method here has to choose.
+  double delta_m = 0.007;
+  double max_rms_m = 0.005;       // of the fit; beyond it the set is not the tool
+  int min_markers = 3;            // as published
+  int hypotheses_max = 20'000;    // partial assignments, as Glint's own search
+  double roi_margin_px = 20;      // about the predicted markers, undistorted pixels
+  bool use_roi = true;            // false: search the whole frame, always
+  double max_blob_area_px = 900;  // larger ones are hands and lamps; full-size pixels
+  Duration lost_after = milliseconds(250);
+  Duration horizon = milliseconds(60);  // no extrapolation beyond
+};
+
+}  // namespace glint
