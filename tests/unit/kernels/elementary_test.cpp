@@ -1,0 +1,136 @@
+#include "kernels/elementary.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tests/unit/kernels/pose/scene.hpp"
+
+namespace glint {
+namespace {
+
+constexpr int k_trials = 100'000;
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+
+double units_in_last_place(double found, double expected) {
+  const double size = std::abs(expected);
+  return std::abs(found - expected) / (std::nextafter(size, k_infinity) - size);
+}
+
+// 10^low to 10^high, either sign.
+double of_any_size(test::Random& random, double low, double high) {
+  const double size = std::pow(10.0, random.within(low, high));
+  return random.below(2) == 0 ? size : -size;
+}
+
+TEST(Elementary, SineAndCosineAgreeWithTheLibraryOverTheirWholeRange) {
+  test::Random random(1);
+  double worst = 0;
+  for (int i = 0; i < k_trials; ++i) {
+    const double x = of_any_size(random, -8, 5);
+    const SineCosine found = sine_cosine(x);
+    worst = std::max({worst, units_in_last_place(found.sine, std::sin(x)),
+                      units_in_last_place(found.cosine, std::cos(x))});
+  }
+  EXPECT_LE(worst, 2.0);
+}
+
+TEST(Elementary, SineKeepsItsDigitsNextToMultiplesOfPi) {
+  for (int turns = 1; turns < 31'000; turns += 7) {
+    const double x = turns * 3.141592653589793;
+    EXPECT_NEAR(sine_cosine(x).sine, std::sin(x), 1e-9 * std::abs(std::sin(x))) << turns;
+  }
+}
+
+TEST(Elementary, LogarithmAgreesWithTheLibraryFromTheSmallestToTheLargest) {
+  test::Random random(2);
+  double worst = 0;
+  for (int i = 0; i < k_trials; ++i) {
+    const double wide = std::pow(10.0, random.within(-307, 308));
+    const double near_one = random.within(0.5, 2.0);
+    worst = std::max({worst, units_in_last_place(logarithm(wide), std::log(wide)),
+                      units_in_last_place(logarithm(near_one), std::log(near_one))});
+  }
+  EXPECT_LE(worst, 2.0);
+  EXPECT_EQ(logarithm(1.0), 0.0);
+  EXPECT_NEAR(logarithm(5e-324), -744.4400719213812, 1e-12);
+}
+
+TEST(Elementary, ExponentialAgreesWithTheLibrary) {
+  test::Random random(3);
+  double worst = 0;
+  for (int i = 0; i < k_trials; ++i) {
+    const double x = random.within(-700, 700);
+    const double small = random.within(-1, 1);
+    worst = std::max({worst, units_in_last_place(exponential(x), std::exp(x)),
+                      units_in_last_place(exponential(small), std::exp(small))});
+  }
+  EXPECT_LE(worst, 2.0);
+  EXPECT_EQ(exponential(0.0), 1.0);
+}
+
+TEST(Elementary, ArcTangentAgreesWithTheLibraryInAllQuadrants) {
+  test::Random random(4);
+  double worst = 0;
+  for (int i = 0; i < k_trials; ++i) {
+    const double y = of_any_size(random, -5, 5);
+    const double x = of_any_size(random, -5, 5);
+    worst = std::max(worst, units_in_last_place(arc_tangent(y, x), std::atan2(y, x)));
+  }
+  EXPECT_LE(worst, 2.0);
+  for (const double y : {0.0, -0.0, 1.0, -1.0}) {
+    for (const double x : {0.0, -0.0, 1.0, -1.0}) {
+      if (y == 0 && x == 0) continue;
+      EXPECT_EQ(arc_tangent(y, x), std::atan2(y, x)) << y << " " << x;
+    }
+  }
+  EXPECT_EQ(arc_tangent(0.0, 0.0), 0.0);
+}
+
+TEST(Elementary, ArcCosineAgreesWithTheLibraryAlsoNextToOne) {
+  test::Random random(5);
+  double worst = 0;
+  for (int i = 0; i < k_trials; ++i) {
+    const double x = random.within(-1, 1);
+    const double near_one = 1.0 - std::pow(10.0, random.within(-15, 0));
+    worst = std::max({worst, units_in_last_place(arc_cosine(x), std::acos(x)),
+                      units_in_last_place(arc_cosine(near_one), std::acos(near_one))});
+  }
+  EXPECT_LE(worst, 4.0);
+}
+
+TEST(Elementary, NeverAnswersWithANumberThatIsNotFinite) {
+  for (const double x : {k_nan, -k_nan, k_infinity, -k_infinity, 1e300, -1e300, 0.0, 5e-324}) {
+    EXPECT_TRUE(std::isfinite(sine_cosine(x).sine)) << x;
+    EXPECT_TRUE(std::isfinite(sine_cosine(x).cosine)) << x;
+    EXPECT_TRUE(std::isfinite(logarithm(x))) << x;
+    EXPECT_TRUE(std::isfinite(exponential(x))) << x;
+    EXPECT_TRUE(std::isfinite(arc_cosine(x))) << x;
+    for (const double y : {k_nan, k_infinity, -k_infinity, 1.0}) {
+      EXPECT_TRUE(std::isfinite(arc_tangent(y, x))) << y << " " << x;
+    }
+  }
+}
+
+// Any compiler, flag or machine that reorders or fuses a single operation changes this number.
+TEST(Elementary, GivesTheSameBitsEverywhere) {
+  test::Random random(6);
+  test::BitHash hash;
+  for (int i = 0; i < 20'000; ++i) {
+    const double x = random.within(-1000, 1000);
+    const SineCosine both = sine_cosine(x);
+    hash.add(both.sine);
+    hash.add(both.cosine);
+    hash.add(logarithm(random.uniform()));
+    hash.add(exponential(0.5 * x));
+    hash.add(arc_tangent(both.sine, random.within(-2, 2)));
+    hash.add(arc_cosine(both.cosine));
+  }
+  EXPECT_EQ(hash.value(), 7135819422567387964u);
+}
+
+}  // namespace
+}  // namespace glint

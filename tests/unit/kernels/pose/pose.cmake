@@ -1,0 +1,2 @@
+glint_test(test_elementary ../elementary_test.cpp LIBS glint_kernels LABELS unit)
+glint_test(test_rigid_fit rigid_fit_test.cpp fit_covariance_test.cpp LIBS glint_kernels LABELS unit)

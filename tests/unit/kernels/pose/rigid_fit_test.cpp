@@ -1,0 +1,162 @@
+#include "kernels/pose/rigid_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+#include "tests/unit/kernels/pose/scene.hpp"
+
+namespace glint {
+namespace {
+
+std::vector<Vector3> moved(const Pose& pose, const std::vector<Vector3>& points) {
+  std::vector<Vector3> result;
+  for (const Vector3& point : points) result.push_back(pose * point);
+  return result;
+}
+
+const std::vector<Vector3> k_square = {{0, 0, 0}, {0.1, 0, 0}, {0.1, 0.1, 0}, {0, 0.1, 0}};
+
+TEST(RigidFit, FindsAQuarterTurnAndAShift) {
+  const std::vector<Vector3> model = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.2, 0}, {0, 0, 0.3}};
+  const std::vector<Vector3> measured = {{1, 2, 3}, {1, 2.1, 3}, {0.8, 2, 3}, {1, 2, 3.3}};
+  const RigidFit fit = fit_rigid(model, measured);
+  ASSERT_EQ(fit.reason, Reason::none);
+  EXPECT_LT((fit.transform.translation - Vector3(1, 2, 3)).norm(), 1e-15);
+  EXPECT_LT((fit.transform.rotation * Vector3::UnitX() - Vector3::UnitY()).norm(), 1e-15);
+  EXPECT_LT(fit.rms_m, 1e-15);
+}
+
+TEST(RigidFit, RecoversAnyPoseOfAnyTool) {
+  test::Random random(1);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const int n = 3 + random.below(6);
+    const Tool tool = test::random_tool(random, n);
+    const std::vector<Vector3> model(tool.markers_m.begin(), tool.markers_m.begin() + n);
+    const Pose truth{random.rotation(), random.vector(1.0)};
+    const RigidFit fit = fit_rigid(model, moved(truth, model));
+    ASSERT_EQ(fit.reason, Reason::none);
+    EXPECT_LT(test::angle_between(fit.transform.rotation, truth.rotation), 1e-12);
+    EXPECT_LT((fit.transform.translation - truth.translation).norm(), 1e-13);
+  }
+}
+
+TEST(RigidFit, LeavesNoSmallerResidualInAnyDirection) {
+  test::Random random(2);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Tool tool = test::random_tool(random, 5);
+    const std::vector<Vector3> model(tool.markers_m.begin(), tool.markers_m.begin() + 5);
+    std::vector<Vector3> measured = moved({random.rotation(), random.vector(0.5)}, model);
+    for (Vector3& point : measured) point += random.vector(0.003);
+    const RigidFit fit = fit_rigid(model, measured);
+    for (int step = 0; step < 12; ++step) {
+      Vector3 turn = Vector3::Zero(), shift = Vector3::Zero();
+      (step < 6 ? turn : shift)(step % 3) = (step % 6 < 3 ? 1e-5 : -1e-5);
+      const Pose other{from_rotation_vector(turn) * fit.transform.rotation,
+                       fit.transform.translation + shift};
+      double squares = 0;
+      for (std::size_t i = 0; i < 5; ++i) {
+        squares += (measured[i] - other * model[i]).squaredNorm();
+      }
+      EXPECT_GT(std::sqrt(squares / 5), fit.rms_m) << step;
+    }
+  }
+}
+
+TEST(RigidFit, NeverMirrorsWhatOnlyAMirrorWouldFit) {
+  test::Random random(3);
+  for (int trial = 0; trial < 500; ++trial) {
+    const Tool tool = test::random_tool(random, 5);
+    const std::vector<Vector3> model(tool.markers_m.begin(), tool.markers_m.begin() + 5);
+    std::vector<Vector3> mirrored;
+    for (const Vector3& point : model) mirrored.emplace_back(-point.x(), point.y(), point.z());
+    const RigidFit fit = fit_rigid(model, mirrored);
+    ASSERT_EQ(fit.reason, Reason::none);
+    const Matrix3 rotation = fit.transform.rotation.toRotationMatrix();
+    EXPECT_NEAR(rotation.determinant(), 1.0, 1e-12);
+    // The residual is that of the optimum over proper rotations, not a rotation made from a mirror.
+    double squares = 0;
+    for (std::size_t i = 0; i < 5; ++i) {
+      squares += (mirrored[i] - fit.transform * model[i]).squaredNorm();
+    }
+    EXPECT_NEAR(fit.rms_m, std::sqrt(squares / 5), 1e-12);
+    EXPECT_GT(fit.rms_m, 1e-6);
+  }
+}
+
+TEST(RigidFit, TakesCoplanarMarkersInAnyPose) {
+  test::Random random(4);
+  for (int trial = 0; trial < 500; ++trial) {
+    const Pose truth{random.rotation(), random.vector(1.0)};
+    const RigidFit fit = fit_rigid(k_square, moved(truth, k_square));
+    ASSERT_EQ(fit.reason, Reason::none);
+    EXPECT_LT(test::angle_between(fit.transform.rotation, truth.rotation), 1e-12);
+  }
+}
+
+TEST(RigidFit, SaysWhyPointsFixNoPose) {
+  const std::vector<Vector3> line = {{0, 0, 0}, {0.1, 0.1, 0.1}, {0.3, 0.3, 0.3}};
+  const std::vector<Vector3> one_place(4, Vector3(0.1, 0.2, 0.3));
+  const std::vector<Vector3> two = {{0, 0, 0}, {0.1, 0, 0}};
+  std::vector<Vector3> broken = k_square;
+  broken[2].y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(fit_rigid(line, line).reason, Reason::collinear);
+  EXPECT_EQ(fit_rigid(one_place, one_place).reason, Reason::degenerate);
+  EXPECT_EQ(fit_rigid(two, two).reason, Reason::too_few_markers);
+  EXPECT_EQ(fit_rigid(k_square, two).reason, Reason::too_few_markers);
+  EXPECT_EQ(fit_rigid(broken, k_square).reason, Reason::out_of_range);
+  EXPECT_EQ(fit_rigid(k_square, broken).reason, Reason::out_of_range);
+  const std::vector<Vector3> flat(4, Vector3(0, 0, 1));
+  EXPECT_EQ(fit_rigid(k_square, flat).reason, Reason::collinear);
+  const std::vector<Vector3> measured_line = {{0, 0, 1}, {0.1, 0, 1}, {0.2, 0, 1}, {0.3, 0, 1}};
+  EXPECT_EQ(fit_rigid(k_square, measured_line).reason, Reason::collinear);
+}
+
+TEST(RigidFit, DrawsTheLineAtAThousandthOfTheLength) {
+  const auto bent = [](double height) {
+    return std::vector<Vector3>{{0, 0, 0}, {0.05, height, 0}, {0.1, 0, 0}};
+  };
+  EXPECT_EQ(rotation_is_fixed_by(bent(0.00008)), Reason::collinear);
+  EXPECT_EQ(rotation_is_fixed_by(bent(0.0002)), Reason::none);
+}
+
+TEST(RigidFit, GivesTheSameBitsEverywhere) {
+  test::Random random(5);
+  test::BitHash hash;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Tool tool = test::random_tool(random, 4);
+    const std::vector<Vector3> model(tool.markers_m.begin(), tool.markers_m.begin() + 4);
+    std::vector<Vector3> measured = moved({random.rotation(), random.vector(0.5)}, model);
+    for (Vector3& point : measured) point += random.vector(0.002);
+    const RigidFit fit = fit_rigid(model, measured);
+    hash.add(fit.transform);
+    hash.add(fit.rms_m);
+  }
+  EXPECT_EQ(hash.value(), 12776374122343323923u);
+}
+
+TEST(Tool, LearnsItsDistancesWhenItIsPrepared) {
+  const Tool tool = test::tool_of<3>({{0, 0, 0}, {30, 0, 0}, {0, 40, 0}});
+  EXPECT_NEAR(tool.distance_m[1][2], 0.05, 1e-15);
+  EXPECT_EQ(tool.distance_m[1][2], tool.distance_m[2][1]);
+  EXPECT_EQ(tool.distance_m[2][2], 0.0);
+}
+
+TEST(Tool, IsRefusedWhenItsMarkersFixNoPose) {
+  Tool tool = test::five_marker_pen();
+  tool.marker_count = 2;
+  EXPECT_EQ(prepare_tool(tool), Reason::too_few_markers);
+  tool.marker_count = 9;
+  EXPECT_EQ(prepare_tool(tool), Reason::out_of_range);
+  tool.marker_count = 5;
+  tool.markers_m[4] = tool.markers_m[3];
+  EXPECT_EQ(prepare_tool(tool), Reason::degenerate);
+  for (int i = 0; i < 5; ++i) tool.markers_m[static_cast<std::size_t>(i)] = Vector3(0.01 * i, 0, 0);
+  EXPECT_EQ(prepare_tool(tool), Reason::collinear);
+  tool.markers_m[0].x() = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(prepare_tool(tool), Reason::out_of_range);
+}
+
+}  // namespace
+}  // namespace glint
