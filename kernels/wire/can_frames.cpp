@@ -1,6 +1,7 @@
 #include "kernels/wire/can_frames.hpp"
 
 #include <bit>
+#include <limits>
 
 #include "kernels/wire/bits.hpp"
 #include "kernels/wire/e2e.hpp"
@@ -82,6 +83,12 @@ std::uint64_t quality_word(const PoseSample& s) {
          bits_at(s.buttons & k_buttons_mask, 59, 3);
 }
 
+// 0, "unknown", where the sum is before 1970 or beyond what an int64 holds.
+std::uint64_t unix_time(Time time, std::int64_t offset_ns) {
+  const std::uint64_t sum = as_bits(time.nanoseconds) + as_bits(offset_ns);
+  return sum <= as_bits(std::numeric_limits<std::int64_t>::max()) ? sum : 0;
+}
+
 struct FdPose {
   QuantizedVector position;
   std::array<std::int64_t, 4> rotation{};
@@ -137,7 +144,7 @@ CanFrame fd(const PoseSample& s, std::uint32_t identifier, std::int64_t unix_off
   put(known(s, s.age().seconds(), k_can_fd_age_step_s, k_can_fd_word_over), 2);
   put(marker_count(s), 1);
   put(quantize_or(s.registration_rms_m, 1 / k_can_rms_step_m, k_can_fd_byte_over), 1);
-  put(as_bits(s.measurement.nanoseconds) + as_bits(unix_offset_ns), 8);
+  put(unix_time(s.measurement, unix_offset_ns), 8);
   put(s.frame_sequence, 4);
   protect_p05(bytes, static_cast<std::uint16_t>(identifier), s.tick_number);
   return frame;
@@ -147,6 +154,10 @@ CanFrame fd(const PoseSample& s, std::uint32_t identifier, std::int64_t unix_off
 
 void add_pose_frames(const PoseSample& sample, const CanPacking& packing,
                      CanFrames& frames) noexcept {
+  if (sample.tool >= k_tools_max) {
+    ++frames.dropped;
+    return;
+  }
   const std::uint32_t base = packing.base_identifier + k_can_tool_stride * sample.tool;
   if (packing.format == CanFormat::fd) {
     frames.add(fd(sample, base + k_can_fd_pose, packing.unix_offset_ns));

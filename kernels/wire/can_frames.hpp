@@ -21,7 +21,8 @@
 //   of one estimate share it.
 //   Not in range: a position, rotation or velocity that does not fit is sent as zeros with valid 0
 //   or state none (FD: the whole pose with state none). An uncertainty, age or rms that does not
-//   fit is sent as all ones, "this or more, or unknown". Nothing wraps.
+//   fit is sent as all ones, "this or more, or unknown". A Unix time before 1970 is sent as 0.
+//   Nothing wraps. base+4 tells the tracker's state whatever became of the other four.
 // Cost:     quantising 23 numbers and a CRC over 40 (FD: 64) bytes.
 // Worst:    the same for every sample.
 // Accuracy: nearest step of each field; orientation within 0.0037 deg (FD: 1e-7 deg).
@@ -75,7 +76,8 @@ struct CanPacking {
   std::int64_t unix_offset_ns = 0;  // Unix time - the board's monotonic time; FD only
 };
 
-// Adds one tool's frames, position first, since it is what a controller waits for.
+// Adds one tool's frames, position first, since it is what a controller waits for. A tool number
+// beyond k_tools_max counts as one dropped frame.
 void add_pose_frames(const PoseSample& sample, const CanPacking& packing,
                      CanFrames& frames) noexcept;
 

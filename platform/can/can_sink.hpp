@@ -1,0 +1,51 @@
+// Where CAN frames go: a real bus or a log file, behind one call that neither blocks nor allocates.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "kernels/units.hpp"
+#include "kernels/wire/can_frame.hpp"
+#include "platform/when_full.hpp"
+
+namespace glint {
+
+struct CanSinkCounts {
+  std::uint64_t sent = 0;     // taken by the kernel, or handed to the log
+  std::uint64_t dropped = 0;  // the queue was full: the bus or the disk is too slow
+  std::uint64_t failed = 0;   // refused by the bus or the disk (down, disk full, no CAN FD)
+  [[nodiscard]] bool all_sent() const { return dropped == 0 && failed == 0; }
+};
+
+class CanSink {
+ public:
+  virtual ~CanSink() = default;
+
+  // From one thread. `time` is when the frame is sent, by the board's monotonic clock; a log writes
+  // it down, a bus has its own. What goes wrong is counted.
+  virtual void send(const CanFrame& frame, Time time) noexcept = 0;
+
+  // Returns when everything sent so far has left this process. May block: not for the hot path.
+  virtual void flush() noexcept = 0;
+
+  // From any thread.
+  [[nodiscard]] virtual CanSinkCounts counts() const noexcept = 0;
+};
+
+struct CanSinkOptions {
+  std::filesystem::path directory;        // relative log files go here
+  std::int64_t unix_offset_ns = 0;        // Unix time - the board's monotonic time, for the log
+  std::string log_interface = "can0";     // the bus that the log names
+  CanFormat format = CanFormat::classic;  // fd: the interface must carry 64-byte frames
+  WhenFull when_full = WhenFull::drop;
+};
+
+// "socketcan:IF" or "log:FILE" (candump -L format). Throws InputError for another specification or
+// a file that cannot be made, MissingDevice naming the interface that is not there, not up, not a
+// CAN interface or without CAN FD.
+[[nodiscard]] std::unique_ptr<CanSink> open_can_sink(const std::string& specification,
+                                                     const CanSinkOptions& options = {});
+
+}  // namespace glint

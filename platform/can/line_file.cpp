@@ -1,0 +1,79 @@
+#include "platform/can/line_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+constexpr std::size_t k_gather_bytes = 65536;
+constexpr std::size_t k_line_bytes_max = 4096;
+
+bool is_plain_or_new(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  return !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
+}
+
+}  // namespace
+
+LineFile::LineFile(std::filesystem::path file) : file_(std::move(file)), written_as_(file_) {
+  if (is_plain_or_new(file_)) written_as_ += ".part";
+  descriptor_ = ::open(written_as_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (descriptor_ < 0)
+    throw InputError(file_.string() + ": cannot be written: " + std::strerror(errno) +
+                     "; expected a place for a log");
+  gathered_.reserve(k_gather_bytes + k_line_bytes_max);
+}
+
+LineFile::~LineFile() {
+  write_out();
+  ::close(descriptor_);
+  if (written_as_ != file_) std::rename(written_as_.c_str(), file_.c_str());
+}
+
+void LineFile::add(std::string_view line) noexcept {
+  if (failed_ || line.size() > k_line_bytes_max) {
+    ++lines_lost_;
+    return;
+  }
+  gathered_.append(line);
+  if (gathered_.size() >= k_gather_bytes) write_out();
+}
+
+void LineFile::write_out() noexcept {
+  std::string_view rest = gathered_;
+  while (!failed_ && !rest.empty()) {
+    const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0)
+      give_up(rest);
+    else
+      rest.remove_prefix(static_cast<std::size_t>(written));
+  }
+  if (!failed_) bytes_ += static_cast<std::int64_t>(gathered_.size());
+  gathered_.clear();
+}
+
+// Part of the gathered lines may be on the disk: keep the whole ones.
+void LineFile::give_up(std::string_view unwritten) noexcept {
+  failed_ = true;
+  const std::string_view all = gathered_;
+  const std::string_view written = all.substr(0, all.size() - unwritten.size());
+  const auto last_end = written.rfind('\n');
+  const std::size_t kept = last_end == std::string_view::npos ? 0 : last_end + 1;
+  bytes_ += static_cast<std::int64_t>(kept);
+  lines_lost_ += static_cast<std::uint64_t>(
+      std::count(all.begin() + static_cast<std::ptrdiff_t>(kept), all.end(), '\n'));
+  // A disk that refuses this as well keeps the piece of a line; there is nothing left to try.
+  if (written_as_ != file_ && ::ftruncate(descriptor_, bytes_) != 0) return;
+}
+
+}  // namespace glint
