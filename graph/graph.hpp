@@ -44,6 +44,8 @@ class Graph {
   static constexpr int unit_count = Wires::unit_count;  // listed nodes
   static constexpr int node_count = Wires::node_count;  // with every copy of a split
   static constexpr int level_count = Wires::order.levels;
+  // Whether workers beyond the first would have anything to do.
+  static constexpr bool has_split = ((Unit<Nodes>::count > 1) || ...);
 
   Graph() = default;
   Graph(const Graph&) = delete;

@@ -1,0 +1,83 @@
+// Threads that host the workers of a graph beyond the first, which is the caller.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "graph/workers.hpp"
+#include "platform/rt/pause.hpp"
+#include "platform/rt/real_time_thread.hpp"
+#include "platform/rt/release.hpp"
+
+namespace glint {
+
+// Threads that wait, released, call one function, and wait again. They are armed for the
+// AllocationCounter all the while.
+class WorkerPool {
+ public:
+  using Job = void (*)(void* context, int worker) noexcept;
+
+  // One thread for each entry; they are workers 1, 2, ...
+  explicit WorkerPool(const std::vector<ThreadSettings>& settings);
+  ~WorkerPool();
+  WorkerPool(const WorkerPool&) = delete;
+  WorkerPool& operator=(const WorkerPool&) = delete;
+
+  // Lets every thread call job(context, worker) once. Before the next release the caller makes sure
+  // that all of them have begun, for instance by meeting them in the job.
+  void release(Job job, void* context) noexcept;
+
+  [[nodiscard]] std::vector<ThreadReport> reports() const;
+
+ private:
+  void wait_and_work(Release& release, int worker) noexcept;
+
+  Job job_ = nullptr;
+  void* context_ = nullptr;
+  std::atomic<bool> stop_{false};
+  std::vector<std::unique_ptr<Release>> releases_;
+  std::vector<std::unique_ptr<RealTimeThread>> threads_;
+};
+
+// Runs graphs by W workers: graph.activate(executor). The caller's thread is worker 0.
+template <int W>
+class ParallelExecutor {
+ public:
+  // `others` has W - 1 entries; a wait of more than `spins_max` spins counts as an overrun.
+  ParallelExecutor(const std::vector<ThreadSettings>& others, std::uint32_t spins_max)
+      : pool_(checked(others)), workers_(spins_max, Pause::granted(pool_.reports())) {}
+
+  template <class G>
+  void execute(G& graph) noexcept {
+    workers_.begin(graph);
+    // Only workers that meet worker 0 may be released: it is how the pool knows that they began.
+    if constexpr (W > 1 && G::has_split) {
+      graph_ = &graph;
+      pool_.release(
+          [](void* self, int worker) noexcept {
+            auto& executor = *static_cast<ParallelExecutor*>(self);
+            executor.workers_.run(*static_cast<G*>(executor.graph_), worker);
+          },
+          this);
+    }
+    workers_.run(graph, 0);
+  }
+
+  [[nodiscard]] std::uint64_t overruns() const noexcept { return workers_.overruns(); }
+  [[nodiscard]] std::vector<ThreadReport> reports() const { return pool_.reports(); }
+
+ private:
+  static const std::vector<ThreadSettings>& checked(const std::vector<ThreadSettings>& others) {
+    if (others.size() != W - 1) throw std::logic_error("settings for W - 1 workers are needed");
+    return others;
+  }
+
+  void* graph_ = nullptr;
+  WorkerPool pool_;
+  graph::Workers<W, Pause> workers_;
+};
+
+}  // namespace glint

@@ -1,0 +1,64 @@
+#include "platform/rt/real_time_thread.hpp"
+
+#include <gtest/gtest.h>
+#include <pthread.h>
+#include <sched.h>
+
+#include <array>
+
+#include "platform/rt/memory_lock.hpp"
+#include "platform/rt/pause.hpp"
+
+namespace glint {
+namespace {
+
+TEST(RealTimeThread, HasItsNameCutToWhatTheSystemShows) {
+  std::array<char, 16> name{};
+  RealTimeThread thread({"a_name_that_is_too_long"},
+                        [&] { pthread_getname_np(pthread_self(), name.data(), name.size()); });
+  thread.join();
+  EXPECT_STREQ(name.data(), "a_name_that_is_");
+}
+
+TEST(RealTimeThread, ReportsWhatItGotBeforeItsBodyRuns) {
+  int policy = -1;
+  int core = -1;
+  const int here = sched_getcpu();
+  RealTimeThread thread({"rt", here, 10}, [&] {
+    sched_param parameter{};
+    pthread_getschedparam(pthread_self(), &policy, &parameter);
+    core = sched_getcpu();
+  });
+  const ThreadReport report = thread.report();
+  thread.join();
+  EXPECT_EQ(report.real_time, policy == SCHED_FIFO);
+  EXPECT_TRUE(!report.pinned || core == here);
+  EXPECT_EQ(report.refused.empty(), report.pinned && report.real_time) << report.refused;
+}
+
+TEST(RealTimeThread, GoesOnWithoutACoreThatIsNotThere) {
+  bool ran = false;
+  RealTimeThread thread({"rt", 100'000}, [&] { ran = true; });
+  thread.join();
+  EXPECT_TRUE(ran);
+  EXPECT_FALSE(thread.report().pinned);
+  EXPECT_EQ(thread.report().refused.substr(0, 12), "core 100000:");
+}
+
+TEST(Pause, YieldsUnlessEveryThreadGotWhatItAskedFor) {
+  ThreadReport granted;
+  granted.pinned = granted.real_time = true;
+  ThreadReport refused = granted;
+  refused.real_time = false;
+  EXPECT_FALSE(Pause::granted({granted}).yields());
+  EXPECT_TRUE(Pause::granted({granted, refused}).yields());
+  Pause::granted({granted})();
+}
+
+TEST(MemoryLock, SaysWhyWhereItIsRefused) {
+  const MemoryLock lock = lock_memory();
+  EXPECT_EQ(lock.locked, lock.refused.empty()) << lock.refused;
+}
+
+}  // namespace
+}  // namespace glint
