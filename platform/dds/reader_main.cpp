@@ -14,6 +14,15 @@ namespace {
 volatile std::sig_atomic_t told_to_end = 0;
 void tell_to_end(int) { told_to_end = 1; }
 
+void end_on_signals() {
+  std::signal(SIGTERM, tell_to_end);
+  std::signal(SIGINT, tell_to_end);
+  sigset_t signals;  // whoever starts it as a process may have blocked them until here
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigprocmask(SIG_UNBLOCK, &signals, nullptr);
+}
+
 constexpr glint::Duration k_wait = glint::milliseconds(50);
 
 bool read_until_end(glint::StatusReader& reader, double search_s) {
@@ -52,8 +61,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  std::signal(SIGTERM, tell_to_end);
-  std::signal(SIGINT, tell_to_end);
+  end_on_signals();
   try {
     glint::StatusReader reader(settings);
     const bool found = read_until_end(reader, search_s);

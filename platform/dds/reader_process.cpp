@@ -44,6 +44,28 @@ std::vector<std::string> arguments_of(const DdsSettings& settings, const std::st
   return arguments;
 }
 
+// How the reader is started: SIGTERM waits until it can take it, and a terminal's Ctrl-C, which
+// goes to a whole process group, does not end it before the sink has told it all.
+class SpawnAttributes {
+ public:
+  SpawnAttributes() {
+    posix_spawnattr_init(&attributes_);
+    sigset_t blocked;
+    sigemptyset(&blocked);
+    sigaddset(&blocked, SIGTERM);
+    posix_spawnattr_setsigmask(&attributes_, &blocked);
+    posix_spawnattr_setpgroup(&attributes_, 0);
+    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
+  }
+  ~SpawnAttributes() { posix_spawnattr_destroy(&attributes_); }
+  SpawnAttributes(const SpawnAttributes&) = delete;
+  SpawnAttributes& operator=(const SpawnAttributes&) = delete;
+  [[nodiscard]] const posix_spawnattr_t* get() const { return &attributes_; }
+
+ private:
+  posix_spawnattr_t attributes_;
+};
+
 }  // namespace
 
 ReaderProcess::ReaderProcess(const DdsSettings& settings, const std::string& result_file)
@@ -53,7 +75,9 @@ ReaderProcess::ReaderProcess(const DdsSettings& settings, const std::string& res
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
-  const int code = posix_spawn(&id_, pointers[0], nullptr, nullptr, pointers.data(), environ);
+  const SpawnAttributes attributes;
+  const int code =
+      posix_spawn(&id_, pointers[0], nullptr, attributes.get(), pointers.data(), environ);
   if (code != 0) {
     id_ = -1;
     throw MissingDevice("dds: cannot start " + arguments[0] + ": " + std::strerror(code) +

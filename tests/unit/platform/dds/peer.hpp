@@ -1,0 +1,99 @@
+// Another DDS participant, as a ROS 2 node would be: in a Cyclone domain of its own within this
+// process, so that it meets the sink only through packets on the loopback interface.
+#pragma once
+
+#include <dds/dds.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include "platform/dds/network.hpp"
+#include "platform/dds/participant.hpp"
+
+namespace glint {
+
+class Peer {
+ public:
+  explicit Peer(const DdsSettings& settings) {
+    std::string text = cyclone_configuration(settings);
+    const std::string before = "<Discovery>";
+    text.insert(text.find(before) + before.size(),
+                "<ExternalDomainId>" + std::to_string(settings.domain) + "</ExternalDomainId>");
+    constexpr dds_domainid_t own_id = 200;  // of this Cyclone domain; on the wire the sink's
+    domain_ = dds_create_domain(own_id, text.c_str());
+    participant_ = dds_create_participant(own_id, nullptr, nullptr);
+  }
+  ~Peer() { dds_delete(domain_); }
+  Peer(const Peer&) = delete;
+  Peer& operator=(const Peer&) = delete;
+
+  // Asks for XCDR1, as rmw_cyclonedds does.
+  dds_entity_t reader(const TopicType& type, const std::string& topic, Reliability reliability,
+                      Durability durability, int depth) {
+    dds_qos_t* qos = dds_create_qos();
+    dds_qset_reliability(qos,
+                         reliability == Reliability::reliable ? DDS_RELIABILITY_RELIABLE
+                                                              : DDS_RELIABILITY_BEST_EFFORT,
+                         DDS_MSECS(100));
+    dds_qset_durability(qos, durability == Durability::transient_local
+                                 ? DDS_DURABILITY_TRANSIENT_LOCAL
+                                 : DDS_DURABILITY_VOLATILE);
+    dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, depth);
+    const dds_data_representation_id_t xcdr1 = DDS_DATA_REPRESENTATION_XCDR1;
+    dds_qset_data_representation(qos, 1, &xcdr1);
+    const dds_entity_t entity =
+        dds_create_topic(participant_, type.descriptor, topic.c_str(), nullptr, nullptr);
+    const dds_entity_t reader = dds_create_reader(participant_, entity, qos, nullptr);
+    dds_delete_qos(qos);
+    return reader;
+  }
+
+  [[nodiscard]] dds_entity_t participant() const { return participant_; }
+
+ private:
+  dds_entity_t domain_ = 0;
+  dds_entity_t participant_ = 0;
+};
+
+// Whatever is to come over a network comes within this, or the test fails.
+inline constexpr int k_patience_ms = 10'000;
+
+// Waits until `done` holds; false when patience is over.
+template <class Done>
+[[nodiscard]] bool comes_true(Done done) {
+  for (int waited = 0; waited < k_patience_ms; waited += 2) {
+    if (done()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return done();
+}
+
+[[nodiscard]] inline bool has_found_writer(dds_entity_t reader) {
+  return comes_true([&] {
+    dds_subscription_matched_status_t status{};
+    dds_get_subscription_matched_status(reader, &status);
+    return status.current_count > 0;
+  });
+}
+
+// Hands messages to `use` until there were `count` or patience is over. How many there were.
+template <class Message, class Use>
+[[nodiscard]] std::size_t take(dds_entity_t reader, std::size_t count, Use use) {
+  std::size_t taken = 0;
+  (void)comes_true([&] {
+    void* sample[1] = {nullptr};
+    dds_sample_info_t info;
+    while (dds_take(reader, sample, &info, 1, 1) == 1) {
+      if (info.valid_data) {
+        ++taken;
+        use(*static_cast<const Message*>(sample[0]));
+      }
+      dds_return_loan(reader, sample, 1);
+    }
+    return taken >= count;
+  });
+  return taken;
+}
+
+}  // namespace glint
