@@ -1,0 +1,219 @@
+#include "kernels/image/blobs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <numeric>
+
+#include "kernels/image/roi_threshold.hpp"
+#include "tests/unit/kernels/image/picture_of.hpp"
+
+namespace glint {
+namespace {
+
+using test::Picture;
+using test::picture_of;
+
+struct Finder {
+  std::unique_ptr<Runs> upper = std::make_unique<Runs>(), lower = std::make_unique<Runs>();
+  std::unique_ptr<BlobScratch> scratch = std::make_unique<BlobScratch>();
+  std::unique_ptr<Blobs> blobs = std::make_unique<Blobs>();
+  BlobSettings settings{1, 100000, 500, 0xFFFF};
+  std::vector<Vector2> predicted;
+  int bands = 1;
+
+  const Blobs& operator()(const Picture& picture) {
+    const Frame frame = picture.frame();
+    const Rois all = whole_frame(frame);
+    threshold_runs(frame, all, settings.threshold, {0, bands}, *upper);
+    if (bands == 2) threshold_runs(frame, all, settings.threshold, {1, 2}, *lower);
+    const Runs* both[] = {upper.get(), lower.get()};
+    find_blobs(frame, {both, static_cast<std::size_t>(bands)}, settings, predicted, *scratch,
+               *blobs);
+    return *blobs;
+  }
+};
+
+TEST(Blobs, JoinsPixelsThatTouchByACorner) {
+  Finder find;
+  EXPECT_EQ(find(picture_of({"#..", ".#.", "..#"})).count, 1);
+  EXPECT_EQ(find(picture_of({"..#", ".#.", "#.."})).count, 1);
+  EXPECT_EQ(find(picture_of({"#.#", "...", "#.#"})).count, 4);
+}
+
+TEST(Blobs, JoinsTheTwoLegsOfAU) {
+  Finder find;
+  const Blobs& blobs = find(picture_of({"#...#.#", "#...#.#", "#####.#"}));
+  ASSERT_EQ(blobs.count, 2);
+  EXPECT_EQ(blobs.items[0].area_px, 9u);
+  EXPECT_EQ(blobs.items[0].x0, 0);
+  EXPECT_EQ(blobs.items[0].x1, 5);
+  EXPECT_EQ(blobs.items[0].y1, 3);
+  EXPECT_EQ(blobs.items[1].area_px, 3u);
+}
+
+TEST(Blobs, AreTheSameInOneBandAndInTwo) {
+  Picture p(100, 60);
+  test::add_disc(p, 30.3, 29.8, 5, 9000);  // across the border at row 30
+  test::add_disc(p, 70.1, 12.4, 3, 9000);
+  test::add_disc(p, 60.1, 50.4, 3, 9000);
+  Finder one, two;
+  two.bands = 2;
+  const Blobs& a = one(p);
+  const Blobs& b = two(p);
+  ASSERT_EQ(a.count, 3);
+  ASSERT_EQ(b.count, 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(a.items[i].centroid_px, b.items[i].centroid_px);
+    EXPECT_EQ(a.items[i].area_px, b.items[i].area_px);
+  }
+}
+
+// A flood fill knows nothing of runs.
+std::vector<int> areas_by_flood(Picture p) {
+  std::vector<int> areas;
+  for (int y = 0; y < p.height; ++y) {
+    for (int x = 0; x < p.width; ++x) {
+      if (p(x, y) <= 500) continue;
+      std::vector<std::array<int, 2>> open{{x, y}};
+      p(x, y) = 0;
+      int area = 0;
+      while (!open.empty()) {
+        const auto [cx, cy] = open.back();
+        open.pop_back();
+        ++area;
+        for (int i = 0; i < 9; ++i) {
+          const int nx = cx + i % 3 - 1, ny = cy + i / 3 - 1;
+          if (nx < 0 || ny < 0 || nx >= p.width || ny >= p.height || p(nx, ny) <= 500) continue;
+          p(nx, ny) = 0;
+          open.push_back({nx, ny});
+        }
+      }
+      areas.push_back(area);
+    }
+  }
+  std::sort(areas.begin(), areas.end());
+  return areas;
+}
+
+TEST(Blobs, AreThoseOfAFloodFillOnRandomFrames) {
+  std::mt19937 random(3);
+  Finder find;
+  find.bands = 2;
+  for (int round = 0; round < 300; ++round) {
+    Picture p(static_cast<int>(1 + random() % 40), static_cast<int>(2 + random() % 30));
+    const unsigned density = 1 + random() % 9;
+    for (auto& value : p.wide) value = random() % 10 < density ? 1000 : 0;
+    const Blobs& blobs = find(p);
+    std::vector<int> areas;
+    for (int i = 0; i < blobs.count; ++i) {
+      areas.push_back(static_cast<int>(blobs.items[static_cast<std::size_t>(i)].area_px));
+    }
+    std::sort(areas.begin(), areas.end());
+    ASSERT_EQ(areas, areas_by_flood(p)) << "round " << round;
+  }
+}
+
+TEST(Blobs, DropsAndCountsWhatIsOutsideTheSizeGate) {
+  Finder find;
+  find.settings.min_area_px = 2;
+  find.settings.max_area_px = 3;
+  const Blobs& blobs = find(picture_of({"#.##.####", ".........", "###......"}));
+  ASSERT_EQ(blobs.count, 2);
+  EXPECT_EQ(blobs.items[0].area_px, 2u);
+  EXPECT_EQ(blobs.items[1].area_px, 3u);
+  EXPECT_EQ(blobs.dropped, 2u);
+  EXPECT_EQ(blobs.reason, Reason::none);
+}
+
+// 400 single dots in a grid, 20 in a row.
+Picture dots() {
+  Picture p(80, 80);
+  for (int i = 0; i < 400; ++i) p(i % 20 * 4 + 1, i / 20 * 4 + 1) = 1000;
+  return p;
+}
+
+TEST(Blobs, KeepsTheTopmostWhenFullAndNothingIsPredicted) {
+  Finder find;
+  const Blobs& blobs = find(dots());
+  ASSERT_EQ(blobs.count, k_blobs_max);
+  EXPECT_EQ(blobs.dropped, 400u - k_blobs_max);
+  EXPECT_EQ(blobs.reason, Reason::blobs_full);
+  for (int i = 0; i < k_blobs_max; ++i) {
+    EXPECT_EQ(blobs.items[static_cast<std::size_t>(i)].x0, i % 20 * 4 + 1);
+    EXPECT_EQ(blobs.items[static_cast<std::size_t>(i)].y0, i / 20 * 4 + 1);
+  }
+}
+
+TEST(Blobs, KeepsTheBlobsNearestAPredictionWhenFull) {
+  Finder find;
+  find.predicted = {{77.5, 77.5}, {NAN, 0}, {1e300, -1e300}};  // the last dot; then nonsense
+  const Blobs& blobs = find(dots());
+  ASSERT_EQ(blobs.count, k_blobs_max);
+  EXPECT_EQ(blobs.items[k_blobs_max - 1].x0, 77);
+  EXPECT_EQ(blobs.items[k_blobs_max - 1].y0, 77);
+  EXPECT_GT(blobs.items[0].x0 + blobs.items[0].y0, 8);  // the far corner went
+  const auto distance = [](const Blob& b) { return std::hypot(b.x0 - 77.0, b.y0 - 77.0); };
+  double farthest = 0;
+  for (const Blob& blob : blobs.items) farthest = std::max(farthest, distance(blob));
+  int nearer = 0;
+  for (int i = 0; i < 400; ++i) {
+    nearer += std::hypot(i % 20 * 4 + 1 - 77.0, i / 20 * 4 + 1 - 77.0) < farthest;
+  }
+  EXPECT_LE(nearer, k_blobs_max);
+}
+
+TEST(Blobs, KeepsTheSizeGateBeforeAnyPrediction) {
+  Picture p = dots();
+  for (int y = 40; y < 80; ++y) {
+    for (int x = 0; x < 80; ++x) p(x, y) = 1000;  // a hand, right where a marker is predicted
+  }
+  Finder find;
+  find.settings.max_area_px = 20;
+  find.predicted = {{60, 60}};
+  const Blobs& blobs = find(p);
+  EXPECT_EQ(blobs.count, 200);
+  EXPECT_EQ(blobs.dropped, 1u);
+}
+
+TEST(Blobs, SurvivesACheckerboardAndPassesOnThatRunsWereLost) {
+  Picture p(512, 512);
+  for (int y = 0; y < 512; ++y) {
+    for (int x = y % 2; x < 512; x += 2) p(x, y) = 5000;
+  }
+  Finder find;
+  find.bands = 2;
+  const Blobs& blobs = find(p);
+  EXPECT_EQ(blobs.count, 2);  // one a band: its first 32 rows are connected
+  EXPECT_EQ(blobs.reason, Reason::runs_full);
+}
+
+TEST(Blobs, FlagsTheBorderAndSaturation) {
+  Picture p(12, 3);
+  p(0, 1) = 1000;
+  p(5, 1) = 4000;
+  p(11, 2) = 1000;
+  Finder find;
+  find.settings.saturated_from = 4000;
+  const Blobs& blobs = find(p);
+  ASSERT_EQ(blobs.count, 3);
+  EXPECT_EQ(blobs.items[0].flags, k_blob_touches_edge);
+  EXPECT_EQ(blobs.items[1].flags, k_blob_saturated);
+  EXPECT_EQ(blobs.items[1].peak, 4000);
+  EXPECT_EQ(blobs.items[2].flags, k_blob_touches_edge);
+}
+
+TEST(Blobs, ComeByRowsThenFromLeft) {
+  Finder find;
+  // The second component's first run is left of the first one's, but its box begins further right.
+  const Blobs& blobs = find(picture_of({"...#.#", "#..#..", "##..#."}));
+  for (int i = 1; i < blobs.count; ++i) {
+    const Blob& a = blobs.items[static_cast<std::size_t>(i - 1)];
+    const Blob& b = blobs.items[static_cast<std::size_t>(i)];
+    EXPECT_LE(std::pair(a.y0, a.x0), std::pair(b.y0, b.x0));
+  }
+  EXPECT_EQ(find(Picture(8, 8)).count, 0);
+}
+
+}  // namespace
+}  // namespace glint

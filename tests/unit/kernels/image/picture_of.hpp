@@ -1,0 +1,82 @@
+// Frames for the tests of this folder, from text or from rendered discs.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "kernels/image/frame.hpp"
+
+namespace glint::test {
+
+// Owns what its frame() borrows.
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<std::uint16_t> wide;
+  std::vector<std::uint8_t> narrow;  // used when not empty
+
+  Picture(int w, int h, std::uint16_t value = 0)
+      : width(w),
+        height(h),
+        wide(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), value) {}
+
+  [[nodiscard]] std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(x);
+  }
+  std::uint16_t& operator()(int x, int y) { return wide[at(x, y)]; }
+
+  [[nodiscard]] Frame frame() const {
+    Frame out;
+    if (narrow.empty()) {
+      out.reflectivity_16 = {wide.data(), width, height};
+    } else {
+      out.reflectivity_8 = {narrow.data(), width, height};
+    }
+    return out;
+  }
+
+  // The same picture with 8 bits, clipped.
+  [[nodiscard]] Picture with_8_bits() const {
+    Picture out = *this;
+    for (const std::uint16_t value : wide) {
+      out.narrow.push_back(static_cast<std::uint8_t>(std::min<int>(value, 255)));
+    }
+    return out;
+  }
+};
+
+// '#' is 1000, anything else 0.
+inline Picture picture_of(const std::vector<std::string>& rows) {
+  Picture out(static_cast<int>(rows.front().size()), static_cast<int>(rows.size()));
+  for (int y = 0; y < out.height; ++y) {
+    for (int x = 0; x < out.width; ++x) {
+      if (rows[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)] == '#') out(x, y) = 1000;
+    }
+  }
+  return out;
+}
+
+// Adds a disc of even brightness, its edge the mean of 8 x 8 samples a pixel.
+inline void add_disc(Picture& picture, double cx, double cy, double radius, double brightness) {
+  const int x0 = std::max(static_cast<int>(cx - radius) - 2, 0);
+  const int y0 = std::max(static_cast<int>(cy - radius) - 2, 0);
+  const int x1 = std::min(static_cast<int>(cx + radius) + 3, picture.width);
+  const int y1 = std::min(static_cast<int>(cy + radius) + 3, picture.height);
+  for (int y = y0; y < y1; ++y) {
+    for (int x = x0; x < x1; ++x) {
+      int inside = 0;
+      for (int i = 0; i < 64; ++i) {
+        const double dx = x + (i % 8 + 0.5) / 8 - cx, dy = y + (i / 8 + 0.5) / 8 - cy;
+        inside += dx * dx + dy * dy <= radius * radius;
+      }
+      const double value = picture(x, y) + brightness * inside / 64;
+      picture(x, y) = static_cast<std::uint16_t>(std::min(value + 0.5, 65535.0));
+    }
+  }
+}
+
+}  // namespace glint::test
