@@ -1,0 +1,44 @@
+#include "kernels/wire/crc.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/kernels/wire/hex.hpp"
+
+namespace glint {
+namespace {
+
+TEST(Crc, GivesTheCatalogueCheckValues) {
+  const auto digits = bytes_of_text("123456789");
+  EXPECT_EQ(crc8_j1850(digits), 0x4B);
+  EXPECT_EQ(crc8_h2f(digits), 0xDF);
+  EXPECT_EQ(crc16_ccitt_false(digits), 0x29B1);
+}
+
+TEST(Crc, ContinuesWhereAnEarlierCallEnded) {
+  const auto digits = bytes_of_text("123456789");
+  const std::span<const std::uint8_t> all(digits);
+  for (std::size_t cut = 0; cut <= all.size(); ++cut) {
+    EXPECT_EQ(crc16_ccitt_step(crc16_ccitt_step(k_crc16_start, all.first(cut)), all.subspan(cut)),
+              0x29B1);
+    EXPECT_EQ(crc8_h2f_step(crc8_h2f_step(k_crc8_start, all.first(cut)), all.subspan(cut)) ^
+                  k_crc8_final_xor,
+              0xDF);
+  }
+}
+
+// The definition, bit by bit, beside the table.
+TEST(Crc, EqualsPolynomialDivision) {
+  for (unsigned first = 0; first < 256; ++first) {
+    const std::uint8_t bytes[] = {static_cast<std::uint8_t>(first), 0x5A};
+    unsigned remainder = 0xFF;
+    for (const std::uint8_t byte : bytes) {
+      remainder ^= byte;
+      for (int bit = 0; bit < 8; ++bit)
+        remainder = (remainder & 0x80U) != 0 ? (remainder << 1 ^ 0x11DU) : remainder << 1;
+    }
+    EXPECT_EQ(crc8_j1850(bytes), remainder ^ 0xFFU);
+  }
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,128 @@
+#include "kernels/wire/output_record.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+
+#include "tests/unit/kernels/wire/hex.hpp"
+#include "tests/unit/kernels/wire/samples.hpp"
+
+namespace glint {
+namespace {
+
+using Record = std::array<std::uint8_t, k_output_record_bytes>;
+
+Record encoded(const PoseSample& sample) {
+  Record record;
+  record.fill(0xEE);
+  encode(sample, record);
+  return record;
+}
+
+TEST(OutputRecord, ComesBackBitForBit) {
+  std::mt19937 random(31);
+  for (int i = 0; i < 500; ++i) {
+    const PoseSample s = random_sample(random);
+    const Record record = encoded(s);
+    const auto back = decode(record);
+    ASSERT_TRUE(back);
+    EXPECT_EQ(encoded(back.value), record);
+    EXPECT_EQ(back.value.tick, s.tick);
+    EXPECT_EQ(back.value.measurement, s.measurement);
+    EXPECT_EQ(back.value.frame_sequence, s.frame_sequence);
+    EXPECT_EQ(back.value.reason, s.reason);
+    EXPECT_EQ(back.value.frame, s.frame);
+    EXPECT_EQ(back.value.pose.translation, s.pose.translation);
+    EXPECT_EQ(back.value.pose.rotation.coeffs(), s.pose.rotation.coeffs());
+    EXPECT_EQ(back.value.covariance, s.covariance);
+    EXPECT_EQ(back.value.registration_rms_m, s.registration_rms_m);
+  }
+}
+
+TEST(OutputRecord, HasItsDocumentedBytes) {
+  PoseSample s;
+  s.tick = {0x0102030405060708};
+  s.measurement = {-2};
+  s.tick_number = 0x11223344;
+  s.frame_sequence = 0x55667788;
+  s.tool = 9;
+  s.marker_mask = 0xA5;
+  s.buttons = 7;
+  s.state = TrackState::predicted;
+  s.registration = RegistrationState::accepted;
+  s.frame = ReferenceFrame::robot;
+  s.reason = Reason::bad_fit;
+  s.pose.translation = Vector3(1, -2, 0.5);
+  s.covariance(0, 1) = 1;
+  s.registration_rms_m = 2;
+  const Record record = encoded(s);
+  const std::span<const std::uint8_t> bytes(record);
+  EXPECT_EQ(hex_of(bytes.first(32)),
+            "0807060504030201"
+            "FEFFFFFFFFFFFFFF"
+            "44332211"
+            "88776655"
+            "09A5070102020701");
+  EXPECT_EQ(hex_of(bytes.subspan(32, 24)),
+            "000000000000F03F"
+            "00000000000000C0"
+            "000000000000E03F");
+  EXPECT_EQ(hex_of(bytes.subspan(80, 8)), "000000000000F03F");   // rotation's w
+  EXPECT_EQ(hex_of(bytes.subspan(144, 8)), "000000000000F03F");  // covariance row 0, column 1
+  EXPECT_EQ(hex_of(bytes.subspan(440, 8)), "0000000000000040");
+}
+
+TEST(OutputRecord, ShowsEveryFieldAndOverwritesEveryByte) {
+  std::mt19937 random(32);
+  Record zeros{}, ones{};
+  ones.fill(0xFF);
+  const PoseSample s = random_sample(random);
+  encode(s, zeros);
+  encode(s, ones);
+  EXPECT_EQ(zeros, ones);
+
+  // A change anywhere in a record is a change of the decoded sample, so no field is left out.
+  for (std::size_t at = 0; at < k_output_record_bytes; ++at) {
+    Record changed = zeros;
+    changed[at] ^= 1;
+    const auto back = decode(changed);
+    if (back) {
+      EXPECT_EQ(encoded(back.value), changed) << at;
+    }
+  }
+}
+
+TEST(OutputRecord, WritesOneKindOfZeroAndNothingThatIsNotANumber) {
+  PoseSample plus, minus;
+  minus.velocity_m_s = Vector3(-0.0, -0.0, -0.0);
+  minus.covariance.setConstant(-0.0);
+  minus.pose.translation.x() = std::numeric_limits<double>::quiet_NaN();
+  minus.sigma_position_m = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(encoded(plus), encoded(minus));
+}
+
+TEST(OutputRecord, RefusesBytesThatAreNoRecord) {
+  const Record good = encoded(PoseSample{});
+  ASSERT_TRUE(decode(good));
+  const auto refused = [&](std::size_t at, std::uint8_t value) {
+    Record bad = good;
+    bad[at] = value;
+    return decode(bad).reason == Reason::out_of_range;
+  };
+  EXPECT_TRUE(refused(24, k_tools_max));
+  EXPECT_TRUE(refused(27, 4));
+  EXPECT_TRUE(refused(28, 4));
+  EXPECT_TRUE(refused(29, 3));
+  EXPECT_TRUE(refused(30, 200));
+  EXPECT_TRUE(refused(31, 2));
+  Record not_a_number = good;
+  not_a_number[38] = 0xF0;
+  not_a_number[39] = 0x7F;
+  EXPECT_FALSE(decode(not_a_number));
+}
+
+}  // namespace
+}  // namespace glint

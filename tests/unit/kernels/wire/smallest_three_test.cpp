@@ -1,0 +1,65 @@
+#include "kernels/wire/smallest_three.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace glint {
+namespace {
+
+double degrees_between(const Quaternion& a, const Quaternion& b) {
+  const double half = (a.conjugate() * b).vec().norm();
+  return 2 * std::asin(std::min(1.0, half)) * 180 / 3.141592653589793;
+}
+
+TEST(SmallestThree, ComesBackWithinFourThousandthsOfADegree) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  double worst = 0;
+  for (int i = 0; i < 200000; ++i) {
+    Quaternion q(normal(random), normal(random), normal(random), normal(random));
+    q.normalize();
+    const SmallestThree packed = to_smallest_three(q);
+    ASSERT_TRUE(packed.valid);
+    worst = std::max(worst, degrees_between(q, from_smallest_three(packed)));
+  }
+  EXPECT_LT(worst, 0.0038);
+  EXPECT_GT(worst, 0.002);  // else the measure itself is wrong
+}
+
+TEST(SmallestThree, LeavesOutTheLargestAndMakesItPositive) {
+  const Quaternion q(0.1, 0.1, -0.98488578017961, 0.1);  // w, x, y, z: unit
+  const SmallestThree packed = to_smallest_three(q);
+  ASSERT_TRUE(packed.valid);
+  EXPECT_EQ(packed.left_out, 1);
+  for (const std::int16_t part : packed.component) EXPECT_EQ(part, -4634);  // 0.1 / 2.1580187e-5
+  EXPECT_LT(degrees_between(q, from_smallest_three(packed)), 0.004);
+}
+
+TEST(SmallestThree, TakesTheFirstOfEqualComponents) {
+  const double half = std::sqrt(0.5);
+  EXPECT_EQ(to_smallest_three(Quaternion(half, 0, 0, half)).left_out, 2);
+  EXPECT_EQ(to_smallest_three(Quaternion(half, half, 0, 0)).left_out, 0);
+  EXPECT_EQ(to_smallest_three(Quaternion(half, half, 0, 0)).component[2], 32766);
+}
+
+TEST(SmallestThree, RefusesWhatIsNoRotation) {
+  EXPECT_FALSE(to_smallest_three(Quaternion(0, 0, 0, 0)).valid);
+  EXPECT_FALSE(to_smallest_three(Quaternion(1.01, 0, 0, 0)).valid);
+  EXPECT_FALSE(
+      to_smallest_three(Quaternion(std::numeric_limits<double>::quiet_NaN(), 0, 0, 1)).valid);
+}
+
+TEST(SmallestThree, GivesAUnitQuaternionForAnyIntegers) {
+  SmallestThree packed;
+  for (const std::int16_t value : {INT16_MIN, INT16_MAX, 0}) {
+    packed.component.fill(static_cast<std::int16_t>(value));
+    EXPECT_NEAR(from_smallest_three(packed).norm(), 1, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace glint
