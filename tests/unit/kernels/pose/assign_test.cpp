@@ -1,0 +1,105 @@
+#include "kernels/pose/assign.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <vector>
+
+#include "tests/unit/kernels/pose/scene.hpp"
+
+namespace glint {
+namespace {
+
+Labeling labeling_of(std::initializer_list<std::int16_t> markers, double rms_m) {
+  Labeling labeling;
+  labeling.marker.fill(-1);
+  std::copy(markers.begin(), markers.end(), labeling.marker.begin());
+  labeling.count = static_cast<int>(markers.size());
+  labeling.rms_m = rms_m;
+  return labeling;
+}
+
+Labelings labelings_of(std::initializer_list<Labeling> items) {
+  Labelings labelings;
+  for (const Labeling& item : items) {
+    labelings.items[static_cast<std::size_t>(labelings.count++)] = item;
+  }
+  return labelings;
+}
+
+struct Outcome {
+  std::vector<int> chosen;
+  std::vector<Reason> reasons;
+};
+
+Outcome outcome_of(const std::vector<Labelings>& per_tool) {
+  Outcome outcome{std::vector<int>(per_tool.size(), 7),
+                  std::vector<Reason>(per_tool.size(), Reason::bad_fit)};
+  assign_markers(per_tool, outcome.chosen, outcome.reasons);
+  return outcome;
+}
+
+TEST(Assign, GivesEachToolItsBestWhereNothingIsShared) {
+  const Outcome outcome = outcome_of({labelings_of({labeling_of({0, 1, 2}, 0.001)}),
+                                      labelings_of({labeling_of({3, 4, 5}, 0.002)})});
+  EXPECT_EQ(outcome.chosen, (std::vector<int>{0, 0}));
+  EXPECT_EQ(outcome.reasons, (std::vector<Reason>{Reason::none, Reason::none}));
+}
+
+TEST(Assign, PrefersMoreMarkersToASmallerResidualAndThatToTheFirstTool) {
+  const auto fewer = labelings_of({labeling_of({0, 1, 2}, 0.0001)});
+  const auto more = labelings_of({labeling_of({2, 3, 4, 5}, 0.004)});
+  const auto worse = labelings_of({labeling_of({0, 1, 2}, 0.003)});
+  EXPECT_EQ(outcome_of({fewer, more}).chosen, (std::vector<int>{-1, 0}));
+  EXPECT_EQ(outcome_of({worse, fewer}).chosen, (std::vector<int>{-1, 0}));
+  EXPECT_EQ(outcome_of({fewer, fewer}).chosen, (std::vector<int>{0, -1}));
+  EXPECT_EQ(outcome_of({fewer, fewer}).reasons[1], Reason::taken_by_other);
+}
+
+TEST(Assign, TakesTheNextLabelingOfAToolWhoseMarkerIsTaken) {
+  const auto first = labelings_of({labeling_of({0, 1, 2, 3, 4}, 0.001)});
+  const auto second =
+      labelings_of({labeling_of({4, 5, 6, 7, 8}, 0.002), labeling_of({9, 5, 6, 7}, 0.002),
+                    labeling_of({5, 6, 7}, 0.001)});
+  EXPECT_EQ(outcome_of({first, second}).chosen, (std::vector<int>{0, 1}));
+  EXPECT_EQ(outcome_of({second, first}).chosen, (std::vector<int>{1, 0}));
+}
+
+TEST(Assign, PassesOnWhyAToolHasNoLabeling) {
+  Labelings none;
+  none.reason = Reason::too_few_markers;
+  EXPECT_EQ(outcome_of({none}).reasons[0], Reason::too_few_markers);
+  EXPECT_EQ(outcome_of({Labelings{}}).reasons[0], Reason::no_labeling);
+  EXPECT_EQ(outcome_of({none}).chosen[0], -1);
+}
+
+TEST(Assign, NeverGivesAMarkerToTwoTools) {
+  test::Random random(1);
+  for (int trial = 0; trial < 500; ++trial) {
+    std::vector<Labelings> per_tool(k_tools_max);
+    for (Labelings& labelings : per_tool) {
+      labelings.count = random.below(k_labelings_max + 1);
+      for (Labeling& labeling : labelings.items) {
+        const auto marker = static_cast<std::int16_t>(random.below(60));
+        labeling = labeling_of(
+            {marker, static_cast<std::int16_t>(marker + 1), static_cast<std::int16_t>(marker + 2)},
+            1e-4 * random.below(10));
+      }
+    }
+    const Outcome outcome = outcome_of(per_tool);
+    std::array<int, k_blobs_max> holders{};
+    for (std::size_t t = 0; t < per_tool.size(); ++t) {
+      if (outcome.chosen[t] < 0) continue;
+      ASSERT_LT(outcome.chosen[t], per_tool[t].count);
+      const auto& chosen = per_tool[t].items[static_cast<std::size_t>(outcome.chosen[t])];
+      for (const std::int16_t marker : chosen.marker) {
+        if (marker < 0) continue;
+        EXPECT_EQ(++holders[static_cast<std::size_t>(marker)], 1);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace glint
