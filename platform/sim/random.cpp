@@ -1,0 +1,37 @@
+#include "platform/sim/random.hpp"
+
+#include <cmath>
+
+#include "kernels/elementary.hpp"
+
+namespace glint::sim {
+namespace {
+
+constexpr double k_two_pi = 6.283185307179586;
+
+}  // namespace
+
+double uniform(const RandomKey& key, std::uint64_t index) {
+  return (static_cast<double>(key.bits(index) >> 11) + 0.5) * 0x1p-53;
+}
+
+double gaussian(const RandomKey& key, std::uint64_t index) {
+  const double u = uniform(key, 2 * index);
+  const double v = uniform(key, 2 * index + 1);
+  return std::sqrt(-2.0 * logarithm(u)) * sine_cosine(k_two_pi * v).cosine;
+}
+
+Vector3 gaussian_vector(const RandomKey& key, std::uint64_t index) {
+  const double x = gaussian(key, 3 * index);
+  const double y = gaussian(key, 3 * index + 1);
+  const double z = gaussian(key, 3 * index + 2);
+  return {x, y, z};
+}
+
+std::vector<float> gaussian_table(const RandomKey& key, int count) {
+  std::vector<float> table(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < table.size(); ++i) table[i] = static_cast<float>(gaussian(key, i));
+  return table;
+}
+
+}  // namespace glint::sim

@@ -1,0 +1,58 @@
+// Random numbers by counter: the value depends on (seed, stream, index) alone, so that any frame
+// can be rendered first, by any thread, on any machine, with the same bytes.
+//
+// Source: SplitMix64's finalizer (Steele, Lea, Flood 2014, Fast splittable pseudorandom number
+//         generators, figure 16), applied to each key in turn; normal values by Box and Muller
+//         1958.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kernels/geometry.hpp"
+
+namespace glint::sim {
+
+// What a stream of random numbers is for; each has its own.
+enum class Stream : std::uint64_t {
+  noise_table = 1,
+  row_offset = 2,
+  blob = 3,
+  transport = 4,
+  hand = 5,
+  tremor = 6,
+  head = 7,
+  localisation = 8,
+  reference = 9,
+  room = 10,
+};
+
+[[nodiscard]] constexpr std::uint64_t mixed(std::uint64_t x) {
+  x += 0x9E3779B97F4A7C15u;
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
+  return x ^ (x >> 31);
+}
+
+struct RandomKey {
+  std::uint64_t seed = 0;
+  Stream stream = Stream::noise_table;
+  std::uint64_t instance = 0;  // e.g. which tool
+
+  [[nodiscard]] constexpr std::uint64_t bits(std::uint64_t index) const {
+    const std::uint64_t key = mixed(mixed(seed) ^ static_cast<std::uint64_t>(stream));
+    return mixed(mixed(key ^ instance) ^ index);
+  }
+};
+
+// In (0, 1), never the ends.
+[[nodiscard]] double uniform(const RandomKey& key, std::uint64_t index);
+
+// Mean 0, standard deviation 1; |value| < 8.6.
+[[nodiscard]] double gaussian(const RandomKey& key, std::uint64_t index);
+[[nodiscard]] Vector3 gaussian_vector(const RandomKey& key, std::uint64_t index);
+
+// count normal values, to be read from any place.
+[[nodiscard]] std::vector<float> gaussian_table(const RandomKey& key, int count);
+
+}  // namespace glint::sim

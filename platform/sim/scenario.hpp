@@ -1,0 +1,73 @@
+// Everything that a simulated run consists of, as plain declared values.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kernels/pose/tool.hpp"
+#include "platform/sensors/camera.hpp"
+#include "platform/sim/localisation.hpp"
+#include "platform/sim/motion.hpp"
+#include "platform/sim/noise.hpp"
+#include "platform/sim/room.hpp"
+#include "platform/sim/timing.hpp"
+
+namespace glint::sim {
+
+// A thick line: the pen's shaft, a finger, a forearm.
+struct Capsule {
+  Vector3 a = Vector3::Zero(), b = Vector3::Zero();  // metres
+  double radius_m = 0;
+  double signal = 0;  // counts at 0.5 m
+};
+
+// A tool and what moves with it, in the tool's frame.
+struct ToolBody {
+  Tool tool;
+  MotionPointer motion;                    // T_world_tool
+  Vector3 disc_normal = Vector3::UnitX();  // flat discs: their normal; both faces reflect
+  std::vector<Capsule> parts;              // shaft, hand: they hide markers
+};
+
+// Bright things that are no tool: lamps, tape. They stand in the world.
+struct Clutter {
+  Vector3 position_m = Vector3::Zero();
+  Vector3 normal = Vector3::Zero();  // a disc's; zero: a sphere
+  double radius_m = 0.005;
+  double signal = 8000;  // counts at 0.5 m
+};
+
+// A hand between camera and tool: a ball that comes from the side, on the line to the tool.
+struct OcclusionEvent {
+  Interval during;
+  int tool = 0;
+  double radius_m = 0.09;
+  double share_of_range = 0.6;
+};
+
+// The tool leaves: moved by `away` (world) within the interval, with 0.25 s of way out and back.
+struct AwayEvent {
+  Interval during;
+  int tool = 0;
+  Vector3 away_m{0, 0, -1.2};
+};
+
+struct Scenario {
+  Camera camera;
+  std::vector<ToolBody> tools;  // k_tools_max at most
+  MotionPointer head;           // T_world_camera
+  std::uint64_t seed = 1;
+  Duration duration = milliseconds(60'000);
+  TimingSettings timing;
+  NoiseSettings noise;
+  SignalSettings signal;
+  LocalisationSettings localisation;
+  ReferenceSettings reference;
+  Room room;
+  BackgroundFrame background;  // replaces the room if not empty
+  std::vector<Clutter> clutter;
+  std::vector<OcclusionEvent> occlusions;
+  std::vector<AwayEvent> aways;
+};
+
+}  // namespace glint::sim

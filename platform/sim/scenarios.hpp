@@ -1,0 +1,39 @@
+// Ready-made runs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "platform/sim/scenario.hpp"
+#include "platform/sim/trajectory.hpp"
+
+namespace glint::sim {
+
+inline constexpr int k_aligning_frames = 1000;  // still, before each experiment's samples
+inline constexpr int k_static_frames = 5000;
+inline constexpr int k_dynamic_frames = 2000;  // in each of k_dynamic_runs
+inline constexpr int k_dynamic_runs = 5;
+
+// HoloLens 2 AHAT, 60 s: the camera falls to 5 Hz for 4 s, a hand hides the pen for 1 s, the pen is
+// away for 2 s, hands and bright clutter all the time. No tools named: the built-in pen.
+[[nodiscard]] Scenario default_run(const std::vector<Tool>& tools = {});
+
+// The same place without events, clutter or motion.
+[[nodiscard]] Scenario still_run(const Camera& camera, const std::vector<Tool>& tools = {});
+
+// Recorded motion: the head's as recorded, the first tool's in the camera's frame, at arm's length,
+// scaled. Other tools rest in the world.
+[[nodiscard]] Scenario trajectory_run(const Camera& camera, const std::vector<Tool>& tools,
+                                      const Trajectory& head, const Trajectory& pen,
+                                      double pen_scale);
+
+// HoloLens 1. Static: headset and pen still, an arm's length apart, k_aligning_frames +
+// k_static_frames. Dynamic: k_aligning_frames still, then k_dynamic_frames with both moving; run
+// 0..k_dynamic_runs-1 differ in their seed. Both have the one set of declared error sources.
+[[nodiscard]] Scenario experiment_static(const std::vector<Tool>& tools = {});
+[[nodiscard]] Scenario experiment_dynamic(int run, const std::vector<Tool>& tools = {});
+[[nodiscard]] NoiseSettings hololens1_noise();
+[[nodiscard]] SignalSettings hololens1_signal();
+[[nodiscard]] LocalisationSettings hololens1_localisation();
+
+}  // namespace glint::sim

@@ -1,0 +1,34 @@
+// From the perfect picture to what the sensor delivers: noise, saturation, wrap, quantisation.
+//
+// What:     reflectivity = signal + noise, rounded, clipped at 8 or 16 bit; depth = range + noise,
+//           wrapped, in raw units, 0 where the signal is too weak or saturates, where the range is
+//           beyond the sensor's, and where the lens maps nothing.
+// Cost:     one pass; the normal values come from a table, read from a place that the seed, the
+//           frame and the row choose.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "platform/sensors/camera.hpp"
+#include "platform/sensors/frame_buffer.hpp"
+#include "platform/sim/lens_rays.hpp"
+#include "platform/sim/noise.hpp"
+#include "platform/sim/planes.hpp"
+
+namespace glint::sim {
+
+class Sensor {
+ public:
+  Sensor(const Camera& camera, const NoiseSettings& noise, std::uint64_t seed);
+  void expose(const Planes& planes, const LensRays& rays, std::uint32_t sequence,
+              FrameBuffer& out) const;
+
+ private:
+  Camera camera_;
+  NoiseSettings noise_;
+  std::uint64_t seed_ = 0;
+  std::vector<float> table_;
+};
+
+}  // namespace glint::sim

@@ -1,0 +1,52 @@
+// When frames are exposed and when they arrive, and what can go wrong between.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kernels/units.hpp"
+#include "platform/sensors/camera.hpp"
+
+namespace glint::sim {
+
+// Half open: begin <= t < end.
+struct Interval {
+  Time begin, end;
+  [[nodiscard]] bool contains(Time t) const { return t >= begin && t < end; }
+};
+
+enum class Fault : std::uint8_t {
+  doubled,         // the frame is delivered twice, `amount` apart
+  late,            // it arrives `amount` later, possibly after its successors
+  backward_stamp,  // its stamp lies `amount` before its true mid-exposure
+  dropped,         // it never arrives
+};
+
+// Befalls the first frame exposed at `at` or later.
+struct FaultEvent {
+  Fault kind = Fault::doubled;
+  Time at;
+  Duration amount;
+};
+
+struct TimingSettings {
+  std::vector<Interval> slow;  // the camera falls to slow_period here
+  Duration slow_period = milliseconds(200);
+  Duration transport_jitter = microseconds(400);  // added to Camera::transport, uniform
+  std::vector<FaultEvent> faults;
+};
+
+// One delivery; deliveries are numbered in the order of their arrival.
+struct FrameTiming {
+  Time exposed;                // true mid-exposure
+  Time mid_exposure;           // as stamped: differs under Fault::backward_stamp only
+  Time arrival;                // last byte in memory
+  std::uint32_t sequence = 0;  // counts exposures; a doubled frame keeps it
+};
+
+// The camera's clock starts at 0 with its first mid-exposure; the last one is before `duration`.
+[[nodiscard]] std::vector<FrameTiming> frame_timings(const Camera& camera,
+                                                     const TimingSettings& settings,
+                                                     Duration duration, std::uint64_t seed);
+
+}  // namespace glint::sim

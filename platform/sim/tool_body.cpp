@@ -1,0 +1,137 @@
+#include "platform/sim/tool_body.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "kernels/elementary.hpp"
+#include "platform/sim/scene.hpp"
+
+namespace glint::sim {
+namespace {
+
+constexpr int k_directions = 200;
+constexpr int k_tilts = 8;
+constexpr double k_tilt = 0.44;  // radians: 25 degrees
+constexpr double k_golden_angle = 2.399963229728653;
+constexpr double k_post_m = 0.015;
+constexpr double k_hand_below_m = 0.045;
+
+const Vector3& marker(const Tool& tool, int i) {
+  return tool.markers_m[static_cast<std::size_t>(i)];
+}
+
+// The least distance between two markers as seen from this direction.
+double least_gap(const Tool& tool, const Vector3& towards_camera) {
+  double least = 1e9;
+  for (int i = 0; i < tool.marker_count; ++i) {
+    for (int j = i + 1; j < tool.marker_count; ++j) {
+      const double gap = (marker(tool, i) - marker(tool, j)).cross(towards_camera).norm();
+      if (gap < least) least = gap;
+    }
+  }
+  return least;
+}
+
+Vector3 square_to(const Vector3& axis) {
+  const Vector3 other = std::abs(axis.x()) < 0.7 ? Vector3::UnitX() : Vector3::UnitY();
+  return axis.cross(other).normalized();
+}
+
+double score(const Tool& tool, const Vector3& towards_camera) {
+  double worst = least_gap(tool, towards_camera);
+  const Vector3 right = square_to(towards_camera), up = towards_camera.cross(right);
+  for (int i = 0; i < k_tilts; ++i) {
+    const SineCosine turn = sine_cosine(6.283185307179586 * i / k_tilts);
+    const SineCosine tilt = sine_cosine(k_tilt);
+    const Vector3 tilted =
+        tilt.cosine * towards_camera + tilt.sine * (turn.cosine * right + turn.sine * up);
+    const double gap = least_gap(tool, tilted);
+    if (gap < worst) worst = gap;
+  }
+  return worst;
+}
+
+// The normal of the largest triangle: where flat discs look.
+Vector3 plane_normal(const Tool& tool) {
+  Vector3 best = Vector3::UnitX();
+  double largest = 0;
+  for (int i = 2; i < tool.marker_count; ++i) {
+    for (int j = 1; j < i; ++j) {
+      const Vector3 area =
+          (marker(tool, i) - marker(tool, 0)).cross(marker(tool, j) - marker(tool, 0));
+      if (area.norm() <= largest) continue;
+      largest = area.norm();
+      best = area / largest;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+Grip best_grip(const Tool& tool) {
+  Grip grip;
+  grip.middle = middle_of(tool);
+  if (tool.shape == MarkerShape::disc) {
+    grip.towards_camera = plane_normal(tool);
+  } else {
+    double best = -1;
+    for (int i = 0; i < k_directions; ++i) {  // a Fibonacci sphere
+      const double z = 1 - (2.0 * i + 1) / k_directions;
+      const SineCosine turn = sine_cosine(k_golden_angle * i);
+      const double across = std::sqrt(1 - z * z);
+      const Vector3 direction(across * turn.cosine, across * turn.sine, z);
+      const double value = score(tool, direction);
+      if (value <= best) continue;
+      best = value;
+      grip.towards_camera = direction;
+    }
+  }
+  const Vector3 stick = grip.middle - tool.tip_m;
+  const Vector3 across = stick - stick.dot(grip.towards_camera) * grip.towards_camera;
+  grip.up = across.norm() > 0.01 ? Vector3(across.normalized()) : square_to(grip.towards_camera);
+  return grip;
+}
+
+Pose held_at(const Grip& grip, const Vector3& place, const Vector3& camera) {
+  const Vector3 back = (camera - place).normalized();
+  const Vector3 right = Vector3::UnitZ().cross(back).normalized();
+  Matrix3 world, tool;
+  world.col(0) = back;
+  world.col(1) = back.cross(right);
+  world.col(2) = world.col(0).cross(world.col(1));
+  tool.col(0) = grip.towards_camera;
+  tool.col(1) = grip.up;
+  tool.col(2) = tool.col(0).cross(tool.col(1));
+  const Quaternion rotation = Quaternion(Matrix3(world * tool.transpose())).normalized();
+  return {rotation, place - rotation * grip.middle};
+}
+
+ToolBody held_tool(const Tool& tool, const Grip& grip, const SignalSettings& signal,
+                   MotionPointer motion) {
+  ToolBody body;
+  body.tool = tool;
+  body.motion = std::move(motion);
+  body.disc_normal = grip.towards_camera;
+  double lowest = 0;  // along up, from the middle
+  for (int i = 0; i < tool.marker_count; ++i) {
+    const double height = (marker(tool, i) - grip.middle).dot(grip.up);
+    if (height < lowest) lowest = height;
+  }
+  const Vector3 behind = -k_post_m * grip.towards_camera;
+  const Vector3 side = grip.up.cross(grip.towards_camera);
+  const Vector3 hold = grip.middle + (lowest - k_hand_below_m) * grip.up + behind;
+  body.parts.push_back({tool.tip_m + behind, grip.middle + behind, 0.005, signal.pen_body});
+  const Vector3 palm = hold + 0.045 * side - 0.025 * grip.up;
+  body.parts.push_back({palm, palm + 0.03 * side - 0.03 * grip.up, 0.032, signal.skin});
+  for (int finger = 0; finger < 3; ++finger) {
+    const Vector3 knuckle = palm + (0.02 - 0.018 * finger) * grip.up + 0.02 * grip.towards_camera;
+    const Vector3 end = hold - (0.012 * finger) * grip.up + 0.012 * grip.towards_camera;
+    body.parts.push_back({knuckle, end, 0.008, signal.skin});
+  }
+  const Vector3 elbow = palm + 0.16 * side - 0.2 * grip.up + 0.08 * grip.towards_camera;
+  body.parts.push_back({palm, elbow, 0.034, signal.skin});
+  return body;
+}
+
+}  // namespace glint::sim

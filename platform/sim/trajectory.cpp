@@ -1,0 +1,135 @@
+#include "platform/sim/trajectory.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+#include "platform/input_error.hpp"
+
+namespace glint::sim {
+namespace {
+
+constexpr const char* k_tum = "t x y z qx qy qz qw, separated by blanks";
+constexpr const char* k_euroc = "ns,px,py,pz,qw,qx,qy,qz, separated by commas";
+
+// One line of numbers, complaining with file:line.
+class Line {
+ public:
+  Line(std::string_view text, const std::string& where, bool commas)
+      : rest_(text), where_(where), commas_(commas) {}
+
+  [[noreturn]] void fail(const std::string& found) const {
+    throw InputError(where_ + ": " + found + "; expected " + (commas_ ? k_euroc : k_tum));
+  }
+
+  [[nodiscard]] std::string_view word() {
+    const std::string_view blanks = " \t\r";
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(blanks), rest_.size()));
+    ++column_;
+    if (rest_.empty()) fail("ends before column " + std::to_string(column_));
+    const std::size_t end = std::min(rest_.find_first_of(commas_ ? "," : " \t\r"), rest_.size());
+    std::string_view word = rest_.substr(0, end);
+    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    word = word.substr(0, word.find_last_not_of(blanks) + 1);
+    return word;
+  }
+
+  [[nodiscard]] double number() {
+    const std::string_view text = word();
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+      fail("column " + std::to_string(column_) + " holds '" + std::string(text.substr(0, 40)) +
+           "', no finite number");
+    }
+    return value;
+  }
+
+  // Seconds as text, or whole nanoseconds.
+  [[nodiscard]] std::int64_t stamp() {
+    if (!commas_) {
+      const double seconds = number();
+      if (!(std::abs(seconds) < 9e9)) fail("time stamp out of range");
+      return static_cast<std::int64_t>(std::floor(seconds * 1e9 + 0.5));
+    }
+    const std::string_view text = word();
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() ||
+        value > 4'000'000'000'000'000'000 || value < -4'000'000'000'000'000'000) {
+      fail("column 1 holds '" + std::string(text.substr(0, 40)) + "', no whole nanoseconds");
+    }
+    return value;
+  }
+
+ private:
+  std::string_view rest_;
+  const std::string& where_;
+  bool commas_ = false;
+  int column_ = 0;
+};
+
+StampedPose parse(std::string_view text, const std::string& where, bool commas) {
+  Line line(text, where, commas);
+  StampedPose sample;
+  sample.time = Time{line.stamp()};
+  for (int axis = 0; axis < 3; ++axis) {
+    sample.pose.translation[axis] = line.number();
+    if (std::abs(sample.pose.translation[axis]) > 1e6) line.fail("a position beyond 1000 km");
+  }
+  std::array<double, 4> q{};
+  for (double& value : q) value = line.number();
+  const Quaternion rotation =
+      commas ? Quaternion(q[0], q[1], q[2], q[3]) : Quaternion(q[3], q[0], q[1], q[2]);
+  if (!(std::abs(rotation.norm() - 1) < 0.01)) line.fail("a quaternion that is not of length 1");
+  sample.pose.rotation = rotation.normalized();
+  return sample;
+}
+
+}  // namespace
+
+Trajectory trajectory_from_text(const std::string& text, const std::string& name) {
+  Trajectory trajectory;
+  trajectory.name = name;
+  std::size_t number = 0, begin = 0;
+  std::int64_t first = 0;
+  bool commas = false;
+  while (begin < text.size()) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = std::string_view(text).substr(begin, end - begin);
+    begin = end + 1;
+    ++number;
+    const std::size_t content = line.find_first_not_of(" \t\r");
+    if (content == std::string_view::npos || line[content] == '#') continue;
+    const std::string where = name + ":" + std::to_string(number);
+    if (trajectory.samples.empty()) commas = line.find(',') != std::string_view::npos;
+    StampedPose sample = parse(line, where, commas);
+    if (trajectory.samples.empty()) first = sample.time.nanoseconds;
+    sample.time.nanoseconds -= first;
+    if (!trajectory.samples.empty() && sample.time <= trajectory.samples.back().time) {
+      throw InputError(where + ": its stamp is not after the one before; expected rising stamps");
+    }
+    trajectory.samples.push_back(sample);
+  }
+  if (trajectory.samples.size() < 2) {
+    throw InputError(name + ":" + std::to_string(number) + ": " +
+                     std::to_string(trajectory.samples.size()) +
+                     " samples; expected 2 or more lines of " + k_tum + ", or " + k_euroc);
+  }
+  return trajectory;
+}
+
+Trajectory load_trajectory(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path + ": cannot be read; expected a trajectory, " + k_tum);
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (file.bad()) throw InputError(path + ": reading failed; expected a trajectory");
+  return trajectory_from_text(text, path);
+}
+
+}  // namespace glint::sim
