@@ -22,11 +22,17 @@ struct OfferSlot {
   [[nodiscard]] bool empty() const { return bytes.data() == nullptr; }
 };
 
-inline constexpr std::size_t k_offer_alignment = 16;
+inline constexpr std::size_t k_offer_alignment = 32;
 
 class OfferRing {
  public:
   void reserve(std::size_t bytes);
+
+  // Whether such a record has room in the empty ring, wherever in it the last one ended: half of
+  // it.
+  [[nodiscard]] bool ever_fits(std::size_t bytes) const noexcept {
+    return bytes / sizeof(Block) + 2 <= blocks_ / 2;
+  }
 
   // Producer: room for one record of `bytes`, empty() if there is none; then hand it over.
   [[nodiscard]] OfferSlot claim(std::size_t bytes) noexcept;
@@ -37,20 +43,23 @@ class OfferRing {
   void release() noexcept;
 
  private:
+  struct alignas(k_offer_alignment) Block {
+    std::byte bytes[k_offer_alignment];
+  };
   struct Heading {
-    std::uint64_t bytes;  // of the record with this heading, a multiple of the alignment
+    std::uint64_t blocks;  // of the record, with this heading
     std::uint64_t payload_bytes;
     std::uint64_t ticket;
     std::uint32_t kind;
-    std::uint32_t is_gap;  // nothing here: the next record is at the ring's start
+    bool is_gap;  // nothing here: the next record is at the ring's start
   };
-  static_assert(sizeof(Heading) % k_offer_alignment == 0);
+  static_assert(sizeof(Heading) <= sizeof(Block));
 
-  std::unique_ptr<std::byte[]> memory_;
-  std::size_t capacity_ = 0;
+  std::unique_ptr<Block[]> memory_;
+  std::uint64_t blocks_ = 0;
   alignas(64) std::uint64_t claimed_ = 0;  // producer's own: where the record being filled starts
-  std::atomic<std::uint64_t> pushed_{0};   // bytes ever handed over
-  alignas(64) std::atomic<std::uint64_t> popped_{0};  // bytes ever given back
+  std::atomic<std::uint64_t> pushed_{0};   // blocks ever handed over
+  alignas(64) std::atomic<std::uint64_t> popped_{0};  // blocks ever given back
 };
 
 }  // namespace glint

@@ -10,7 +10,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <memory>
+#include <map>
 #include <span>
 #include <string>
 #include <thread>
@@ -21,6 +21,8 @@
 #include "platform/when_full.hpp"
 
 namespace glint {
+
+inline constexpr std::size_t k_offered_record_bytes_max = 512;
 
 struct RecorderSettings {
   std::size_t frame_lane_bytes = std::size_t{26} << 20;  // 24 whole AHAT frames
@@ -89,6 +91,7 @@ class Recorder {
   alignas(64) std::atomic<std::uint64_t> ticket_{0};
   std::uint64_t next_ = 0;
   std::atomic<bool> ending_{false};
+  std::map<std::string, std::string> closing_facts_;
   RecordingOutcome outcome_;
   std::thread thread_;
 };

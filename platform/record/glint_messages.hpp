@@ -1,0 +1,48 @@
+// Glint's own messages and their bytes (package glint_msgs, fields in schemas.cpp).
+//
+// Writing begins a message in the writer. Reading gives nothing where the bytes do not hold what
+// the type says: too short, a count beyond the maximum, a rectangle outside its frame.
+#pragma once
+
+#include <optional>
+
+#include "kernels/wire/pose_sample.hpp"
+#include "platform/record/cdr.hpp"
+#include "platform/record/frame_patch.hpp"
+#include "platform/record/recording.hpp"
+
+namespace glint {
+
+enum class PixelPlace : std::uint8_t {
+  in_message,  // as rectangles
+  in_images,   // in the two sensor_msgs/Image before it: whole frames, for every viewer
+};
+
+void write_message(CdrWriter& to, const FramePatch& patch, PixelPlace place, Duration unix_offset);
+void write_message(CdrWriter& to, const HeadPose& pose, Duration unix_offset);
+void write_message(CdrWriter& to, const MarkerFrame& frame, Duration unix_offset);
+void write_message(CdrWriter& to, const ChoiceRecord& choice, Duration unix_offset);
+void write_message(CdrWriter& to, const DroppedInput& input, Duration unix_offset);
+void write_output_message(CdrWriter& to, const PoseSample& sample,
+                          std::span<const std::uint8_t> record, Duration unix_offset);
+
+using MessageBytes = std::span<const std::uint8_t>;
+
+// The pixels of a sensor_msgs/Image: rows without padding.
+struct ImageRows {
+  std::uint32_t width = 0, height = 0, step = 0;
+  Bytes rows;
+};
+
+// reflectivity and depth: the newest images, for messages whose pixels are there.
+[[nodiscard]] std::optional<FrameMessage> read_frame(MessageBytes bytes,
+                                                     const ImageRows& reflectivity,
+                                                     const ImageRows& depth);
+[[nodiscard]] std::optional<ImageRows> read_image(MessageBytes bytes);
+[[nodiscard]] std::optional<HeadPose> read_head_pose(MessageBytes bytes);
+[[nodiscard]] std::optional<MarkerFrame> read_markers(MessageBytes bytes);
+[[nodiscard]] std::optional<ChoiceRecord> read_choice(MessageBytes bytes);
+[[nodiscard]] std::optional<OutputMessage> read_output(MessageBytes bytes);
+[[nodiscard]] std::optional<DroppedInput> read_dropped(MessageBytes bytes);
+
+}  // namespace glint

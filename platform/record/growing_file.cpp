@@ -1,0 +1,84 @@
+#include "platform/record/growing_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+#include <utility>
+
+#include "platform/input_error.hpp"
+#include "platform/record/crc32.hpp"
+
+namespace glint {
+
+GrowingFile::GrowingFile(std::string path) : path_(std::move(path)), part_path_(path_ + ".part") {
+  descriptor_ = ::open(part_path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (descriptor_ >= 0) return;
+  fail("open", errno);
+  throw InputError(error_ + "; expected a folder that can be written");
+}
+
+GrowingFile::~GrowingFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+bool GrowingFile::fail(const char* doing, int error) {
+  error_ = part_path_ + ": " + doing + " at byte " + std::to_string(size_) + ": " +
+           std::generic_category().message(error);
+  return false;
+}
+
+bool GrowingFile::reserve(std::uint64_t bytes) {
+  const std::uint64_t end = size_ + bytes;
+  if (end <= reserved_end_) return true;
+  int result = 0;
+  do {
+    result = ::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, static_cast<off_t>(size_),
+                         static_cast<off_t>(bytes));
+  } while (result != 0 && errno == EINTR);
+  if (result != 0 && errno != EOPNOTSUPP && errno != ENOSYS) return fail("make room", errno);
+  reserved_end_ = end;
+  return true;
+}
+
+bool GrowingFile::write_all(std::span<const std::uint8_t> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+bool GrowingFile::append(std::initializer_list<std::span<const std::uint8_t>> parts) {
+  std::uint64_t size = size_;
+  std::uint32_t crc = crc_;
+  for (const auto part : parts) {
+    if (!write_all(part)) {
+      fail("write", errno);
+      if (::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0 ||
+          ::lseek(descriptor_, static_cast<off_t>(size_), SEEK_SET) < 0)
+        fail("cut back", errno);
+      reserved_end_ = size_;
+      return false;
+    }
+    size += part.size();
+    crc = crc32(crc, part);
+  }
+  size_ = size;
+  crc_ = crc;
+  return true;
+}
+
+bool GrowingFile::name() {
+  if (::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) return fail("cut", errno);
+  if (::fsync(descriptor_) != 0) return fail("flush", errno);
+  if (::close(std::exchange(descriptor_, -1)) != 0) return fail("close", errno);
+  if (std::rename(part_path_.c_str(), path_.c_str()) != 0) return fail("rename", errno);
+  return true;
+}
+
+}  // namespace glint

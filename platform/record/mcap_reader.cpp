@@ -1,0 +1,184 @@
+#include "platform/record/mcap_reader.hpp"
+
+#include <algorithm>
+
+#include "platform/record/crc32.hpp"
+
+namespace glint {
+namespace {
+
+// Longer than any chunk or attachment that anybody writes; keeps a flipped bit from asking for all
+// the memory there is.
+constexpr std::uint64_t k_record_bytes_max = std::uint64_t{256} << 20;
+
+std::string kind_and_length(std::uint64_t kind, std::uint64_t bytes) {
+  return "a record of kind " + std::to_string(kind) + " and " + std::to_string(bytes) + " bytes";
+}
+
+}  // namespace
+
+void McapReader::refuse_content(std::uint64_t offset, const char* kind) const {
+  file_.refuse(offset, std::string("a ") + kind + " record too short for its fields",
+               "the fields of the MCAP specification");
+}
+
+McapReader::Heading McapReader::heading_at(std::uint64_t offset, std::uint64_t end) const {
+  if (end - offset < k_mcap_heading_bytes)
+    file_.refuse(offset, std::to_string(end - offset) + " bytes", "a record");
+  Bytes bytes;
+  file_.read(offset, k_mcap_heading_bytes, bytes);
+  ByteReader reader(bytes);
+  const auto kind = reader.number<std::uint8_t>();
+  const auto length = reader.number<std::uint64_t>();
+  if (kind == 0 || length > end - offset - k_mcap_heading_bytes || length > k_record_bytes_max)
+    file_.refuse(offset, kind_and_length(kind, length),
+                 "a record within the " + std::to_string(end - offset - k_mcap_heading_bytes) +
+                     " bytes that follow, and at most " + std::to_string(k_record_bytes_max));
+  return {static_cast<McapKind>(kind), length};
+}
+
+void McapReader::read_metadata(const McapMetadataIndex& index) {
+  Bytes bytes;
+  file_.read(index.offset + k_mcap_heading_bytes, index.length - k_mcap_heading_bytes, bytes);
+  ByteReader reader(bytes);
+  const std::string name = reader.text();
+  McapTexts texts = read_texts(reader);
+  if (reader.failed()) refuse_content(index.offset, "metadata");
+  metadata_[name] = std::move(texts);
+}
+
+void McapReader::add_schema(ByteReader& content, std::uint64_t offset) {
+  McapSchema schema = read_schema(content);
+  if (content.failed() || schema.id == 0) refuse_content(offset, "schema");
+  schemas_.insert_or_assign(schema.id, std::move(schema));
+}
+
+void McapReader::add_channel(ByteReader& content, std::uint64_t offset) {
+  McapChannel channel = read_channel(content);
+  if (content.failed()) refuse_content(offset, "channel");
+  channels_.insert_or_assign(channel.id, std::move(channel));
+}
+
+bool McapReader::open_record() {
+  if (at_ >= data_end_) return false;
+  record_at_ = at_;
+  const Heading heading = heading_at(at_, data_end_);
+  const std::uint64_t whole = k_mcap_heading_bytes + heading.bytes;
+  file_.read(at_, whole, record_);
+  at_ += whole;
+  if (heading.kind != McapKind::data_end) crc_ = crc32(crc_, record_);
+  return true;
+}
+
+void McapReader::open_chunk(std::uint64_t offset) {
+  ByteReader content(std::span<const std::uint8_t>(record_).subspan(k_mcap_heading_bytes));
+  const McapChunkHeading heading = read_chunk_heading(content);
+  if (content.failed()) refuse_content(offset, "chunk");
+  if (!heading.compression.empty())
+    file_.refuse(offset, "a chunk compressed with '" + heading.compression.substr(0, 16) + "'",
+                 "chunks without compression, as Glint writes them");
+  const auto records = content.take(heading.record_bytes);
+  if (content.failed() || heading.uncompressed_bytes != heading.record_bytes)
+    refuse_content(offset, "chunk");
+  const std::uint32_t crc = crc32(0, records);
+  if (heading.crc != 0 && heading.crc != crc)
+    file_.refuse(offset, "a chunk with checksum " + std::to_string(crc),
+                 std::to_string(heading.crc) + "; the file is damaged here");
+  chunk_.emplace(records);
+}
+
+std::optional<McapMessage> McapReader::message(ByteReader& content) {
+  McapMessage found;
+  found.heading = read_message_heading(content);
+  if (content.failed()) refuse_content(record_at_, "message");
+  const auto channel = channels_.find(found.heading.channel_id);
+  if (channel == channels_.end())
+    file_.refuse(record_at_, "a message of channel " + std::to_string(found.heading.channel_id),
+                 "one of a channel described before");
+  found.channel = &channel->second;
+  const auto schema = schemas_.find(found.channel->schema_id);
+  found.schema = schema == schemas_.end() ? nullptr : &schema->second;
+  found.file_offset = record_at_;
+  ++messages_;
+  return found;
+}
+
+std::optional<McapMessage> McapReader::next_in_chunk() {
+  while (chunk_ && !chunk_->at_end()) {
+    const auto kind = static_cast<McapKind>(chunk_->number<std::uint8_t>());
+    const auto bytes = chunk_->take(chunk_->number<std::uint64_t>());
+    if (chunk_->failed()) refuse_content(record_at_, "chunk");
+    ByteReader content(bytes);
+    if (kind == McapKind::schema) add_schema(content, record_at_);
+    if (kind == McapKind::channel) add_channel(content, record_at_);
+    if (kind != McapKind::message) continue;
+    auto found = message(content);
+    found->payload = bytes.subspan(k_mcap_message_heading_bytes);
+    return found;
+  }
+  chunk_.reset();
+  return std::nullopt;
+}
+
+void McapReader::check_end(std::uint64_t offset) {
+  ByteReader content(std::span<const std::uint8_t>(record_).subspan(k_mcap_heading_bytes));
+  const auto expected = content.number<std::uint32_t>();
+  if (content.failed()) refuse_content(offset, "data end");
+  if (expected != 0 && expected != crc_)
+    file_.refuse(offset, "records with checksum " + std::to_string(crc_),
+                 std::to_string(expected) + "; the file is damaged before this place");
+  if (statistics_ && statistics_->messages != messages_)
+    file_.refuse(offset, std::to_string(messages_) + " messages",
+                 std::to_string(statistics_->messages) + ", as its statistics say");
+  at_ = data_end_;
+}
+
+std::optional<McapMessage> McapReader::next() {
+  for (;;) {
+    if (auto found = next_in_chunk()) return found;
+    if (!open_record()) return std::nullopt;
+    ByteReader content(std::span<const std::uint8_t>(record_).subspan(k_mcap_heading_bytes));
+    switch (static_cast<McapKind>(record_[0])) {
+      case McapKind::chunk:
+        open_chunk(record_at_);
+        break;
+      case McapKind::schema:
+        add_schema(content, record_at_);
+        break;
+      case McapKind::channel:
+        add_channel(content, record_at_);
+        break;
+      case McapKind::data_end:
+        check_end(record_at_);
+        break;
+      case McapKind::message: {
+        auto found = message(content);
+        found->payload = std::span<const std::uint8_t>(record_).subspan(
+            k_mcap_heading_bytes + k_mcap_message_heading_bytes);
+        return found;
+      }
+      default:
+        break;  // indexes, attachments, metadata, kinds of a later version
+    }
+  }
+}
+
+Bytes McapReader::attachment(const McapAttachmentIndex& index) const {
+  Bytes bytes;
+  file_.read(index.offset + k_mcap_heading_bytes, index.length - k_mcap_heading_bytes, bytes);
+  ByteReader content(bytes);
+  content.take(16);  // its two times
+  (void)content.text();
+  (void)content.text();
+  const auto data = content.take(content.number<std::uint64_t>());
+  const std::size_t checked = content.position();
+  const auto expected = content.number<std::uint32_t>();
+  if (content.failed()) refuse_content(index.offset, "attachment");
+  const std::uint32_t crc = crc32(0, std::span<const std::uint8_t>(bytes).first(checked));
+  if (expected != 0 && expected != crc)
+    file_.refuse(index.offset, "an attachment with checksum " + std::to_string(crc),
+                 std::to_string(expected) + "; the file is damaged here");
+  return {data.begin(), data.end()};
+}
+
+}  // namespace glint

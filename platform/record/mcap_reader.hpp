@@ -1,0 +1,87 @@
+// Reads an MCAP file from its first message to its last, checking every length and checksum.
+//
+// Memory: the largest record. A file without an ending (power failure, a copy that broke off) is
+// refused, or on request read up to its last whole record.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "platform/record/input_file.hpp"
+#include "platform/record/mcap_format.hpp"
+
+namespace glint {
+
+enum class McapEnding : std::uint8_t {
+  required,  // index, statistics and end mark must be there and right
+  optional,  // a file cut short is read up to its last whole record
+};
+
+// Valid until the next call of next().
+struct McapMessage {
+  const McapChannel* channel = nullptr;
+  const McapSchema* schema = nullptr;
+  McapMessageHeading heading;
+  std::span<const std::uint8_t> payload;
+  std::uint64_t file_offset = 0;  // of the record or chunk it stands in, for messages
+};
+
+class McapReader {
+ public:
+  // Throws InputError: path, byte, what was found, what was expected.
+  explicit McapReader(const std::string& path, McapEnding ending = McapEnding::required);
+
+  // In the order of the file; nothing at its end. Throws InputError.
+  [[nodiscard]] std::optional<McapMessage> next();
+
+  // Data of the attachment; `index` is one of attachments().
+  [[nodiscard]] Bytes attachment(const McapAttachmentIndex& index) const;
+
+  [[nodiscard]] const std::string& profile() const { return profile_; }
+  [[nodiscard]] const std::vector<McapAttachmentIndex>& attachments() const { return attachments_; }
+  [[nodiscard]] const std::map<std::string, McapTexts>& metadata() const { return metadata_; }
+  [[nodiscard]] bool cut_short() const { return !has_ending_; }
+  [[nodiscard]] const InputFile& file() const { return file_; }
+
+ private:
+  struct Heading {
+    McapKind kind{};
+    std::uint64_t bytes = 0;  // of the content
+  };
+  [[nodiscard]] bool read_ending();
+  void read_summary(std::uint64_t start, std::uint64_t end);
+  void find_what_is_whole();
+  void read_header();
+  void read_metadata(const McapMetadataIndex& index);
+  [[nodiscard]] Heading heading_at(std::uint64_t offset, std::uint64_t end) const;
+  void open_chunk(std::uint64_t offset);
+  [[nodiscard]] bool open_record();
+  void check_end(std::uint64_t offset);
+  std::optional<McapMessage> message(ByteReader& content);
+  std::optional<McapMessage> next_in_chunk();
+  void add_schema(ByteReader& content, std::uint64_t offset);
+  void add_channel(ByteReader& content, std::uint64_t offset);
+  [[noreturn]] void refuse_content(std::uint64_t offset, const char* kind) const;
+
+  InputFile file_;
+  std::string profile_;
+  std::map<std::uint16_t, McapSchema> schemas_;
+  std::map<std::uint16_t, McapChannel> channels_;
+  std::vector<McapAttachmentIndex> attachments_;
+  std::map<std::string, McapTexts> metadata_;
+  std::optional<McapStatistics> statistics_;
+  bool has_ending_ = false;
+  std::uint64_t data_end_ = 0;   // of the records that next() reads
+  std::uint64_t at_ = 0;         // of the record that next() reads next
+  std::uint64_t record_at_ = 0;  // of the record that is open
+  std::uint64_t messages_ = 0;
+  std::uint32_t crc_ = 0;
+  Bytes record_;  // the record that is open, with its heading
+  std::optional<ByteReader> chunk_;
+};
+
+}  // namespace glint

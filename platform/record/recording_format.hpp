@@ -1,0 +1,29 @@
+// Names inside a recording's metadata, and what each level keeps: shared by writer and reader.
+#pragma once
+
+#include "platform/record/recording.hpp"
+
+namespace glint {
+
+inline constexpr std::string_view k_recording_format = "1";  // a change that old readers misread: 2
+
+inline constexpr const char* k_opening_metadata = "glint";
+inline constexpr const char* k_fact_format = "format";
+inline constexpr const char* k_fact_level = "level";
+inline constexpr const char* k_fact_nominal_tick = "nominal_tick_ns";
+inline constexpr const char* k_fact_unix_offset = "unix_offset_ns";
+
+inline constexpr const char* k_closing_metadata = "glint_end";
+inline constexpr const char* k_fact_complete = "complete";
+inline constexpr const char* k_fact_dropped = "dropped";
+inline constexpr const char* k_fact_ended_early = "ended_early";  // why; empty: it did not
+inline constexpr const char* k_fact_output_sha256 = "output_sha256";
+
+[[nodiscard]] constexpr bool keeps_frames(RecordingLevel level) {
+  return level == RecordingLevel::full || level == RecordingLevel::roi;
+}
+[[nodiscard]] constexpr bool keeps_inputs(RecordingLevel level) {
+  return level != RecordingLevel::outputs;
+}
+
+}  // namespace glint

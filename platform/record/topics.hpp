@@ -1,0 +1,30 @@
+// The topics of a recording, the same names that ROS and DDS see.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint {
+
+inline constexpr std::string_view k_frame_topic = "/glint/frame";
+inline constexpr std::string_view k_reflectivity_topic = "/glint/reflectivity";
+inline constexpr std::string_view k_depth_topic = "/glint/depth";
+inline constexpr std::string_view k_head_pose_topic = "/glint/head_pose";
+inline constexpr std::string_view k_markers_topic = "/glint/blobs";
+inline constexpr std::string_view k_choice_topic = "/glint/choice";
+inline constexpr std::string_view k_output_topic = "/glint/output";
+inline constexpr std::string_view k_dropped_topic = "/glint/dropped";
+inline constexpr std::string_view k_transform_topic = "/tf";
+
+// Letters, digits and '_' of the name; "toolN" where nothing of it is left or there is none.
+[[nodiscard]] std::string topic_name(const std::vector<std::string>& tool_names, std::size_t tool);
+
+struct ToolTopics {
+  std::string pose;             // tool 0: /glint/pen_pose; others: /glint/NAME/pose
+  std::string pose_covariance;  // the same, with _cov
+  std::string tip_frame;        // glint_NAME_tip
+};
+[[nodiscard]] ToolTopics tool_topics(const std::vector<std::string>& tool_names, std::size_t tool);
+
+}  // namespace glint
