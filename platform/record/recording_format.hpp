@@ -5,7 +5,7 @@
 
 namespace glint {
 
-inline constexpr std::string_view k_recording_format = "1";  // a change that old readers misread: 2
+inline constexpr int k_recording_format = 1;  // a change that old readers misread: 2
 
 inline constexpr const char* k_opening_metadata = "glint";
 inline constexpr const char* k_fact_format = "format";

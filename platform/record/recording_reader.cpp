@@ -16,8 +16,8 @@ struct RecordingReader::Body {
     if (mcap.profile() != "ros2" || opening == mcap.metadata().end())
       refuse("an MCAP file of another program", "a recording of Glint");
     facts = opening->second;
-    if (facts[k_fact_format] != k_recording_format)
-      refuse("format '" + facts[k_fact_format] + "'", "format " + std::string(k_recording_format));
+    if (facts[k_fact_format] != std::to_string(k_recording_format))
+      refuse("format '" + facts[k_fact_format] + "'", "format " + std::to_string(k_recording_format));
     level = recording_level(facts[k_fact_level], path);
     nominal_tick = {number(k_fact_nominal_tick)};
     unix_offset = {number(k_fact_unix_offset)};

@@ -22,7 +22,7 @@ McapSettings mcap_settings(const RecordingSettings& settings) {
 
 McapTexts opening_facts(const RecordingInfo& info) {
   McapTexts facts = info.facts;
-  facts[k_fact_format] = k_recording_format;
+  facts[k_fact_format] = std::to_string(k_recording_format);
   facts[k_fact_level] = name_of(info.level);
   facts[k_fact_nominal_tick] = std::to_string(info.nominal_tick.nanoseconds);
   facts[k_fact_unix_offset] = std::to_string(info.unix_offset.nanoseconds);
