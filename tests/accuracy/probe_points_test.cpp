@@ -1,0 +1,125 @@
+// A real hand-held probe of six markers, a nearly symmetric grid, as unlabelled points: it must be
+// found in every frame, and at the same place as with the labels of the motion-capture system.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "kernels/pose/correspond.hpp"
+#include "kernels/pose/rigid_fit.hpp"
+#include "platform/sensors/points_csv.hpp"
+#include "tests/accuracy/c3d_reader.hpp"
+#include "tests/unit/kernels/pose/scene.hpp"
+
+namespace glint {
+namespace {
+
+std::string data_folder() {
+  const char* folder = std::getenv("GLINT_TEST_DATA");
+  return std::string(folder == nullptr ? "" : folder) + "/marker_mocap/";
+}
+
+Tool probe_from(const std::string& path) {
+  Tool tool;
+  std::ifstream in(path);
+  std::string line;
+  while (std::getline(in, line)) {
+    if (line.rfind("Probe", 0) != 0 || line.rfind("ProbeTip", 0) == 0) continue;
+    Vector3& marker = tool.markers_m[static_cast<std::size_t>(tool.marker_count++)];
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream row(line);
+    std::string name;
+    row >> name >> marker.x() >> marker.y() >> marker.z();
+  }
+  if (prepare_tool(tool) != Reason::none) tool.marker_count = 0;
+  return as_points(tool);
+}
+
+// The labelled probe markers of a frame, NaN where missing.
+std::vector<Vector3> probe_markers(const test::C3dTrial& trial, std::size_t frame) {
+  std::vector<Vector3> markers;
+  for (int i = 1; i <= 6; ++i) {
+    const int index = trial.index_of("Probe" + std::to_string(i));
+    markers.push_back(index < 0 ? Vector3::Constant(NAN)
+                                : trial.frames[frame][static_cast<std::size_t>(index)]);
+  }
+  return markers;
+}
+
+RigidFit labelled_fit(const Tool& probe, const std::vector<Vector3>& markers) {
+  std::vector<Vector3> model, measured;
+  for (std::size_t i = 0; i < markers.size(); ++i) {
+    if (!std::isfinite(markers[i].sum())) continue;
+    model.push_back(probe.markers_m[i]);
+    measured.push_back(markers[i]);
+  }
+  return fit_rigid(model, measured);
+}
+
+// The trial as the file that a user would hand in: rows shuffled within their frame, no labels.
+void write_shuffled(const test::C3dTrial& trial, const std::string& path) {
+  test::Random random(1);
+  std::ofstream out(path);
+  out << "time_s,x_m,y_m,z_m\n";
+  out.precision(9);
+  for (std::size_t f = 0; f < trial.frames.size(); ++f) {
+    std::vector<Vector3> markers = probe_markers(trial, f);
+    for (std::size_t k = markers.size(); k > 1; --k) {
+      std::swap(markers[k - 1],
+                markers[static_cast<std::size_t>(random.below(static_cast<int>(k)))]);
+    }
+    for (const Vector3& m : markers) {
+      if (!std::isfinite(m.sum())) continue;
+      out << static_cast<double>(f) / trial.rate_hz << ',' << m.x() << ',' << m.y() << ',' << m.z()
+          << '\n';
+    }
+  }
+}
+
+class ProbePoints : public testing::TestWithParam<const char*> {};
+
+TEST_P(ProbePoints, AreSolvedInEveryFrameWhereTheLabelsPutTheTip) {
+  const std::string path = data_folder() + GetParam();
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path << "; set GLINT_TEST_DATA";
+  const Tool probe = probe_from(data_folder() + "ktk_probe_geometry.csv");
+  ASSERT_EQ(probe.marker_count, 6);
+  const test::C3dTrial trial = test::C3dFile(path).read();
+  ASSERT_EQ(trial.frames.size(), 140u);
+  const std::string csv = testing::TempDir() + "probe_points_" + std::to_string(getpid()) + ".csv";
+  write_shuffled(trial, csv);
+  const std::vector<PointFrame> frames = load_points(csv);
+  std::filesystem::remove(csv);
+  ASSERT_EQ(frames.size(), trial.frames.size());
+
+  double rms_most = 0, tip_most = 0, margin_least = 1;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    Labelings found;
+    propose_labelings(markers_from_points(frames[f].points_m), probe, settings_for_points(),
+                      nullptr, found);
+    ASSERT_GE(found.count, 1) << f << ": " << name_of(found.reason);
+    const RigidFit reference = labelled_fit(probe, probe_markers(trial, f));
+    ASSERT_EQ(reference.reason, Reason::none) << f;
+    const Vector3 tip = found.items[0].T_camera_tool.translation;
+    rms_most = std::max(rms_most, found.items[0].rms_m);
+    tip_most = std::max(tip_most, (tip - reference.transform.translation).norm());
+    if (found.count > 1 && found.items[1].count == found.items[0].count) {
+      margin_least = std::min(margin_least, found.items[1].rms_m - found.items[0].rms_m);
+    }
+  }
+  std::printf("  %zu frames: rms at most %.3f mm, tip within %.4f mm, next reading %.3f mm worse\n",
+              frames.size(), 1e3 * rms_most, 1e3 * tip_most, 1e3 * margin_least);
+  EXPECT_LE(rms_most, 0.0002);
+  EXPECT_LE(tip_most, 0.001);
+}
+
+INSTANTIATE_TEST_SUITE_P(Trials, ProbePoints,
+                         testing::Values("kinematics_racing_probing_acromion_R.c3d",
+                                         "kinematics_racing_probing_medial_epicondyle_R.c3d"));
+
+}  // namespace
+}  // namespace glint
