@@ -1,0 +1,120 @@
+#include "platform/can/candump_line.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <random>
+
+namespace glint {
+namespace {
+
+CanFrame frame_of(std::uint32_t identifier, std::initializer_list<std::uint8_t> data) {
+  CanFrame frame;
+  frame.identifier = identifier;
+  frame.length = static_cast<std::uint8_t>(data.size());
+  std::copy(data.begin(), data.end(), frame.data.begin());
+  return frame;
+}
+
+std::string text_of(const CanFrame& frame, std::int64_t unix_ns = 1'700'000'000'123'456'789,
+                    std::string_view interface = "can0") {
+  CandumpLine buffer;
+  return std::string(format_candump(frame, unix_ns, interface, buffer));
+}
+
+TEST(CandumpLine, IsWrittenAsCandumpWritesIt) {
+  EXPECT_EQ(text_of(frame_of(0x1A0, {0x66, 0x35})), "(1700000000.123456) can0 1A0#6635\n");
+  EXPECT_EQ(text_of(frame_of(0x7, {})), "(1700000000.123456) can0 007#\n");
+  EXPECT_EQ(text_of(frame_of(0x1, {0xFF}), 5'000'000'000), "(0000000005.000000) can0 001#FF\n");
+  CanFrame extended = frame_of(0x1FFFFFFF, {1});
+  extended.extended = true;
+  EXPECT_EQ(text_of(extended), "(1700000000.123456) can0 1FFFFFFF#01\n");
+  CanFrame fd = frame_of(0x1A8, {0xAB});
+  fd.fd = true;
+  EXPECT_EQ(text_of(fd), "(1700000000.123456) can0 1A8##0AB\n");
+  fd.bit_rate_switch = true;
+  EXPECT_EQ(text_of(fd), "(1700000000.123456) can0 1A8##1AB\n");
+}
+
+TEST(CandumpLine, FitsItsBufferAtItsLongest) {
+  CanFrame frame;
+  frame.identifier = k_can_extended_identifier_max;
+  frame.extended = frame.fd = frame.bit_rate_switch = true;
+  frame.length = 64;
+  frame.data.fill(0xFF);
+  const std::string line = text_of(frame, INT64_MAX, "an_interface_name_beyond_the_limit");
+  EXPECT_LE(line.size(), k_candump_line_max);
+  EXPECT_EQ(line.substr(0, 38), "(9223372036.854775) an_interface_na 1F");
+  EXPECT_EQ(text_of(frame, INT64_MIN).substr(0, 19), "(0000000000.000000)");
+}
+
+TEST(CandumpLine, ComesBack) {
+  constexpr std::uint8_t k_lengths[] = {0, 1, 7, 8, 12, 16, 20, 24, 32, 48, 64};
+  std::mt19937 random(41);
+  for (int i = 0; i < 3000; ++i) {
+    CanFrame frame;
+    frame.extended = random() % 2 == 0;
+    frame.identifier = static_cast<std::uint32_t>(random()) &
+                       (frame.extended ? k_can_extended_identifier_max : k_can_identifier_max);
+    frame.fd = random() % 2 == 0;
+    frame.bit_rate_switch = frame.fd && random() % 2 == 0;
+    frame.length = k_lengths[random() % (frame.fd ? std::size(k_lengths) : 4)];
+    for (std::size_t b = 0; b < frame.length; ++b)
+      frame.data[b] = static_cast<std::uint8_t>(random());
+    const auto record = parse_candump(text_of(frame));
+    ASSERT_TRUE(record);
+    EXPECT_EQ(record->unix_ns, 1'700'000'000'123'456'000);
+    EXPECT_EQ(record->interface, "can0");
+    EXPECT_EQ(record->frame.identifier, frame.identifier);
+    EXPECT_EQ(record->frame.extended, frame.extended);
+    EXPECT_EQ(record->frame.fd, frame.fd);
+    EXPECT_EQ(record->frame.bit_rate_switch, frame.bit_rate_switch);
+    EXPECT_EQ(record->frame.length, frame.length);
+    EXPECT_EQ(record->frame.data, frame.data);
+  }
+}
+
+TEST(CandumpLine, IsRefusedWhereItIsNone) {
+  for (const char* const bad : {"",
+                                "(",
+                                "()",
+                                "(1.0) can0 1A0#",
+                                "(1.000000)",
+                                "(1.000000) can0",
+                                "(1.000000) can0 1A0",
+                                "(1.000000) can0 1A#00",
+                                "(1.000000) can0 800#00",
+                                "(1.000000) can0 20000000#00",
+                                "(1.000000) can0 1A0#0",
+                                "(1.000000) can0 1A0#0G",
+                                "(1.000000) can0 1A0#R",
+                                "(1.000000) can0 1A0#000102030405060708",
+                                "(1.000000) can0 1A0##",
+                                "(1.000000) can0 1A0##1000102030405060708",
+                                "(-1.000000) can0 1A0#00",
+                                "(1.00000a) can0 1A0#00",
+                                "1.000000 can0 1A0#00",
+                                "(99999999999999999999.000000) can0 1A0#00",
+                                "(9999999999999.000000) can0 1A0#00"})
+    EXPECT_FALSE(parse_candump(bad)) << bad;
+  EXPECT_TRUE(parse_candump("(1.000000) can0 1A0#"));
+}
+
+TEST(CandumpLine, OfARealLogIsReadAndWrittenUnchanged) {
+  const char* const folder = std::getenv("GLINT_TEST_DATA");
+  std::ifstream log(std::string(folder == nullptr ? "" : folder) + "/can/icsim_sample-can.log");
+  if (!log) GTEST_SKIP() << "icsim_sample-can.log is not here";
+  std::string line;
+  int count = 0;
+  while (std::getline(log, line)) {
+    const auto record = parse_candump(line);
+    ASSERT_TRUE(record) << line;
+    EXPECT_EQ(text_of(record->frame, record->unix_ns, record->interface), line + '\n');
+    ++count;
+  }
+  EXPECT_GT(count, 1000);
+}
+
+}  // namespace
+}  // namespace glint
