@@ -65,7 +65,7 @@ void take(const Measurement& m, int x, int y, Samples& samples) {
   samples.front_m[static_cast<std::size_t>(samples.count++)] = range;
 }
 
-// Visits the pixels with inner < distance <= outer from the centroid, by rows.
+// Visits the pixels with inner <= distance < outer from the centroid, by rows.
 template <class Visit>
 void for_each_within(const Measurement& m, double inner, double outer, Visit visit) {
   const Vector2& middle = m.blob.centroid_px;
@@ -79,7 +79,7 @@ void for_each_within(const Measurement& m, double inner, double outer, Visit vis
     for (int x = x0; x < x1; ++x) {
       const Vector2 away = Vector2{x + 0.5, y + 0.5} - middle;
       const double square = away.squaredNorm();
-      if (square > inner * inner && square <= outer * outer) visit(x, y);
+      if (square >= inner * inner && square < outer * outer) visit(x, y);
     }
   }
 }
@@ -87,8 +87,8 @@ void for_each_within(const Measurement& m, double inner, double outer, Visit vis
 Samples inner_samples(const Measurement& m, double radius_px) {
   Samples samples;
   // A pixel's centre is at most 0.71 px from any point.
-  const double outer = std::clamp(k_inner_part * radius_px, 0.71, k_inner_radius_max_px);
-  for_each_within(m, -1, outer, [&](int x, int y) {
+  const double outer = std::clamp(k_inner_part * radius_px, 0.72, k_inner_radius_max_px);
+  for_each_within(m, 0, outer, [&](int x, int y) {
     if (samples.tried++ < k_inner_samples_max) take(m, x, y, samples);
   });
   return samples;

@@ -5,7 +5,8 @@
 // Cost:     one look-up; project at most k_lut_search_iterations_max look-ups.
 // Worst:    a point outside the table: all iterations.
 // Accuracy: exact at pixel centres; between them as good as the lens is flat over a pixel (5e-6 rad
-//           for a HoloLens 2). There and back within 1e-6 px.
+//           for a HoloLens 2). There and back within 1e-6 px,
+//           but for the outermost pixels of the lens circle, which project may not find.
 // Source:   HoloLens 2 research mode gives MapImagePointToCameraUnitPlane at pixel centres.
 #pragma once
 

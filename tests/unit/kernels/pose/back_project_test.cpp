@@ -1,0 +1,271 @@
+#include "kernels/pose/back_project.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <random>
+
+#include "kernels/image/blobs.hpp"
+#include "kernels/image/roi_threshold.hpp"
+#include "platform/sensors/camera.hpp"
+#include "platform/sensors/frame_buffer.hpp"
+
+namespace glint {
+namespace {
+
+constexpr double k_wall_m = 0.9;
+
+// One sphere (radius > 0) or a disc that faces the camera before a wall, a ray through each pixel's
+// 4 x 4 parts; where marker and wall mix, the depth is the marker's if it fills half.
+struct Scene {
+  Camera camera = hololens2_ahat();
+  Vector3 centre_m{0.05, -0.03, 0.4};
+  double radius_m = 0.006;
+  MarkerShape shape = MarkerShape::sphere;
+  double brightness = 20000;
+  double noise_m = 0;
+
+  // Range along a unit ray to the marker, 0 beside it.
+  [[nodiscard]] double range_along(const Vector3& ray) const {
+    const double along = ray.dot(centre_m);
+    if (shape == MarkerShape::disc) {
+      const Vector3 normal = centre_m.normalized();
+      const double range = centre_m.norm() / ray.dot(normal);
+      return (range * ray - centre_m).norm() < radius_m ? range : 0;
+    }
+    const double inside = along * along - centre_m.squaredNorm() + radius_m * radius_m;
+    return inside > 0 ? along - std::sqrt(inside) : 0;
+  }
+
+  [[nodiscard]] FrameBuffer render() const {
+    FrameBuffer out;
+    out.width = camera.model.width;
+    out.height = camera.model.height;
+    const auto pixels = static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height);
+    out.reflectivity_16.assign(pixels, 200);
+    out.depth.assign(pixels, raw(k_wall_m, Vector3::UnitZ()));
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    const Vector2 middle = project(camera.model, centre_m).value;
+    for (int y = std::max(0, static_cast<int>(middle.y()) - 24);
+         y < std::min(512.0, middle.y() + 24); ++y) {
+      for (int x = std::max(0, static_cast<int>(middle.x()) - 24);
+           x < std::min(512.0, middle.x() + 24); ++x) {
+        double sum = 0;
+        int hits = 0;
+        for (int i = 0; i < 16; ++i) {
+          const Vector2 part{x + (i % 4 + 0.5) / 4, y + (i / 4 + 0.5) / 4};
+          const double range = range_along(unproject(camera.model, part).value);
+          sum += range;
+          hits += range > 0;
+        }
+        if (hits == 0) continue;
+        const std::size_t at = static_cast<std::size_t>(y * out.width + x);
+        out.reflectivity_16[at] =
+            static_cast<std::uint16_t>(std::min(200 + brightness * hits / 16, 65535.0));
+        const Vector3 ray = unproject(camera.model, {x + 0.5, y + 0.5}).value;
+        if (hits >= 8) out.depth[at] = raw(sum / hits + noise_m * normal(random), ray);
+      }
+    }
+    return out;
+  }
+
+  [[nodiscard]] std::uint16_t raw(double range, const Vector3& ray) const {
+    if (camera.depth.wrap_range_m > 0) range = std::fmod(range, camera.depth.wrap_range_m);
+    if (camera.depth.kind == DepthKind::z) range *= ray.z();
+    return static_cast<std::uint16_t>(std::lround(range / camera.depth.unit_m));
+  }
+
+  [[nodiscard]] double front_m() const {
+    return centre_m.norm() - (shape == MarkerShape::sphere ? radius_m : 0);
+  }
+};
+
+Blobs blobs_of(const Scene& scene, const Frame& frame) {
+  auto runs = std::make_unique<Runs>();
+  auto scratch = std::make_unique<BlobScratch>();
+  auto blobs = std::make_unique<Blobs>();
+  threshold_runs(frame, whole_frame(frame), scene.camera.threshold, {}, *runs);
+  const Runs* bands[] = {runs.get()};
+  find_blobs(frame, bands, {2, 4000, scene.camera.threshold, scene.camera.depth.saturated_from}, {},
+             *scratch, *blobs);
+  return *blobs;
+}
+
+// The frame's one blob, measured.
+Marker marker_of(const Scene& scene, const FrameBuffer& buffer, const NominalMarker& nominal = {}) {
+  const Frame frame = buffer.view({}, {}, 0);
+  const Blobs blobs = blobs_of(scene, frame);
+  EXPECT_EQ(blobs.count, 1);
+  Marker marker;
+  EXPECT_TRUE(measure_marker(frame, blobs.items[0], 7, scene.camera.model, scene.camera.depth,
+                             nominal, marker));
+  EXPECT_EQ(marker.blob, 7);
+  return marker;
+}
+
+TEST(BackProject, FindsASpheresFrontPoint) {
+  for (const double z : {0.25, 0.4, 0.6, 0.85}) {
+    for (const double side : {0.0, 0.2, 0.5}) {
+      Scene scene;
+      scene.centre_m = Vector3{side * z, -0.1 * z, z} / std::hypot(1, side);
+      const Marker marker = marker_of(scene, scene.render());
+      EXPECT_EQ(marker.flags, 0);
+      EXPECT_NEAR(marker.surface_range_m, scene.front_m(), 0.0005) << z << " " << side;
+      const Vector3 centre = marker.ray * (marker.surface_range_m + scene.radius_m);
+      EXPECT_LT((centre - scene.centre_m).norm(), 0.001) << z << " " << side;
+    }
+  }
+}
+
+TEST(BackProject, FindsADiscsMiddle) {
+  Scene scene;
+  scene.shape = MarkerShape::disc;
+  const Marker marker = marker_of(scene, scene.render(), {0.006, MarkerShape::disc});
+  EXPECT_NEAR(marker.surface_range_m, scene.front_m(), 0.0005);
+  EXPECT_LT((marker.ray * marker.surface_range_m - scene.centre_m).norm(), 0.0005);
+}
+
+TEST(BackProject, TurnsZDepthIntoRadialDepth) {
+  Scene scene;
+  scene.centre_m = {0.25, 0.1, 0.4};
+  scene.camera.depth.kind = DepthKind::z;
+  scene.camera.depth.wrap_range_m = 0;
+  EXPECT_NEAR(marker_of(scene, scene.render()).surface_range_m, scene.front_m(), 0.0007);
+}
+
+TEST(BackProject, AveragesTheNoiseOfItsPixels) {
+  Scene scene;
+  scene.noise_m = 0.005;
+  scene.centre_m = {0.05, -0.03, 0.3};
+  EXPECT_NEAR(marker_of(scene, scene.render()).surface_range_m, scene.front_m(), 0.003);
+}
+
+// Spoils the depth of pixels within this distance of the marker's middle.
+void blind(const Scene& scene, FrameBuffer& buffer, double within_px, bool saturate) {
+  const Vector2 middle = project(scene.camera.model, scene.centre_m).value;
+  for (int y = 0; y < buffer.height; ++y) {
+    for (int x = 0; x < buffer.width; ++x) {
+      if ((Vector2{x + 0.5, y + 0.5} - middle).norm() > within_px) continue;
+      const auto at = static_cast<std::size_t>(y * buffer.width + x);
+      if (saturate) {
+        buffer.reflectivity_16[at] = 0xFFFF;
+        buffer.depth[at] = 123;
+      } else {
+        buffer.depth[at] = 0;
+      }
+    }
+  }
+}
+
+TEST(BackProject, TakesTheRingWhereTheCentreHasNoDepth) {
+  for (const bool saturate : {false, true}) {
+    Scene scene;
+    scene.centre_m = {0.05, -0.03, 0.3};  // 5 px in radius
+    FrameBuffer buffer = scene.render();
+    blind(scene, buffer, 3.6, saturate);
+    const Marker marker = marker_of(scene, buffer);
+    EXPECT_EQ(marker.flags & k_marker_ring_depth, k_marker_ring_depth);
+    EXPECT_EQ((marker.flags & k_marker_saturated) != 0, saturate);
+    EXPECT_NEAR(marker.surface_range_m, scene.front_m(), 0.001);
+  }
+}
+
+TEST(BackProject, SaysSoWhereThereIsNoDepthAtAll) {
+  Scene scene;
+  FrameBuffer buffer = scene.render();
+  blind(scene, buffer, 9, false);
+  const Marker blinded = marker_of(scene, buffer);
+  EXPECT_EQ(blinded.flags, k_marker_no_depth);
+  EXPECT_EQ(blinded.surface_range_m, 0);
+  for (auto& value : buffer.depth) value = 4090;  // from here on invalid
+  EXPECT_EQ(marker_of(scene, buffer).flags, k_marker_no_depth);
+  buffer.depth.clear();
+  EXPECT_EQ(marker_of(scene, buffer).flags, k_marker_no_depth);
+}
+
+TEST(BackProject, IsNotPulledByMixedPixels) {
+  Scene scene;
+  scene.centre_m = {0.05, -0.03, 0.35};
+  FrameBuffer buffer = scene.render();
+  const Vector2 middle = project(scene.camera.model, scene.centre_m).value;
+  const int x = static_cast<int>(middle.x()), y = static_cast<int>(middle.y());
+  buffer.depth[static_cast<std::size_t>(y * 512 + x)] = 700;
+  buffer.depth[static_cast<std::size_t>((y + 1) * 512 + x)] = 650;
+  EXPECT_NEAR(marker_of(scene, buffer).surface_range_m, scene.front_m(), 0.0007);
+}
+
+TEST(BackProject, FindsAndFlagsAWrappedRange) {
+  for (const double z : {1.1, 1.25, 1.4}) {
+    Scene scene;
+    scene.centre_m = {0.1, 0.05, z};
+    const Marker marker = marker_of(scene, scene.render());
+    EXPECT_EQ(marker.flags, k_marker_wrapped) << z;
+    EXPECT_NEAR(marker.surface_range_m, scene.front_m(), 0.0015) << z;
+  }
+  for (const double z : {0.15, 0.5, 0.9, 1.0}) {
+    Scene scene;
+    scene.centre_m = {0.02, 0.01, z};
+    EXPECT_EQ(marker_of(scene, scene.render()).flags, 0) << z;
+  }
+}
+
+TEST(BackProject, DoesNotSearchAWrapWithoutANominalRadius) {
+  Scene scene;
+  scene.centre_m = {0.1, 0.05, 1.25};
+  const Marker marker = marker_of(scene, scene.render(), {0, MarkerShape::sphere});
+  EXPECT_EQ(marker.flags, 0);
+  EXPECT_LT(marker.surface_range_m, 0.25);
+}
+
+TEST(BackProject, ExpectsTheAreaThatASphereCovers) {
+  for (const double side : {0.0, 0.3, 0.7}) {
+    Scene scene;
+    scene.centre_m = {side * 0.25, 0.02, 0.25};
+    scene.camera.threshold = 10200;  // half the brightness: the rim itself
+    const Marker marker = marker_of(scene, scene.render());
+    const double expected = expected_area_px(scene.camera.model, marker.centroid_px, scene.radius_m,
+                                             scene.centre_m.norm());
+    EXPECT_NEAR(marker.area_px / expected, 1, 0.06) << side;
+  }
+  const CameraModel camera = hololens2_ahat().model;
+  EXPECT_EQ(expected_area_px(camera, {1, 1}, 0.006, 0.5), 0);
+  EXPECT_EQ(expected_area_px(camera, {256, 256}, 0.006, 0), 0);
+}
+
+TEST(BackProject, RefusesABlobOutsideTheLens) {
+  const Scene scene;
+  const FrameBuffer buffer = scene.render();
+  Blob blob;
+  blob.centroid_px = {2, 2};
+  blob.area_px = 30;
+  Marker marker;
+  EXPECT_FALSE(measure_marker(buffer.view({}, {}, 0), blob, 0, scene.camera.model,
+                              scene.camera.depth, {}, marker));
+}
+
+// The worst input: as large as a blob gets, at the corner, its centre blind.
+TEST(BackProject, BoundsItsWorkOnAHugeBlob) {
+  Scene scene;
+  scene.camera.model.lens = Lens::pinhole;
+  FrameBuffer buffer = scene.render();
+  buffer.depth.assign(buffer.depth.size(), 500);
+  buffer.reflectivity_16.assign(buffer.reflectivity_16.size(), 0xFFFF);
+  Blob blob;
+  blob.centroid_px = {0.5, 511.5};
+  blob.area_px = 512 * 512;
+  blob.x1 = blob.y1 = 512;
+  blob.peak = 0xFFFF;
+  blob.flags = k_blob_touches_edge | k_blob_saturated;
+  Marker marker;
+  EXPECT_TRUE(measure_marker(buffer.view({}, {}, 0), blob, 0, scene.camera.model,
+                             scene.camera.depth, {}, marker));
+  EXPECT_EQ(marker.flags, k_marker_no_depth | k_marker_saturated | k_marker_touches_edge);
+  for (auto& value : buffer.reflectivity_16) value = 30000;
+  EXPECT_TRUE(measure_marker(buffer.view({}, {}, 0), blob, 0, scene.camera.model,
+                             scene.camera.depth, {}, marker));
+  EXPECT_GT(marker.surface_range_m, 0.49);
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,159 @@
+#include "kernels/pose/camera_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <opencv2/calib3d.hpp>
+#include <random>
+
+#include "platform/sensors/camera.hpp"
+
+namespace glint {
+namespace {
+
+std::vector<CameraModel> polynomial_lenses() {
+  CameraModel pinhole = hololens1_short_throw().model;
+  pinhole.lens = Lens::pinhole;
+  return {pinhole, hololens1_short_throw().model, hololens2_ahat().model};
+}
+
+std::vector<double> opencv_distortion(const CameraModel& camera) {
+  if (camera.lens == Lens::pinhole) return {0, 0, 0, 0, 0};
+  const auto& k = camera.distortion;
+  if (camera.lens == Lens::brown) return {k.begin(), k.begin() + 5};
+  return {k.begin(), k.end()};
+}
+
+// OpenCV counts from the middle of the first pixel, Glint from its corner.
+cv::Matx33d opencv_matrix(const CameraModel& c) {
+  return {c.fx, 0, c.cx - 0.5, 0, c.fy, c.cy - 0.5, 0, 0, 1};
+}
+
+// A point that the lens sees somewhere in the frame.
+Vector3 random_point(const CameraModel& camera, std::mt19937& random) {
+  std::uniform_real_distribution<double> part(0, 1);
+  while (true) {
+    const Result<Vector3> ray =
+        unproject(camera, {camera.width * part(random), camera.height * part(random)});
+    if (ray) return ray.value * (0.2 + part(random));
+  }
+}
+
+TEST(CameraModel, ProjectsAsOpenCvDoes) {
+  for (const CameraModel& camera : polynomial_lenses()) {
+    std::mt19937 random(1);
+    std::vector<cv::Point3d> points;
+    for (int i = 0; i < 2000; ++i) {
+      const Vector3 p = random_point(camera, random);
+      points.emplace_back(p.x(), p.y(), p.z());
+    }
+    std::vector<cv::Point2d> expected;
+    cv::projectPoints(points, cv::Vec3d::zeros(), cv::Vec3d::zeros(), opencv_matrix(camera),
+                      opencv_distortion(camera), expected);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Result<Vector2> pixel = project(camera, {points[i].x, points[i].y, points[i].z});
+      ASSERT_TRUE(pixel);
+      EXPECT_NEAR(pixel.value.x(), expected[i].x + 0.5, 1e-6);
+      EXPECT_NEAR(pixel.value.y(), expected[i].y + 0.5, 1e-6);
+    }
+  }
+}
+
+// Within 45 degrees: further out OpenCV's fixed-point search no longer settles to 1e-6 px.
+TEST(CameraModel, UnprojectsAsOpenCvDoes) {
+  for (const CameraModel& camera : polynomial_lenses()) {
+    std::mt19937 random(2);
+    for (int i = 0; i < 500; ++i) {
+      const Vector3 point = random_point(camera, random);
+      if (point.head<2>().norm() > point.z()) continue;
+      const Vector2 pixel = project(camera, point).value;
+      std::vector<cv::Point2d> distorted{{pixel.x() - 0.5, pixel.y() - 0.5}}, expected;
+      cv::undistortPoints(
+          distorted, expected, opencv_matrix(camera), opencv_distortion(camera), cv::noArray(),
+          cv::noArray(),
+          cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 500, 1e-12));
+      const Result<Vector3> ray = unproject(camera, pixel);
+      ASSERT_TRUE(ray);
+      EXPECT_NEAR(camera.fx * ray.value.x() / ray.value.z(), camera.fx * expected[0].x, 1e-6);
+      EXPECT_NEAR(camera.fy * ray.value.y() / ray.value.z(), camera.fy * expected[0].y, 1e-6);
+    }
+  }
+}
+
+TEST(CameraModel, FindsEveryPixelOfTheFrameAgain) {
+  for (const CameraModel& camera : polynomial_lenses()) {
+    int seen = 0;
+    for (int y = 0; y < camera.height; y += 7) {
+      for (int x = 0; x < camera.width; x += 7) {
+        const Vector2 pixel{x + 0.25, y + 0.75};
+        const Result<Vector3> ray = unproject(camera, pixel);
+        if (!ray) continue;  // outside the lens circle
+        ++seen;
+        EXPECT_NEAR(ray.value.norm(), 1, 1e-12);
+        const Result<Vector2> back = project(camera, 0.4 * ray.value);
+        ASSERT_TRUE(back);
+        EXPECT_LT((back.value - pixel).norm(), 1e-6);
+      }
+    }
+    // The AHAT lens maps 0.80 of its frame, the others all of it.
+    const double part = seen * 49.0 / (camera.width * camera.height);
+    EXPECT_GT(part, camera.lens == Lens::rational ? 0.78 : 0.98);
+  }
+}
+
+TEST(CameraModel, IsTheSeedsPinhole) {
+  CameraModel camera = polynomial_lenses()[0];
+  const double range_z = 0.5;
+  const Vector3 ray = unproject(camera, {camera.cx + 40, camera.cy - 30}).value;
+  const Vector3 point = ray * (range_z / ray.z());  // m = (Z x / f, Z y / f, Z)
+  EXPECT_NEAR(point.x(), range_z * 40 / camera.fx, 1e-15);
+  EXPECT_NEAR(point.y(), range_z * -30 / camera.fy, 1e-15);
+}
+
+TEST(CameraModel, RefusesWhatLiesBehindOrOutsideTheLens) {
+  for (const CameraModel& camera : polynomial_lenses()) {
+    EXPECT_EQ(project(camera, {0, 0, -1}).reason, Reason::out_of_range);
+    EXPECT_EQ(project(camera, {0, 0, 0}).reason, Reason::out_of_range);
+    EXPECT_EQ(project(camera, {NAN, 0, 1}).reason, Reason::out_of_range);
+    EXPECT_EQ(project(camera, {1, 0, 1e-9}).reason, Reason::out_of_range);
+    EXPECT_EQ(unproject(camera, {NAN, 1}).reason, Reason::out_of_range);
+    EXPECT_EQ(unproject(camera, {1e9, 1}).reason, Reason::out_of_range);
+  }
+  const CameraModel ahat = hololens2_ahat().model;
+  EXPECT_EQ(unproject(ahat, {2, 2}).reason, Reason::out_of_range);   // outside the lens circle
+  EXPECT_EQ(project(ahat, {2, 0, 1}).reason, Reason::out_of_range);  // 63 degrees off the axis
+}
+
+// r - 0.5 r^3 turns back at r = 0.816: a point beyond would fall onto the pixel of one before.
+TEST(CameraModel, RefusesRaysBeyondThePolynomialsTurningPoint) {
+  CameraModel camera = hololens1_short_throw().model;
+  camera.distortion = {-0.5, 0, 0, 0, 0, 0, 0, 0};
+  camera.field_tangent_max = 0;
+  EXPECT_TRUE(project(camera, {0.80, 0, 1}));
+  EXPECT_FALSE(project(camera, {0.83, 0, 1}));
+  for (int x = 0; x <= 600; ++x) {
+    const Result<Vector3> ray = unproject(camera, {x + 0.5, camera.cy});
+    if (ray) {
+      EXPECT_LT(std::abs(ray.value.x() / ray.value.z()), 0.8165);
+    }
+  }
+  EXPECT_FALSE(unproject(camera, {camera.cx + camera.fx * 0.6, camera.cy}));
+}
+
+// Every machine, compiler and optimisation must give these bits.
+TEST(CameraModel, GivesTheSameBitsEverywhere) {
+  std::uint64_t hash = 14695981039346656037u;  // FNV-1a
+  for (const CameraModel& camera : polynomial_lenses()) {
+    for (int i = 0; i < 64; ++i) {
+      const Vector3 ray = unproject(camera, {100.3 + 5 * i, 90.7 + 4 * i}).value;
+      const Vector2 pixel = project(camera, {ray.x() + 0.01, ray.y(), ray.z()}).value;
+      for (const double value : {ray.x(), ray.y(), ray.z(), pixel.x(), pixel.y()}) {
+        hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 1099511628211u;
+      }
+    }
+  }
+  EXPECT_EQ(hash, 16937271651897185873u);
+}
+
+}  // namespace
+}  // namespace glint
