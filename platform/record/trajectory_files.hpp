@@ -1,0 +1,60 @@
+// Trajectories as text: TUM for evo and its kin, CSV with every field for spreadsheets and pandas.
+//
+// Both grow as PATH.part and get their name when they are closed. A write that fails ends the file
+// with the last whole line; failed() and error() say so, later calls do nothing.
+#pragma once
+
+#include <string>
+
+#include "kernels/wire/pose_sample.hpp"
+#include "platform/record/growing_file.hpp"
+
+namespace glint {
+
+// Lines of text on their way to a file.
+class LineFile {
+ public:
+  // Throws InputError where the file cannot be made.
+  explicit LineFile(const std::string& path) : file_(path) {}
+
+  void add(std::string_view line);
+  // False: something could not be written.
+  bool close();
+  [[nodiscard]] bool failed() const { return failed_; }
+  [[nodiscard]] const std::string& error() const { return file_.error(); }
+
+ private:
+  void flush();
+  GrowingFile file_;
+  std::string waiting_;
+  bool failed_ = false;
+  bool closed_ = false;
+};
+
+// `t x y z qx qy qz qw` of one tool's tip at each tick with a pose; seconds and metres.
+class TumFile {
+ public:
+  explicit TumFile(const std::string& path, std::uint8_t tool = 0);
+  void write(const PoseSample& sample);
+  bool close() { return file_.close(); }
+  [[nodiscard]] const LineFile& file() const { return file_; }
+
+ private:
+  LineFile file_;
+  std::uint8_t tool_;
+};
+
+// Every sample of every tool, all its fields; states, frames and reasons by name. Without a pose
+// the fields of the pose are empty.
+class CsvFile {
+ public:
+  explicit CsvFile(const std::string& path);
+  void write(const PoseSample& sample);
+  bool close() { return file_.close(); }
+  [[nodiscard]] const LineFile& file() const { return file_; }
+
+ private:
+  LineFile file_;
+};
+
+}  // namespace glint

@@ -1,0 +1,212 @@
+#include "platform/record/mcap_reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <random>
+
+#include "platform/input_error.hpp"
+#include "platform/record/crc32.hpp"
+#include "platform/record/mcap_writer.hpp"
+#include "tests/unit/platform/record/recording_samples.hpp"
+
+namespace glint {
+namespace {
+
+constexpr int k_messages = 60;
+
+Bytes payload_of(int i) { return Bytes(static_cast<std::size_t>(i % 17), std::uint8_t(i)); }
+
+// Small chunks, so that there are many.
+void write_file(const std::string& path) {
+  McapSettings settings;
+  settings.chunk_bytes = 256;
+  McapWriter writer(path, "ros2", "glint", settings);
+  const auto one = writer.add_channel("/one", "pkg/msg/A", "int32 a\n", {{"key", "value"}});
+  const auto two = writer.add_channel("/two", "pkg/msg/B", "int32 b\n", {});
+  writer.add_metadata("opening", {{"a", "1"}});
+  writer.attach("file", "text/plain", 7, Bytes{1, 2, 3});
+  for (int i = 0; i < k_messages; ++i)
+    writer.write({i % 3 == 0 ? one : two, std::uint32_t(i), std::uint64_t(1000 - i), 5},
+                 payload_of(i));
+  EXPECT_TRUE(writer.close("closing", {{"b", "2"}}));
+}
+
+Bytes read_whole(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write_whole(const std::string& path, const Bytes& bytes) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
+}
+
+int count_messages(McapReader& reader) {
+  int count = 0;
+  while (reader.next()) ++count;
+  return count;
+}
+
+std::string refusal(const std::string& path, McapEnding ending = McapEnding::required) {
+  try {
+    McapReader reader(path, ending);
+    count_messages(reader);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Crc32, GivesItsCheckValueHoweverTheBytesAreCut) {
+  const auto digits = bytes_of("123456789");
+  for (std::size_t cut = 0; cut <= digits.size(); ++cut)
+    EXPECT_EQ(crc32(crc32(0, digits.first(cut)), digits.subspan(cut)), 0xCBF43926U);
+}
+
+TEST(Mcap, GivesBackEveryMessageInTheOrderOfWriting) {
+  const TemporaryFolder folder;
+  write_file(folder.file("a.mcap"));
+  McapReader reader(folder.file("a.mcap"));
+  EXPECT_EQ(reader.profile(), "ros2");
+  for (int i = 0; i < k_messages; ++i) {
+    const auto message = reader.next();
+    ASSERT_TRUE(message);
+    EXPECT_EQ(message->channel->topic, i % 3 == 0 ? "/one" : "/two");
+    EXPECT_EQ(message->schema->name, i % 3 == 0 ? "pkg/msg/A" : "pkg/msg/B");
+    EXPECT_EQ(message->heading.sequence, std::uint32_t(i));
+    EXPECT_EQ(message->heading.log_time, std::uint64_t(1000 - i));
+    EXPECT_EQ(message->heading.publish_time, 5U);
+    EXPECT_EQ(Bytes(message->payload.begin(), message->payload.end()), payload_of(i));
+  }
+  EXPECT_FALSE(reader.next());
+  EXPECT_FALSE(reader.next());
+  EXPECT_EQ(reader.metadata().at("opening").at("a"), "1");
+  EXPECT_EQ(reader.metadata().at("closing").at("b"), "2");
+  ASSERT_EQ(reader.attachments().size(), 1U);
+  EXPECT_EQ(reader.attachment(reader.attachments()[0]), (Bytes{1, 2, 3}));
+}
+
+TEST(Mcap, WithoutAMessageIsStillAFile) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.mcap");
+  McapWriter writer(path, "ros2", "glint");
+  ASSERT_TRUE(writer.close("closing", {}));
+  McapReader reader(path);
+  EXPECT_FALSE(reader.next());
+}
+
+TEST(Mcap, OfAnotherKindIsRefusedWithPathAndByte) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.mcap");
+  write_whole(path, {});
+  EXPECT_EQ(refusal(path), path +
+                               ":byte 0: an empty file; expected the first bytes of an MCAP "
+                               "file, 89 4D 43 41 50 30 0D 0A");
+  write_whole(path, {'#', 'R', 'O', 'S', 'B', 'A', 'G', ' ', 'V', '2'});
+  EXPECT_EQ(refusal(path).find(path + ":byte 0: another kind of file"), 0U);
+  EXPECT_EQ(refusal(folder.file("none.mcap")).find(folder.file("none.mcap") + ": No such file"),
+            0U);
+  EXPECT_NE(refusal("/tmp").find("not a regular file"), std::string::npos);
+}
+
+TEST(Mcap, CutShortIsRefusedAndTheNextStepIsNamed) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.mcap");
+  write_file(path);
+  Bytes bytes = read_whole(path);
+  bytes.resize(bytes.size() - 1);
+  write_whole(path, bytes);
+  EXPECT_EQ(refusal(path), path + ":byte " + std::to_string(bytes.size()) +
+                               ": the file ends without its index: it was cut short; expected a "
+                               "recording that was closed; --allow-truncated reads what is whole");
+}
+
+TEST(Mcap, CutAnywhereIsReadUpToItsLastWholeChunkIfAskedFor) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.mcap");
+  write_file(path);
+  const Bytes bytes = read_whole(path);
+  int most = 0;
+  for (std::size_t part = 1; part < 50; ++part) {
+    write_whole(path, Bytes(bytes.begin(), bytes.begin() + std::ssize(bytes) * part / 50));
+    EXPECT_NE(refusal(path), "");
+    McapReader reader(path, McapEnding::optional);
+    EXPECT_TRUE(reader.cut_short());
+    const int count = count_messages(reader);
+    EXPECT_GE(count, most);
+    most = std::max(most, count);
+  }
+  EXPECT_EQ(most, k_messages);
+}
+
+TEST(Mcap, WhoseEndTheDiskNeverHeldIsReadUpToTheLastChunkItDid) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.mcap");
+  write_file(path);
+  Bytes bytes = read_whole(path);
+  std::fill(bytes.begin() + std::ssize(bytes) / 3, bytes.end(), std::uint8_t{0});
+  write_whole(path, bytes);
+  McapReader reader(path, McapEnding::optional);
+  const int count = count_messages(reader);
+  EXPECT_GT(count, 0);
+  EXPECT_LT(count, k_messages);
+}
+
+TEST(Mcap, WithAnyByteChangedIsRefusedOrReadsTheSame) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.mcap");
+  write_file(path);
+  const Bytes bytes = read_whole(path);
+  std::mt19937 random(1);
+  int refused = 0;
+  for (int round = 0; round < 500; ++round) {
+    Bytes damaged = bytes;
+    damaged[random() % bytes.size()] ^= static_cast<std::uint8_t>(1U << random() % 8);
+    write_whole(path, damaged);
+    const std::string why = refusal(path);
+    if (why.empty()) continue;
+    ++refused;
+    EXPECT_EQ(why.find(path + ":byte "), 0U) << why;
+    EXPECT_NE(why.find("; expected "), std::string::npos) << why;
+    (void)refusal(path, McapEnding::optional);
+  }
+  EXPECT_EQ(refused, 500);  // every byte of a file of Glint's is under some checksum
+}
+
+TEST(Mcap, WithACompressedChunkIsRefusedByTheNameOfTheCompression) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.mcap");
+  Bytes bytes(k_mcap_magic.begin(), k_mcap_magic.end());
+  append_header(bytes, "ros2", "other");
+  append_chunk_heading(bytes, {1, 2, 100, 0, "zstd", 3});
+  append(bytes, Bytes{1, 2, 3});
+  const std::uint64_t start = bytes.size();
+  append_footer_heading(bytes, start, 0);
+  append(bytes, std::uint32_t{0});
+  append(bytes, k_mcap_magic);
+  write_whole(path, bytes);
+  EXPECT_NE(refusal(path).find("compressed with 'zstd'"), std::string::npos) << refusal(path);
+}
+
+TEST(Mcap, WithAMessageMissingDisagreesWithItsStatistics) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.mcap");
+  Bytes bytes(k_mcap_magic.begin(), k_mcap_magic.end());
+  append_header(bytes, "ros2", "other");
+  append(bytes, static_cast<std::uint8_t>(McapKind::data_end));
+  append(bytes, std::uint64_t{4});
+  append(bytes, std::uint32_t{0});
+  const std::uint64_t start = bytes.size();
+  McapStatistics statistics;
+  statistics.messages = 1;
+  append_record(bytes, statistics);
+  append_footer_heading(bytes, start, 0);
+  append(bytes, std::uint32_t{0});
+  append(bytes, k_mcap_magic);
+  write_whole(path, bytes);
+  EXPECT_NE(refusal(path).find("0 messages; expected 1"), std::string::npos) << refusal(path);
+}
+
+}  // namespace
+}  // namespace glint
