@@ -97,20 +97,20 @@ FrameBuffer load_pgm_pair(const std::string& path) {
 
 }  // namespace
 
-FrameLayout frame_layout_of(const std::string& name) {
-  if (name == "adi") return FrameLayout::adi;
-  if (name == "ahat") return FrameLayout::ahat;
-  if (name == "pgm") return FrameLayout::pgm;
+FrameFileLayout frame_file_layout_of(const std::string& name) {
+  if (name == "adi") return FrameFileLayout::adi;
+  if (name == "ahat") return FrameFileLayout::ahat;
+  if (name == "pgm") return FrameFileLayout::pgm;
   throw InputError("--layout:" + name + ": unknown layout; expected adi, ahat or pgm");
 }
 
-FrameBuffer load_frame(const std::string& path, FrameLayout layout) {
+FrameBuffer load_frame(const std::string& path, FrameFileLayout layout) {
   switch (layout) {
-    case FrameLayout::adi:
+    case FrameFileLayout::adi:
       return load_adi(path);
-    case FrameLayout::ahat:
+    case FrameFileLayout::ahat:
       return load_ahat(path);
-    case FrameLayout::pgm:
+    case FrameFileLayout::pgm:
       return load_pgm_pair(path);
   }
   throw InputError(path + ": unknown layout; expected adi, ahat or pgm");

@@ -15,13 +15,13 @@
 
 namespace glint {
 
-enum class FrameLayout { adi, ahat, pgm };
+enum class FrameFileLayout { adi, ahat, pgm };
 
 // Throws InputError naming what was found and expected.
-[[nodiscard]] FrameLayout frame_layout_of(const std::string& name);
+[[nodiscard]] FrameFileLayout frame_file_layout_of(const std::string& name);
 
 // pgm: the path of the depth or of the brightness picture; the other must stand beside it.
 // Throws InputError naming the file, the place, what was found and expected.
-[[nodiscard]] FrameBuffer load_frame(const std::string& path, FrameLayout layout);
+[[nodiscard]] FrameBuffer load_frame(const std::string& path, FrameFileLayout layout);
 
 }  // namespace glint
