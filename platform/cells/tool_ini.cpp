@@ -1,9 +1,6 @@
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <map>
-#include <optional>
 
 #include "platform/cells/tool_formats.hpp"
 #include "platform/input_error.hpp"

@@ -1,5 +1,5 @@
+#include <algorithm>
 #include <array>
-#include <cmath>
 #include <sstream>
 
 #include "platform/cells/toml_reader.hpp"

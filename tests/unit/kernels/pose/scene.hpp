@@ -2,6 +2,7 @@
 // Box and Muller 1958 from the core's own functions.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -79,7 +80,7 @@ Tool tool_of(const Vector3 (&markers_mm)[N]) {
   return tool;
 }
 
-// Five spheres; sides from 52 to 156 mm, 9.5 mm apart.
+// Five spheres; sides from 52 to 163 mm, 9.5 mm apart.
 inline Tool five_marker_pen() {
   return tool_of<5>({{-2, 23, 232}, {-40, 45, 115}, {45, 45, 240}, {-8, -45, 115}, {22, 24, 129}});
 }

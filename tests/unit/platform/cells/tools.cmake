@@ -1,0 +1,1 @@
+glint_test(test_tool_file tool_file_test.cpp LIBS glint_tool_files LABELS unit)
