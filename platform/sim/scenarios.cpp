@@ -54,6 +54,9 @@ Interval seconds(int begin, int end) {
 Scenario hololens1(const std::vector<Tool>& tools) {
   Scenario scenario;
   scenario.camera = hololens1_short_throw();
+  // Eight bits clip far below what spoils a pixel's depth: NoiseSettings::depth_saturation does
+  // that here, and writes 0.
+  scenario.camera.depth.saturated_from = 0xFFFF;
   scenario.noise = hololens1_noise();
   scenario.signal = hololens1_signal();
   scenario.localisation = hololens1_localisation();
@@ -92,8 +95,9 @@ Scenario default_run(const std::vector<Tool>& tools) {
   scenario.occlusions.push_back({seconds(30, 31), 0, 0.09, 0.6});
   scenario.occlusions.push_back({seconds(50, 51), 0, 0.05, 0.45});
   scenario.aways.push_back({seconds(40, 42), 0, Vector3(0, 0, -1.2)});
-  // A lamp on the cabinet, two strips of reflective tape, three balls of a marker's size.
-  scenario.clutter.push_back({{0.85, 0.5, 0.02}, Vector3::Zero(), 0.05, 60'000});
+  // A lamp on the cabinet that saturates, two strips of reflective tape, three balls of a marker's
+  // size.
+  scenario.clutter.push_back({{0.85, 0.5, 0.02}, Vector3::Zero(), 0.05, 400'000});
   scenario.clutter.push_back({{0.79, -0.45, -0.25}, {-1, 0, 0}, 0.03, 9'000});
   scenario.clutter.push_back({{0.6, 0.3, -0.51}, {0, 0, 1}, 0.02, 9'000});
   scenario.clutter.push_back({{0.6, 0.22, -0.36}, Vector3::Zero(), 0.0055, 8'000});

@@ -52,10 +52,11 @@ void depth_row(const float* signal, const float* range, const float* normal, con
     const float turns = static_cast<float>(static_cast<std::int32_t>(noisy * row.inverse_wrap));
     const float wrapped = greater(noisy - turns * row.wrap, 0.0f) * along[x];
     const float raw = lesser(wrapped * row.counts_per_m + 0.5f, 65535.0f);
-    const bool valid = (signal[x] >= row.signal_min) & (signal[x] < row.saturation) &
-                       (range[x] > 0.0f) & (raw < row.invalid_from);
-    const std::int32_t keep = valid ? 0xFFFF : 0;
-    out[x] = static_cast<std::uint16_t>(static_cast<std::int32_t>(raw) & keep & mask[x]);
+    float kept = signal[x] >= row.signal_min ? raw : 0.0f;
+    kept = signal[x] < row.saturation ? kept : 0.0f;
+    kept = range[x] > 0.0f ? kept : 0.0f;
+    kept = raw < row.invalid_from ? kept : 0.0f;
+    out[x] = static_cast<std::uint16_t>(static_cast<std::int32_t>(kept) & mask[x]);
   }
 }
 

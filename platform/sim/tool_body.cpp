@@ -14,22 +14,12 @@ constexpr int k_tilts = 8;
 constexpr double k_tilt = 0.44;  // radians: 25 degrees
 constexpr double k_golden_angle = 2.399963229728653;
 constexpr double k_post_m = 0.015;
+constexpr double k_shaft_radius_m = 0.005;
+constexpr double k_clear_m = 0.006;  // between two silhouettes: 3 px at 0.5 m
 constexpr double k_hand_below_m = 0.045;
 
 const Vector3& marker(const Tool& tool, int i) {
   return tool.markers_m[static_cast<std::size_t>(i)];
-}
-
-// The least distance between two markers as seen from this direction.
-double least_gap(const Tool& tool, const Vector3& towards_camera) {
-  double least = 1e9;
-  for (int i = 0; i < tool.marker_count; ++i) {
-    for (int j = i + 1; j < tool.marker_count; ++j) {
-      const double gap = (marker(tool, i) - marker(tool, j)).cross(towards_camera).norm();
-      if (gap < least) least = gap;
-    }
-  }
-  return least;
 }
 
 Vector3 square_to(const Vector3& axis) {
@@ -37,18 +27,46 @@ Vector3 square_to(const Vector3& axis) {
   return axis.cross(other).normalized();
 }
 
-double score(const Tool& tool, const Vector3& towards_camera) {
-  double worst = least_gap(tool, towards_camera);
-  const Vector3 right = square_to(towards_camera), up = towards_camera.cross(right);
-  for (int i = 0; i < k_tilts; ++i) {
-    const SineCosine turn = sine_cosine(6.283185307179586 * i / k_tilts);
-    const SineCosine tilt = sine_cosine(k_tilt);
-    const Vector3 tilted =
-        tilt.cosine * towards_camera + tilt.sine * (turn.cosine * right + turn.sine * up);
-    const double gap = least_gap(tool, tilted);
-    if (gap < worst) worst = gap;
+// Distance, as seen, between a marker and the shaft where that passes before it; else large.
+double gap_to_shaft(const Tool& tool, const Vector3& middle, int i, const Vector3& direction) {
+  const Vector3 along = middle - tool.tip_m;
+  const Vector3 seen_along = along - along.dot(direction) * direction;
+  const Vector3 from_start = marker(tool, i) - (tool.tip_m - k_post_m * direction);
+  const double length2 = seen_along.squaredNorm();
+  double u = length2 > 0 ? from_start.dot(seen_along) / length2 : 0;
+  u = u < 0 ? 0 : u > 1 ? 1 : u;
+  const Vector3 to_marker = from_start - u * along;
+  return to_marker.dot(direction) > 0 ? 1.0 : to_marker.cross(direction).norm();
+}
+
+// How many markers stand clear as seen from this direction, and by how much the closest two do.
+double clear_markers(const Tool& tool, const Vector3& middle, const Vector3& direction) {
+  const double apart = 2 * tool.marker_radius_m + k_clear_m;
+  const double beside = tool.marker_radius_m + k_shaft_radius_m + 0.2 * k_clear_m;
+  double clear = 0, least = 1;
+  for (int i = 0; i < tool.marker_count; ++i) {
+    double gap = 1;
+    for (int j = 0; j < tool.marker_count; ++j) {
+      if (i == j) continue;
+      const double distance = (marker(tool, i) - marker(tool, j)).cross(direction).norm();
+      if (distance < gap) gap = distance;
+    }
+    if (gap >= apart && gap_to_shaft(tool, middle, i, direction) >= beside) clear += 1;
+    if (gap < least) least = gap;
   }
-  return worst;
+  return clear + least;  // metres: far below one marker
+}
+
+double score(const Tool& tool, const Vector3& middle, const Vector3& direction) {
+  const Vector3 right = square_to(direction), up = direction.cross(right);
+  double sum = clear_markers(tool, middle, direction);
+  for (int i = 0; i < 2 * k_tilts; ++i) {
+    const SineCosine tilt = sine_cosine(i % 2 == 0 ? k_tilt : 0.5 * k_tilt);
+    const SineCosine turn = sine_cosine(3.141592653589793 * i / k_tilts);
+    sum += clear_markers(
+        tool, middle, tilt.cosine * direction + tilt.sine * (turn.cosine * right + turn.sine * up));
+  }
+  return sum;
 }
 
 // The normal of the largest triangle: where flat discs look.
@@ -81,7 +99,7 @@ Grip best_grip(const Tool& tool) {
       const SineCosine turn = sine_cosine(k_golden_angle * i);
       const double across = std::sqrt(1 - z * z);
       const Vector3 direction(across * turn.cosine, across * turn.sine, z);
-      const double value = score(tool, direction);
+      const double value = score(tool, grip.middle, direction);
       if (value <= best) continue;
       best = value;
       grip.towards_camera = direction;
@@ -121,7 +139,8 @@ ToolBody held_tool(const Tool& tool, const Grip& grip, const SignalSettings& sig
   const Vector3 behind = -k_post_m * grip.towards_camera;
   const Vector3 side = grip.up.cross(grip.towards_camera);
   const Vector3 hold = grip.middle + (lowest - k_hand_below_m) * grip.up + behind;
-  body.parts.push_back({tool.tip_m + behind, grip.middle + behind, 0.005, signal.pen_body});
+  body.parts.push_back(
+      {tool.tip_m + behind, grip.middle + behind, k_shaft_radius_m, signal.pen_body});
   const Vector3 palm = hold + 0.045 * side - 0.025 * grip.up;
   body.parts.push_back({palm, palm + 0.03 * side - 0.03 * grip.up, 0.032, signal.skin});
   for (int finger = 0; finger < 3; ++finger) {

@@ -12,8 +12,8 @@ struct Grip {
   Vector3 middle = Vector3::Zero();  // of the markers, metres
 };
 
-// The side from which the markers are apart as far as they can be, and stay so for 25 degrees
-// round.
+// The side from which the most markers stand clear of each other and of the shaft, on average over
+// 25 degrees round.
 [[nodiscard]] Grip best_grip(const Tool& tool);
 
 // T_world_tool that puts the markers' middle at `place`, the best side towards the camera.
