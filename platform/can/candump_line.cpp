@@ -10,7 +10,8 @@ namespace {
 constexpr std::int64_t k_second_ns = 1'000'000'000;
 constexpr std::int64_t k_microsecond_ns = 1'000;
 constexpr std::string_view k_digits = "0123456789ABCDEF";
-constexpr unsigned k_bit_rate_switch_flag = 1;
+constexpr unsigned k_bit_rate_switch_flag = 1;  // CANFD_BRS of linux/can.h
+constexpr unsigned k_fd_flag = 4;               // CANFD_FDF: set by Linux since 6.1
 constexpr int k_extended_digits = 8;
 constexpr int k_standard_digits = 3;
 
@@ -67,7 +68,7 @@ std::string_view format_candump(const CanFrame& frame, std::int64_t unix_ns,
   auto at = static_cast<std::size_t>(head);
   if (frame.fd) {
     buffer[at++] = '#';
-    buffer[at++] = k_digits[frame.bit_rate_switch ? k_bit_rate_switch_flag : 0];
+    buffer[at++] = k_digits[k_fd_flag | (frame.bit_rate_switch ? k_bit_rate_switch_flag : 0)];
   }
   for (const std::uint8_t byte : frame.bytes()) {
     buffer[at++] = k_digits[byte >> 4];

@@ -1,6 +1,7 @@
 // One line of a `candump -L` log: "(1700000000.123456) can0 1A0#663507E65A364586".
-// CAN FD: "1A8##1..." where the digit after ## holds the flags (1: bit rate switch); 29-bit
-// identifiers have 8 digits. can-utils, tshark, SavvyCAN and PlotJuggler read it.
+// CAN FD: "1A8##5..." where the digit after ## holds Linux' flags (1: bit rate switch, 4: it is an
+// FD frame, set by kernels since 6.1; both are read). 29-bit identifiers have 8 digits. can-utils,
+// tshark, SavvyCAN and PlotJuggler read it.
 #pragma once
 
 #include <array>

@@ -32,9 +32,9 @@ TEST(CandumpLine, IsWrittenAsCandumpWritesIt) {
   EXPECT_EQ(text_of(extended), "(1700000000.123456) can0 1FFFFFFF#01\n");
   CanFrame fd = frame_of(0x1A8, {0xAB});
   fd.fd = true;
-  EXPECT_EQ(text_of(fd), "(1700000000.123456) can0 1A8##0AB\n");
+  EXPECT_EQ(text_of(fd), "(1700000000.123456) can0 1A8##4AB\n");
   fd.bit_rate_switch = true;
-  EXPECT_EQ(text_of(fd), "(1700000000.123456) can0 1A8##1AB\n");
+  EXPECT_EQ(text_of(fd), "(1700000000.123456) can0 1A8##5AB\n");
 }
 
 TEST(CandumpLine, FitsItsBufferAtItsLongest) {
@@ -73,6 +73,14 @@ TEST(CandumpLine, ComesBack) {
     EXPECT_EQ(record->frame.length, frame.length);
     EXPECT_EQ(record->frame.data, frame.data);
   }
+}
+
+TEST(CandumpLine, OfAnOlderKernelIsRead) {
+  const auto fast = parse_candump("(1.000000) can0 1A8##1AB");
+  const auto slow = parse_candump("(1.000000) can0 1A8##0AB");
+  ASSERT_TRUE(fast && slow);
+  EXPECT_TRUE(fast->frame.fd && fast->frame.bit_rate_switch);
+  EXPECT_TRUE(slow->frame.fd && !slow->frame.bit_rate_switch);
 }
 
 TEST(CandumpLine, IsRefusedWhereItIsNone) {
