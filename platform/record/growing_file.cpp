@@ -25,6 +25,7 @@ GrowingFile::~GrowingFile() {
 }
 
 bool GrowingFile::fail(const char* doing, int error) {
+  if (!error_.empty()) return false;  // the first failure is the cause of the others
   error_ = part_path_ + ": " + doing + " at byte " + std::to_string(size_) + ": " +
            std::generic_category().message(error);
   return false;

@@ -1,0 +1,101 @@
+// A disk that fills up, for real: a tmpfs of one megabyte where the tests may mount one, else a
+// limit on the size of files.
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <csignal>
+
+#include "platform/input_error.hpp"
+#include "platform/record/recorder.hpp"
+#include "platform/record/recording_reader.hpp"
+#include "tests/unit/platform/record/recording_samples.hpp"
+
+namespace glint {
+namespace {
+
+RecorderSettings small_chunks() {
+  RecorderSettings settings;
+  settings.file.chunk_bytes = std::size_t{64} << 10;
+  settings.when_full = WhenFull::wait;
+  return settings;
+}
+
+// Records several megabytes; what the disk takes of them must be whole.
+void record_past_the_end(const std::string& path) {
+  constexpr std::uint64_t k_frames = 100;  // 49 kB each
+  RecordingOutcome outcome;
+  {
+    Recorder recorder(path, sample_info(RecordingLevel::full), small_chunks());
+    const FrameBuffer buffer = sample_frame(128, 96, 16);
+    for (std::uint64_t i = 1; i <= k_frames; ++i) {
+      recorder.frame_lane().offer_choice(sample_choice(i));
+      EXPECT_TRUE(recorder.frame_lane().offer_frame(buffer.view({1}, {2}, 3), {}));
+    }
+    outcome = recorder.close();
+  }
+  EXPECT_TRUE(outcome.ended_early);
+  EXPECT_FALSE(outcome.complete());
+  EXPECT_EQ(outcome.dropped, 0U);
+  EXPECT_GT(outcome.messages, 10U);
+  EXPECT_LT(outcome.messages, 4 * k_frames);
+  EXPECT_GT(outcome.bytes, 500'000U);
+  EXPECT_NE(outcome.reason.find(path), std::string::npos) << outcome.reason;
+  EXPECT_TRUE(std::filesystem::exists(path)) << outcome.reason;
+
+  EXPECT_THROW(RecordingReader reader(path), InputError);
+  RecordingReader reader(path, {.truncated = false, .incomplete = true});
+  std::uint64_t choices = 0, frames = 0;
+  while (const auto message = reader.next()) {
+    if (const auto* choice = std::get_if<ChoiceRecord>(&*message)) {
+      EXPECT_EQ(choice->activation, ++choices);
+    }
+    if (std::holds_alternative<FrameMessage>(*message)) ++frames;
+  }
+  EXPECT_GT(frames, 5U);
+  EXPECT_NE(reader.facts().at("ended_early"), "");
+}
+
+class SmallDisk {
+ public:
+  explicit SmallDisk(std::string path) : path_(std::move(path)) {
+    std::filesystem::create_directory(path_);
+    mounted_ = ::mount("tmpfs", path_.c_str(), "tmpfs", 0, "size=1m") == 0;
+  }
+  ~SmallDisk() {
+    if (mounted_) ::umount2(path_.c_str(), MNT_DETACH);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  [[nodiscard]] bool mounted() const { return mounted_; }
+
+ private:
+  std::string path_;
+  bool mounted_;
+};
+
+TEST(DiskFull, EndsTheRecordingWithItsLastWholeChunk) {
+  const TemporaryFolder folder;
+  const SmallDisk disk(folder.file("disk"));
+  if (!disk.mounted()) GTEST_SKIP() << "may not mount a tmpfs here";
+  record_past_the_end(folder.file("disk/run.mcap"));
+}
+
+TEST(DiskFull, LimitOnTheSizeOfFilesEndsTheRecordingLikewise) {
+  const TemporaryFolder folder;
+  const pid_t child = ::fork();  // the limit holds for a whole process
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{1'000'000, 1'000'000};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    record_past_the_end(folder.file("run.mcap"));
+    ::_exit(HasFailure() ? 1 : 0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
+}  // namespace
+}  // namespace glint

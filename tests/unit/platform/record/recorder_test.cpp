@@ -1,0 +1,155 @@
+#include "platform/record/recorder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "platform/input_error.hpp"
+#include "platform/record/recording_reader.hpp"
+#include "tests/unit/platform/record/allocation_counter.hpp"
+#include "tests/unit/platform/record/recording_samples.hpp"
+
+namespace glint {
+namespace {
+
+RecorderSettings waiting() {
+  RecorderSettings settings;
+  settings.when_full = WhenFull::wait;
+  return settings;
+}
+
+TEST(Recorder, KeepsTheOrderInWhichTwoThreadsSawEachOther) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("run.mcap");
+  constexpr std::uint64_t k_frames = 500;
+  {
+    Recorder recorder(path, sample_info(RecordingLevel::blobs), waiting());
+    std::atomic<std::uint64_t> version{0};
+    std::thread tick([&] {
+      for (std::uint64_t i = 1, seen = 0; seen < k_frames; ++i) {
+        seen = version.load(std::memory_order_acquire);
+        ChoiceRecord choice = sample_choice(i);
+        choice.group = 1;
+        choice.versions[0] = seen;
+        recorder.tick_lane().offer_choice(choice);
+        std::this_thread::yield();
+      }
+    });
+    for (std::uint64_t i = 1; i <= k_frames; ++i) {
+      ChoiceRecord choice = sample_choice(i);
+      choice.group = 0;
+      recorder.frame_lane().offer_choice(choice);
+      version.store(i, std::memory_order_release);
+      std::this_thread::yield();
+    }
+    tick.join();
+    EXPECT_TRUE(recorder.close().complete());
+  }
+  RecordingReader reader(path);
+  std::uint64_t frames = 0, ticks = 0;
+  while (const auto message = reader.next()) {
+    const auto& choice = std::get<ChoiceRecord>(*message);
+    if (choice.group == 0) {
+      EXPECT_EQ(choice.activation, ++frames);
+    } else {
+      EXPECT_EQ(choice.activation, ++ticks);
+      EXPECT_LE(choice.versions[0], frames) << "a tick stands before the frame that it read";
+    }
+  }
+  EXPECT_EQ(frames, k_frames);
+}
+
+TEST(Recorder, KeepsEveryKindOfOffer) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("run.mcap");
+  const FrameBuffer buffer = sample_frame(40, 30, 16);
+  {
+    Recorder recorder(path, sample_info(RecordingLevel::roi));
+    const Rois rois{{Roi{10, 10, 20, 20}}, 1};
+    EXPECT_TRUE(recorder.frame_lane().offer_frame(buffer.view({1}, {2}, 3), rois));
+    EXPECT_TRUE(recorder.frame_lane().offer_head_pose(sample_head_pose(0)));
+    EXPECT_TRUE(recorder.frame_lane().offer_markers(sample_markers(2)));
+    EXPECT_TRUE(recorder.input_lane().offer_dropped({{1}, {2}, 3, Reason::frame_doubled}));
+    const PoseSample sample = sample_output(1);
+    EXPECT_TRUE(recorder.tick_lane().offer_output(sample, record_of(sample)));
+    recorder.add_closing_fact("frames", "1");
+    const RecordingOutcome outcome = recorder.close();
+    EXPECT_TRUE(outcome.complete()) << outcome.reason;
+    EXPECT_EQ(outcome.messages, 7U);  // the markers are no part of this level; 3 ROS poses are
+  }
+  RecordingReader reader(path);
+  const auto frame = std::get<FrameMessage>(reader.next().value());
+  EXPECT_EQ(frame.sequence, 3U);
+  EXPECT_EQ(frame.pixels.depth[15 * 40 + 15], buffer.depth[15 * 40 + 15]);
+  EXPECT_EQ(frame.pixels.depth[29 * 40 + 39], 0);
+  EXPECT_TRUE(std::holds_alternative<HeadPose>(reader.next().value()));
+  EXPECT_TRUE(std::holds_alternative<DroppedInput>(reader.next().value()));
+  EXPECT_TRUE(std::holds_alternative<OutputMessage>(reader.next().value()));
+  EXPECT_FALSE(reader.next());
+  EXPECT_EQ(reader.facts().at("frames"), "1");
+}
+
+TEST(Recorder, KeepsMarkersAtLevelBlobs) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("run.mcap");
+  Recorder recorder(path, sample_info(RecordingLevel::blobs));
+  recorder.frame_lane().offer_markers(sample_markers(256));
+  recorder.close();
+  RecordingReader reader(path);
+  EXPECT_EQ(std::get<MarkerFrame>(reader.next().value()).markers.count, 256);
+}
+
+TEST(Recorder, CountsWhatFoundNoRoomAndMarksTheRecordingIncomplete) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("run.mcap");
+  RecorderSettings settings;
+  settings.frame_lane_bytes = 4096;  // never room for a frame of 4800 bytes
+  Recorder recorder(path, sample_info(RecordingLevel::full), settings);
+  const FrameBuffer buffer = sample_frame(40, 30, 16);
+  EXPECT_FALSE(recorder.frame_lane().offer_frame(buffer.view({1}, {2}, 3), {}));
+  EXPECT_TRUE(recorder.frame_lane().offer_choice(sample_choice(1)));
+  EXPECT_EQ(recorder.dropped(), 1U);
+  const RecordingOutcome outcome = recorder.close();
+  EXPECT_EQ(outcome.dropped, 1U);
+  EXPECT_FALSE(outcome.complete());
+  EXPECT_THROW(RecordingReader reader(path), InputError);
+}
+
+TEST(Recorder, WaitsForRoomWhereAskedTo) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("run.mcap");
+  RecorderSettings settings = waiting();
+  settings.tick_lane_bytes = 4096;
+  Recorder recorder(path, sample_info(RecordingLevel::roi), settings);
+  for (std::uint64_t i = 1; i <= 300; ++i)
+    ASSERT_TRUE(recorder.tick_lane().offer_choice(sample_choice(i)));
+  const RecordingOutcome outcome = recorder.close();
+  EXPECT_TRUE(outcome.complete());
+  EXPECT_EQ(outcome.messages, 300U);
+}
+
+TEST(Recorder, OffersWithoutTouchingTheHeap) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("run.mcap");
+  Recorder recorder(path, sample_info(RecordingLevel::full));
+  const FrameBuffer buffer = sample_frame(40, 30, 16);
+  const MarkerFrame markers = sample_markers(20);
+  const PoseSample sample = sample_output(1);
+  const auto record = record_of(sample);
+  const AllocationCounter counter;
+  for (int i = 0; i < 200; ++i) {
+    recorder.frame_lane().offer_frame(buffer.view({i}, {i}, 3), {});
+    recorder.frame_lane().offer_markers(markers);
+    recorder.frame_lane().offer_head_pose(sample_head_pose(i));
+    recorder.tick_lane().offer_choice(sample_choice(1));
+    recorder.tick_lane().offer_output(sample, record);
+    recorder.input_lane().offer_dropped({});
+  }
+  EXPECT_EQ(counter.count(), 0);
+  const std::vector<int> seen(3);
+  EXPECT_EQ(counter.count(), 1);  // the counter counts
+}
+
+}  // namespace
+}  // namespace glint

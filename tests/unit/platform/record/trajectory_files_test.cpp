@@ -1,0 +1,82 @@
+#include "platform/record/trajectory_files.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "platform/input_error.hpp"
+#include "tests/unit/platform/record/recording_samples.hpp"
+
+namespace glint {
+namespace {
+
+std::string text_of(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+TEST(TumFile, HoldsTheTicksOfItsToolThatHaveAPose) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("pen.txt");
+  TumFile file(path, 0);
+  PoseSample sample = sample_output(250);
+  sample.tick = {1'700'000'000'123'456'789};
+  sample.pose.translation = {0.1, -0.25, 1e-7};
+  file.write(sample);
+  sample.tool = 1;
+  file.write(sample);
+  file.write(sample_output(251, TrackState::lost));
+  PoseSample early = sample_output(0);
+  early.tick = {-1};
+  file.write(early);
+  EXPECT_FALSE(std::filesystem::exists(path));
+  ASSERT_TRUE(file.close());
+  EXPECT_EQ(text_of(path),
+            "1700000000.123456789 0.1 -0.25 1e-07 0.5 -0.5 0.5 0.5\n"
+            "-0.000000001 0 -0.25 1.5 0.5 -0.5 0.5 0.5\n");
+}
+
+TEST(CsvFile, HasAValueUnderEveryHeading) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("out.csv");
+  CsvFile file(path);
+  file.write(sample_output(5));
+  file.write(sample_output(6, TrackState::lost));
+  ASSERT_TRUE(file.close());
+  std::istringstream lines(text_of(path));
+  std::string heading, with_pose, without_pose;
+  std::getline(lines, heading);
+  std::getline(lines, with_pose);
+  std::getline(lines, without_pose);
+  const auto commas = [](const std::string& line) {
+    return std::count(line.begin(), line.end(), ',');
+  };
+  EXPECT_EQ(commas(heading), 62);
+  EXPECT_EQ(commas(with_pose), commas(heading));
+  EXPECT_EQ(commas(without_pose), commas(heading));
+  EXPECT_EQ(with_pose.find("0.020000000,0.009000000,5,1,0,measured,none,none,robot,47,0,0,0.005,"
+                           "-0.25,1.5,0.5,-0.5,0.5,0.5,"),
+            0U)
+      << with_pose;
+  EXPECT_EQ(without_pose.find("0.024000000,0.013000000,6,1,0,lost,none,none,robot,47,0,0,,,"), 0U)
+      << without_pose;
+}
+
+TEST(TumFile, ThatCannotBeWrittenSaysSoAndGoesOn) {
+  EXPECT_THROW(TumFile("/nowhere/at/all/pen.txt"), InputError);
+  const TemporaryFolder folder;
+  const std::string path = folder.file("pen.txt");
+  ASSERT_EQ(::symlink("/dev/full", (path + ".part").c_str()), 0);
+  TumFile file(path);
+  for (std::uint32_t i = 0; i < 5000; ++i) file.write(sample_output(i));
+  EXPECT_FALSE(file.close());
+  EXPECT_TRUE(file.file().failed());
+  EXPECT_NE(file.file().error().find("No space left"), std::string::npos) << file.file().error();
+  EXPECT_FALSE(std::filesystem::exists(path) && !std::filesystem::is_symlink(path));
+}
+
+}  // namespace
+}  // namespace glint
