@@ -1,0 +1,132 @@
+#include "platform/experiments/experiment.hpp"
+
+#include <chrono>
+
+#include "platform/experiments/declared.hpp"
+#include "platform/experiments/glint_chain.hpp"
+#include "platform/experiments/method_record.hpp"
+#include "platform/seed/seed_tracker.hpp"
+#include "platform/sim/scenarios.hpp"
+#include "platform/sim/simulator.hpp"
+
+namespace glint {
+namespace {
+
+constexpr int k_bins = 61;  // odd: one of them has zero in its middle
+constexpr int k_progress_every = 50;
+constexpr int k_quick_part = 10;
+
+// The answer and the seconds it took.
+template <class Process>
+std::pair<Result<Pose>, double> timed(Process&& process) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Result<Pose> answer = process();
+  return {answer, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
+}
+
+ExperimentRun make_run(sim::Scenario scenario, int judged, const ExperimentOptions& options) {
+  ExperimentRun run;
+  scenario.seed += options.seed - 1;
+  run.scenario = std::move(scenario);
+  const int part = options.quick ? k_quick_part : 1;
+  run.aligning = sim::k_aligning_frames / part;
+  run.skipped = sim::k_aligning_frames - run.aligning;
+  run.judged = judged / part;
+  return run;
+}
+
+}  // namespace
+
+PublishedFigures published_figures(ExperimentKind kind) {
+  PublishedFigures figures;
+  if (kind == ExperimentKind::still) {
+    figures.position_mean_abs_mm = 1.9;
+    figures.angle_mean_abs_deg = 0.37;
+    figures.frames_per_s = 46;
+    figures.samples = 5000;
+  } else {
+    figures.position_mean_abs_mm = 22.1;
+    figures.angle_mean_abs_deg = 3.87;
+    figures.position_sd_mm = 30.7;
+    figures.angle_sd_deg = 5.39;
+    figures.position_median_mm = -0.1;
+    figures.angle_median_deg = 0.22;
+    figures.frames_per_s = 41;
+    figures.samples = 10000;
+  }
+  return figures;
+}
+
+ErrorColumn make_error_column(std::span<const double> values, std::span<const double> norms) {
+  ErrorColumn column;
+  column.summary = summarize(values);
+  column.norm_mean = summarize(norms).mean;
+  column.norm_p95 = percentile(norms, 0.95);
+  column.histogram = make_symmetric_histogram(values, k_bins);
+  column.fit = fit_gaussian(column.histogram);
+  return column;
+}
+
+ExperimentResult run_experiment(ExperimentKind kind, const std::vector<ExperimentRun>& runs,
+                                const ExperimentOptions& options) {
+  ExperimentResult result;
+  result.kind = kind;
+  result.quick = options.quick;
+  result.declared = declared_parameters(runs);
+  result.config_hash = fnv1a_text(result.declared);
+  int total = 0, done = 0;
+  for (const ExperimentRun& run : runs) total += run.aligning + run.judged;
+
+  const Tool tool = runs.front().scenario.tools.front().tool;
+  MethodRecord seed("seed", tool), glint("glint", tool);
+  sim::SimFrame frame;
+  for (const ExperimentRun& run : runs) {
+    const sim::Simulator simulator(run.scenario);
+    SeedTracker seed_tracker(run.scenario.camera, tool);
+    GlintChain glint_chain(run.scenario.camera, tool);
+    seed.begin_run();
+    glint.begin_run();
+    result.path.reference_m.clear();
+    const int end = std::min(run.skipped + run.aligning + run.judged, simulator.frame_count());
+    for (int i = run.skipped; i < end; ++i) {
+      simulator.render(i, frame);
+      const Frame view = frame.view();
+      const auto [seed_answer, seed_seconds] = timed([&]() -> Result<Pose> {
+        const SeedResult answer = seed_tracker.process(view, frame.head);
+        return {answer.T_camera_tool, answer.reason};
+      });
+      const auto [glint_answer, glint_seconds] =
+          timed([&] { return glint_chain.process(view, frame.head); });
+      if (i < run.skipped + run.aligning) {
+        seed.take_aligning(frame, seed_answer, seed_seconds);
+        glint.take_aligning(frame, glint_answer, glint_seconds);
+      } else {
+        seed.take_judged(frame, seed_answer, seed_seconds);
+        glint.take_judged(frame, glint_answer, glint_seconds);
+        result.path.reference_m.push_back(frame.reference.front() * tool.tip_m);
+      }
+      if (options.progress && (++done % k_progress_every == 0 || done == total))
+        options.progress(done, total);
+    }
+  }
+  result.seed = seed.figures();
+  result.glint = glint.figures();
+  result.path.seed_m = seed.path_m();
+  result.path.glint_m = glint.path_m();
+  return result;
+}
+
+ExperimentResult run_static(const ExperimentOptions& options) {
+  return run_experiment(ExperimentKind::still,
+                        {make_run(sim::experiment_static(), sim::k_static_frames, options)},
+                        options);
+}
+
+ExperimentResult run_dynamic(const ExperimentOptions& options) {
+  std::vector<ExperimentRun> runs;
+  for (int run = 0; run < sim::k_dynamic_runs; ++run)
+    runs.push_back(make_run(sim::experiment_dynamic(run), sim::k_dynamic_frames, options));
+  return run_experiment(ExperimentKind::moving, runs, options);
+}
+
+}  // namespace glint

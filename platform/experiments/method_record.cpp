@@ -1,0 +1,70 @@
+#include "platform/experiments/method_record.hpp"
+
+#include <utility>
+
+namespace glint {
+namespace {
+
+constexpr double k_mm = 1000;
+constexpr double k_degrees = 180 / 3.14159265358979323846;
+
+}  // namespace
+
+MethodRecord::MethodRecord(std::string name, const Tool& tool)
+    : name_(std::move(name)), T_tool_tip_{Quaternion::Identity(), tool.tip_m} {}
+
+void MethodRecord::begin_run() {
+  aligning_.clear();
+  path_m_.clear();
+  aligned_ = false;
+}
+
+PosePair MethodRecord::pair_of(const sim::SimFrame& frame, const Pose& T_camera_tool) const {
+  return {frame.reference.front() * T_tool_tip_,
+          frame.head.T_world_camera * T_camera_tool * T_tool_tip_};
+}
+
+void MethodRecord::take_time(double seconds) {
+  seconds_ += seconds;
+  ++timed_;
+}
+
+void MethodRecord::take_aligning(const sim::SimFrame& frame, const Result<Pose>& answer,
+                                 double seconds) {
+  take_time(seconds);
+  if (answer && frame.head.valid) aligning_.push_back(pair_of(frame, answer.value));
+}
+
+void MethodRecord::take_judged(const sim::SimFrame& frame, const Result<Pose>& answer,
+                               double seconds) {
+  take_time(seconds);
+  ++frames_;
+  if (!answer || !frame.head.valid) return;
+  if (!aligned_) {
+    T_reference_world_ = align_worlds(aligning_);
+    aligned_ = true;
+  }
+  ++samples_;
+  const PosePair pair = pair_of(frame, answer.value);
+  const PoseError error = pose_error(T_reference_world_, pair);
+  for (int axis = 0; axis < 3; ++axis) {
+    position_mm_.push_back(error.position_m[axis] * k_mm);
+    angle_deg_.push_back(error.rotation_rad[axis] * k_degrees);
+  }
+  position_norm_mm_.push_back(error.position_m.norm() * k_mm);
+  angle_norm_deg_.push_back(error.rotation_rad.norm() * k_degrees);
+  path_m_.push_back((T_reference_world_ * pair.T_world_tip).translation);
+}
+
+MethodFigures MethodRecord::figures() const {
+  MethodFigures figures;
+  figures.name = name_;
+  figures.position_mm = make_error_column(position_mm_, position_norm_mm_);
+  figures.angle_deg = make_error_column(angle_deg_, angle_norm_deg_);
+  figures.frames_per_s = seconds_ > 0 ? timed_ / seconds_ : 0;
+  figures.samples = samples_;
+  figures.frames = frames_;
+  return figures;
+}
+
+}  // namespace glint

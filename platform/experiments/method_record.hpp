@@ -1,0 +1,43 @@
+// Keeps what one method gave over an experiment: aligns, judges, times.
+#pragma once
+
+#include <vector>
+
+#include "kernels/result.hpp"
+#include "platform/experiments/alignment.hpp"
+#include "platform/experiments/experiment.hpp"
+#include "platform/sim/simulator.hpp"
+
+namespace glint {
+
+class MethodRecord {
+ public:
+  // The tool's tip is what is judged.
+  MethodRecord(std::string name, const Tool& tool);
+
+  // A new run: aligned anew.
+  void begin_run();
+  // One frame's answer (T_camera_tool or a reason), while both rest or afterwards.
+  void take_aligning(const sim::SimFrame& frame, const Result<Pose>& answer, double seconds);
+  void take_judged(const sim::SimFrame& frame, const Result<Pose>& answer, double seconds);
+
+  [[nodiscard]] MethodFigures figures() const;
+  // The tip in the reference's frame, as judged in the run at hand.
+  [[nodiscard]] const std::vector<Vector3>& path_m() const { return path_m_; }
+
+ private:
+  [[nodiscard]] PosePair pair_of(const sim::SimFrame& frame, const Pose& T_camera_tool) const;
+  void take_time(double seconds);
+
+  std::string name_;
+  Pose T_tool_tip_;
+  std::vector<PosePair> aligning_;
+  bool aligned_ = false;
+  Pose T_reference_world_;
+  std::vector<double> position_mm_, position_norm_mm_, angle_deg_, angle_norm_deg_;
+  std::vector<Vector3> path_m_;
+  double seconds_ = 0;
+  int timed_ = 0, frames_ = 0, samples_ = 0;
+};
+
+}  // namespace glint
