@@ -4,18 +4,42 @@
 
 #include <dds/dds.h>
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <thread>
+#include <vector>
 
+#include "platform/dds/dds_sink.hpp"
+#include "platform/dds/messages.hpp"
 #include "platform/dds/network.hpp"
 #include "platform/dds/participant.hpp"
+#include "platform/dds/topic_names.hpp"
 
 namespace glint {
 
+// Whatever is to come over a network comes within this, or the test fails.
+inline constexpr int k_patience_ms = 10'000;
+
+// Waits until `done` holds; false when patience is over.
+template <class Done>
+[[nodiscard]] bool comes_true(Done done) {
+  for (int waited = 0; waited < k_patience_ms; waited += 2) {
+    if (done()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return done();
+}
+
+[[nodiscard]] inline bool has_writer(dds_entity_t reader) {
+  dds_subscription_matched_status_t status{};
+  dds_get_subscription_matched_status(reader, &status);
+  return status.current_count > 0;
+}
+
 class Peer {
  public:
-  explicit Peer(const DdsSettings& settings) {
+  explicit Peer(const DdsSettings& settings) : settings_(settings) {
     std::string text = cyclone_configuration(settings);
     const std::string before = "<Discovery>";
     text.insert(text.find(before) + before.size(),
@@ -46,36 +70,33 @@ class Peer {
         dds_create_topic(participant_, type.descriptor, topic.c_str(), nullptr, nullptr);
     const dds_entity_t reader = dds_create_reader(participant_, entity, qos, nullptr);
     dds_delete_qos(qos);
+    readers_.push_back(reader);
+    if (type.descriptor == status_type().descriptor) ++status_readers_;
     return reader;
+  }
+
+  // Each side has found the other's endpoints. A sink learns of readers in the order in which they
+  // were made, so it knows them all when it knows the last one, a reader of the last tool's status.
+  [[nodiscard]] bool meets(const DdsSink& sink) {
+    const int known = status_readers_;
+    for (const std::string& tool : settings_.tool_names) {
+      reader(status_type(), topics_of(settings_.topic_prefix, tool).status, Reliability::reliable,
+             Durability::volatile_data, 1);
+    }
+    const int tools = static_cast<int>(settings_.tool_names.size());
+    if (!sink.wait_for_readers(known / tools + 1, milliseconds(k_patience_ms))) return false;
+    return comes_true([&] { return std::all_of(readers_.begin(), readers_.end(), has_writer); });
   }
 
   [[nodiscard]] dds_entity_t participant() const { return participant_; }
 
  private:
+  DdsSettings settings_;
+  std::vector<dds_entity_t> readers_;
+  int status_readers_ = 0;
   dds_entity_t domain_ = 0;
   dds_entity_t participant_ = 0;
 };
-
-// Whatever is to come over a network comes within this, or the test fails.
-inline constexpr int k_patience_ms = 10'000;
-
-// Waits until `done` holds; false when patience is over.
-template <class Done>
-[[nodiscard]] bool comes_true(Done done) {
-  for (int waited = 0; waited < k_patience_ms; waited += 2) {
-    if (done()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return done();
-}
-
-[[nodiscard]] inline bool has_found_writer(dds_entity_t reader) {
-  return comes_true([&] {
-    dds_subscription_matched_status_t status{};
-    dds_get_subscription_matched_status(reader, &status);
-    return status.current_count > 0;
-  });
-}
 
 // Hands messages to `use` until there were `count` or patience is over. How many there were.
 template <class Message, class Use>

@@ -35,7 +35,7 @@ TEST_F(Sinks, PublishThePoseStampedForTheTimeItIsValidFor) {
   Peer peer(settings);
   const dds_entity_t reader = peer.reader(pose_stamped_type(), pen.pose, Reliability::reliable,
                                           Durability::volatile_data, 10);
-  ASSERT_TRUE(has_found_writer(reader));
+  ASSERT_TRUE(peer.meets(sink));
   sink.start();
   const PoseSample sample = sample_at(3);
   EXPECT_TRUE(sink.offer(sample));
@@ -54,7 +54,7 @@ TEST_F(Sinks, PublishTheCovarianceRowByRow) {
   Peer peer(test_settings());
   const dds_entity_t reader = peer.reader(pose_covariance_type(), pen.pose_covariance,
                                           Reliability::reliable, Durability::volatile_data, 10);
-  ASSERT_TRUE(has_found_writer(reader));
+  ASSERT_TRUE(peer.meets(sink));
   sink.start();
   const PoseSample sample = sample_at(3);
   sink.offer(sample);
@@ -73,7 +73,7 @@ TEST_F(Sinks, PublishTheTipAsATransformOfTheFrameThePoseIsIn) {
   Peer peer(test_settings());
   const dds_entity_t reader =
       peer.reader(tf_type(), k_tf_topic, Reliability::reliable, Durability::volatile_data, 100);
-  ASSERT_TRUE(has_found_writer(reader));
+  ASSERT_TRUE(peer.meets(sink));
   sink.start();
   PoseSample sample = sample_at(3);
   sample.frame = ReferenceFrame::world;
@@ -98,7 +98,7 @@ TEST_F(Sinks, PublishAStatusAndNoPoseForALostTool) {
                                          Durability::volatile_data, 10);
   const dds_entity_t statuses =
       peer.reader(status_type(), pen.status, Reliability::reliable, Durability::volatile_data, 10);
-  ASSERT_TRUE(has_found_writer(poses) && has_found_writer(statuses));
+  ASSERT_TRUE(peer.meets(sink));
   sink.start();
   sink.offer(lost_sample_at(5));
   sink.offer(sample_at(6));
@@ -130,7 +130,7 @@ TEST_F(Sinks, KeepEachToolOnTopicsOfItsOwn) {
                                          Reliability::reliable, Durability::volatile_data, 10);
   const dds_entity_t second = peer.reader(status_type(), "rt/glint/tool_8700339_status",
                                           Reliability::reliable, Durability::volatile_data, 10);
-  ASSERT_TRUE(has_found_writer(first) && has_found_writer(second));
+  ASSERT_TRUE(peer.meets(sink));
   sink.start();
   sink.offer(sample_at(1, 0));
   sink.offer(sample_at(1, 1));
@@ -169,7 +169,7 @@ TEST_F(Sinks, SayInDiagnosticsWhatIsWrongWithATool) {
   Peer peer(test_settings());
   const dds_entity_t reader = peer.reader(diagnostics_type(), k_diagnostics_topic,
                                           Reliability::reliable, Durability::volatile_data, 10);
-  ASSERT_TRUE(has_found_writer(reader));
+  ASSERT_TRUE(peer.meets(sink));
   sink.offer(lost_sample_at(1));
   sink.start();
   EXPECT_GE(take<DiagnosticsMessage>(reader, 1,

@@ -54,7 +54,8 @@ struct WriterSeen {
 
 std::optional<WriterSeen> writer_seen_by(dds_entity_t reader) {
   dds_instance_handle_t handle = 0;
-  if (!has_found_writer(reader) || dds_get_matched_publications(reader, &handle, 1) != 1) {
+  if (!comes_true([&] { return has_writer(reader); }) ||
+      dds_get_matched_publications(reader, &handle, 1) != 1) {
     return std::nullopt;
   }
   dds_builtintopic_endpoint_t* endpoint = dds_get_matched_publication_data(reader, handle);
@@ -84,7 +85,7 @@ TEST_F(WireFormat, OfAPoseIsLittleEndianXcdr1) {
   Peer peer(settings);
   const dds_entity_t reader = peer.reader(pose_stamped_type(), pen.pose, Reliability::reliable,
                                           Durability::volatile_data, 10);
-  ASSERT_TRUE(has_found_writer(reader));
+  ASSERT_TRUE(peer.meets(sink));
   sink.start();
   sink.offer(sample_at(3));
   const Bytes bytes = take_bytes(reader);
@@ -159,7 +160,7 @@ TEST_F(WireFormat, ReachesBestEffortReadersToo) {
   Peer peer(test_settings());
   const dds_entity_t reader = peer.reader(pose_stamped_type(), pen.pose, Reliability::best_effort,
                                           Durability::volatile_data, 5);
-  ASSERT_TRUE(has_found_writer(reader));
+  ASSERT_TRUE(peer.meets(sink));
   sink.start();
   // One may be lost: that is what best effort means.
   std::uint32_t tick = 0;
@@ -180,7 +181,7 @@ TEST_F(WireFormat, DisposesOfNothingWhenTheSinkLeaves) {
                                           Durability::volatile_data, 10);
   {
     DdsSink sink(test_settings());
-    ASSERT_TRUE(has_found_writer(reader));
+    ASSERT_TRUE(peer.meets(sink));
     sink.start();
     sink.offer(sample_at(1));
   }
