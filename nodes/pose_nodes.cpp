@@ -31,6 +31,18 @@ PointPairs pairs_of(const Tool& tool, const Markers& markers, const Labeling& la
   return pairs;
 }
 
+std::array<Matrix3, k_markers_per_tool_max> covariances_of(const PointPairs& pairs,
+                                                           const MarkerNoise& noise) {
+  std::array<Matrix3, k_markers_per_tool_max> covariances;
+  for (std::size_t i = 0; i < pairs.count; ++i) {
+    const double range = pairs.measured[i].norm();
+    const double across = noise.focal_px > 0 ? noise.pixel_sigma_px * range / noise.focal_px
+                                             : noise.range_sigma_m;
+    covariances[i] = marker_covariance(pairs.measured[i] / range, noise.range_sigma_m, across);
+  }
+  return covariances;
+}
+
 }  // namespace
 
 void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
@@ -90,8 +102,11 @@ void FitRigid::operator()(const FrameVerdict& verdict, const Markers& markers,
     out.T_camera_tool = fit.transform;
     out.rms_m = fit.rms_m;
     out.marker_mask = pairs.mask;
-    out.covariance = fit_covariance(model, measured, fit.transform, noise,
-                                    fit.transform * set.items[i].tip_m);
+    const auto covariances = covariances_of(pairs, noise);
+    const Result<Matrix6> covariance = fit_covariance(
+        measured, std::span(covariances.data(), pairs.count), fit.transform * set.items[i].tip_m);
+    out.reason = covariance.reason;
+    out.covariance = covariance.value;
   }
 }
 

@@ -5,6 +5,7 @@
 #include "graph/graph.hpp"
 #include "kernels/pose/assign.hpp"
 #include "kernels/pose/correspond.hpp"
+#include "kernels/pose/fit_covariance.hpp"
 #include "kernels/pose/marker.hpp"
 #include "kernels/pose/rigid_fit.hpp"
 #include "kernels/pose/tool.hpp"
@@ -31,6 +32,13 @@ struct AssignMarkers {
  private:
   std::array<Labelings, k_tools_max> per_tool_;   // the slices' answers, by tool
   std::array<int, k_tools_max> chosen_{};
+};
+
+// The declared noise of one marker: 1 sigma along its ray and, from the pixel's, across it.
+struct MarkerNoise {
+  double range_sigma_m = 0.0015;
+  double pixel_sigma_px = 0.1;   // an axis
+  double focal_px = 0;           // 0: as much across as along (points without an image)
 };
 
 // The rigid fit over the markers assigned, with the first-order covariance of the tip.

@@ -15,7 +15,7 @@ namespace {
 constexpr double k_radians_per_degree = 3.14159265358979323846 / 180.0;
 
 // ${NAME} becomes the environment's NAME; a relative path starts at the cell file's folder.
-std::string resolved(const std::string& path, const std::string& key, const std::string& cell) {
+std::string opened_path(const std::string& path, const std::string& key, const std::string& cell) {
   if (path.empty()) return path;
   std::string text = path;
   for (std::size_t from = text.find("${"); from != std::string::npos; from = text.find("${")) {
@@ -34,6 +34,19 @@ std::string resolved(const std::string& path, const std::string& key, const std:
   return (std::filesystem::path(cell).parent_path() / file).lexically_normal().string();
 }
 
+// Reads a cell; paths stay as written where a recording carries what they name.
+struct CellParser {
+  Cell& cell;
+  const CellFiles* carried;
+
+  std::string resolved(const std::string& path, const std::string& key) const {
+    return carried != nullptr ? path : opened_path(path, key, cell.file);
+  }
+  void read_camera(const toml::table* table);
+  void read_simulator(const toml::table* table);
+  void read_tools(TomlReader& root);
+};
+
 Quaternion from_fixed_axes(const std::vector<double>& degrees) {
   const auto about = [&](int axis) {
     const SineCosine half = sine_cosine(0.5 * degrees[static_cast<std::size_t>(axis)] * k_radians_per_degree);
@@ -44,21 +57,29 @@ Quaternion from_fixed_axes(const std::vector<double>& degrees) {
   return about(2) * about(1) * about(0);
 }
 
-void read_camera(const toml::table* table, Cell& cell) {
+void CellParser::read_camera(const toml::table* table) {
   static const toml::table k_empty;
   TomlReader reader(table ? *table : k_empty, cell.file, "camera.");
   const std::string model =
       reader.one_of("model", "hololens2_ahat", {"hololens2_ahat", "hololens1_short_throw"});
   cell.camera = model == "hololens2_ahat" ? hololens2_ahat() : hololens1_short_throw();
-  cell.ray_table = resolved(reader.text("ray_table", ""), "camera.ray_table", cell.file);
+  cell.ray_table = resolved(reader.text("ray_table", ""), "camera.ray_table");
   const int top = cell.camera.reflectivity_bits == 8 ? 255 : 65535;
   cell.camera.threshold = static_cast<std::uint16_t>(
       reader.integer("threshold", cell.camera.threshold, 1, top - 1));
   reader.done();
-  if (!cell.ray_table.empty()) cell.camera = with_ray_table(cell.camera, cell.ray_table);
+  if (cell.ray_table.empty()) return;
+  if (carried == nullptr) {
+    cell.camera = with_ray_table(cell.camera, cell.ray_table);
+  } else if (carried->rays != nullptr) {
+    cell.camera.table = carried->rays;
+    cell.camera.model.lens = Lens::lut;
+    cell.camera.model.table = {cell.camera.model.width, cell.camera.model.height,
+                               carried->rays->data()};
+  }
 }
 
-void read_simulator(const toml::table* table, Cell& cell) {
+void CellParser::read_simulator(const toml::table* table) {
   if (table == nullptr) return;
   TomlReader reader(*table, cell.file, "simulator.");
   SimulatorSettings& sim = cell.simulator;
@@ -69,7 +90,7 @@ void read_simulator(const toml::table* table, Cell& cell) {
   sim.background_layout =
       reader.one_of("background_layout", sim.background_layout, {"adi", "ahat", "pgm"});
   const auto path = [&](const char* key) {
-    return resolved(reader.text(key, ""), std::string("simulator.") + key, cell.file);
+    return resolved(reader.text(key, ""), std::string("simulator.") + key);
   };
   sim.head_trajectory = path("head_trajectory");
   sim.pen_trajectory = path("pen_trajectory");
@@ -136,31 +157,36 @@ void read_robot(const toml::table* table, Cell& cell) {
   reader.done();
 }
 
-void read_tools(TomlReader& root, Cell& cell) {
+void CellParser::read_tools(TomlReader& root) {
   cell.tool_files = root.texts("tools");
   if (cell.tool_files.empty()) cell.tool_files = {"pen"};
   if (cell.tool_files.size() > static_cast<std::size_t>(k_tools_max)) {
     throw InputError(cell.file + ": " + std::to_string(cell.tool_files.size()) +
                      " tools; expected at most " + std::to_string(k_tools_max));
   }
+  if (carried != nullptr) {
+    cell.tools = carried->tools;
+    return;
+  }
   for (const std::string& name : cell.tool_files) {
     cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] =
-        name == "pen" ? default_pen() : load_tool(resolved(name, "tools", cell.file));
+        name == "pen" ? default_pen() : load_tool(resolved(name, "tools"));
   }
 }
 
 }  // namespace
 
-Cell cell_from_text(const std::string& text, const std::string& file) {
+Cell cell_from_text(const std::string& text, const std::string& file, const CellFiles* carried) {
   Cell cell;
+  CellParser parser{cell, carried};
   cell.file = file;
   cell.text = text;
   const toml::table table = parse_toml(text, file);
   TomlReader root(table, file, "");
   (void)root.text("name", "");
-  read_camera(root.table("camera"), cell);
-  read_tools(root, cell);
-  read_simulator(root.table("simulator"), cell);
+  parser.read_camera(root.table("camera"));
+  parser.read_tools(root);
+  parser.read_simulator(root.table("simulator"));
   read_rates(root.table("rates"), cell);
   read_sinks(root, cell);
   read_robot(root.table("robot"), cell);

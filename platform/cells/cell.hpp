@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,8 +68,16 @@ struct Cell {
 // The cell that `glint run` uses when none is named.
 [[nodiscard]] Cell default_cell();
 
+// What a recording carries in place of the files that a cell names.
+struct CellFiles {
+  ToolSet tools;
+  std::shared_ptr<const std::vector<float>> rays;    // null: the cell names no ray table
+};
+
 // Throws InputError: file:line, what was found, what was expected.
 [[nodiscard]] Cell load_cell(const std::string& file);
-[[nodiscard]] Cell cell_from_text(const std::string& text, const std::string& file);
+// With `carried` no other file is opened.
+[[nodiscard]] Cell cell_from_text(const std::string& text, const std::string& file,
+                                  const CellFiles* carried = nullptr);
 
 }  // namespace glint

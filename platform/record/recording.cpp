@@ -40,7 +40,7 @@ std::string topic_name(const std::vector<std::string>& tool_names, std::size_t t
   return name.empty() ? "tool" + std::to_string(tool) : name;
 }
 
-ToolTopics tool_topics(const std::vector<std::string>& tool_names, std::size_t tool) {
+RecordedTopics tool_topics(const std::vector<std::string>& tool_names, std::size_t tool) {
   const std::string name = topic_name(tool_names, tool);
   const std::string pose = tool == 0 ? "/glint/pen_pose" : "/glint/" + name + "/pose";
   return {pose, pose + "_cov", "glint_" + name + "_tip"};

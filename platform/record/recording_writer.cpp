@@ -111,7 +111,7 @@ RecordingWriter::Body::Body(const std::string& file, const RecordingInfo& info,
 
 const RecordingWriter::Body::ToolChannels& RecordingWriter::Body::tool(std::size_t number) {
   while (tools.size() <= number) {
-    const ToolTopics topics = tool_topics(tool_names, tools.size());
+    const RecordedTopics topics = tool_topics(tool_names, tools.size());
     tools.push_back({channel(topics.pose, "geometry_msgs/msg/PoseStamped"),
                      channel(topics.pose_covariance, "geometry_msgs/msg/PoseWithCovarianceStamped"),
                      topics.tip_frame});

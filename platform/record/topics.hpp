@@ -20,11 +20,11 @@ inline constexpr std::string_view k_transform_topic = "/tf";
 // Letters, digits and '_' of the name; "toolN" where nothing of it is left or there is none.
 [[nodiscard]] std::string topic_name(const std::vector<std::string>& tool_names, std::size_t tool);
 
-struct ToolTopics {
+struct RecordedTopics {
   std::string pose;             // tool 0: /glint/pen_pose; others: /glint/NAME/pose
   std::string pose_covariance;  // the same, with _cov
   std::string tip_frame;        // glint_NAME_tip
 };
-[[nodiscard]] ToolTopics tool_topics(const std::vector<std::string>& tool_names, std::size_t tool);
+[[nodiscard]] RecordedTopics tool_topics(const std::vector<std::string>& tool_names, std::size_t tool);
 
 }  // namespace glint

@@ -81,18 +81,18 @@ void put_pose_fields(Row& row, const PoseSample& sample) {
 
 }  // namespace
 
-void LineFile::flush() {
+void TrajectoryLines::flush() {
   failed_ = failed_ || !file_.append({bytes_of(waiting_)});
   waiting_.clear();
 }
 
-void LineFile::add(std::string_view line) {
+void TrajectoryLines::add(std::string_view line) {
   if (failed_ || closed_) return;
   waiting_.append(line) += '\n';
   if (waiting_.size() >= k_flush_bytes) flush();
 }
 
-bool LineFile::close() {
+bool TrajectoryLines::close() {
   if (closed_) return !failed_;
   closed_ = true;
   if (!failed_ && !waiting_.empty()) flush();

@@ -12,10 +12,10 @@
 namespace glint {
 
 // Lines of text on their way to a file.
-class LineFile {
+class TrajectoryLines {
  public:
   // Throws InputError where the file cannot be made.
-  explicit LineFile(const std::string& path) : file_(path) {}
+  explicit TrajectoryLines(const std::string& path) : file_(path) {}
 
   void add(std::string_view line);
   // False: something could not be written.
@@ -37,10 +37,10 @@ class TumFile {
   explicit TumFile(const std::string& path, std::uint8_t tool = 0);
   void write(const PoseSample& sample);
   bool close() { return file_.close(); }
-  [[nodiscard]] const LineFile& file() const { return file_; }
+  [[nodiscard]] const TrajectoryLines& file() const { return file_; }
 
  private:
-  LineFile file_;
+  TrajectoryLines file_;
   std::uint8_t tool_;
 };
 
@@ -51,10 +51,10 @@ class CsvFile {
   explicit CsvFile(const std::string& path);
   void write(const PoseSample& sample);
   bool close() { return file_.close(); }
-  [[nodiscard]] const LineFile& file() const { return file_; }
+  [[nodiscard]] const TrajectoryLines& file() const { return file_; }
 
  private:
-  LineFile file_;
+  TrajectoryLines file_;
 };
 
 }  // namespace glint

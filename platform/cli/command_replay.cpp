@@ -1,0 +1,119 @@
+// glint replay: decide a recording again, or track a tool in bare marker points.
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include "platform/cli/commands.hpp"
+#include "platform/cli/output_file.hpp"
+#include "platform/cli/progress.hpp"
+#include "platform/input_error.hpp"
+#include "platform/session/replay.hpp"
+#include "platform/session/replay_points.hpp"
+
+namespace glint {
+namespace {
+
+struct ReplayArguments {
+  std::string recording, points, tool, json;
+  int workers = 1;
+  bool incomplete = false;
+};
+
+int replay_recording(const ReplayArguments& arguments) {
+  Progress progress("replaying");
+  ReplayOptions options;
+  options.workers = arguments.workers;
+  options.tolerance = {arguments.incomplete, arguments.incomplete};
+  options.progress = [&](double seconds) { progress.show(seconds, 0); };
+  const ReplayResult result = replay(arguments.recording, options);
+  std::printf("level            %s\nframes           %lld\nticks            %lld\n",
+              result.level.c_str(), static_cast<long long>(result.frames),
+              static_cast<long long>(result.ticks));
+  std::printf("records          %lld (recorded %lld, differing %lld)\noutput_sha256    %s\n",
+              static_cast<long long>(result.records),
+              static_cast<long long>(result.records_recorded),
+              static_cast<long long>(result.mismatches), result.output_sha256.c_str());
+  std::printf("the run's own    %s  %s\n",
+              result.recorded_sha256.empty() ? "(none)" : result.recorded_sha256.c_str(),
+              result.agrees() ? "equal" : "DIFFERENT");
+  if (result.first_mismatch >= 0) {
+    std::printf("first difference at record %lld\n", static_cast<long long>(result.first_mismatch));
+  }
+  write_json(arguments.json, {{"level", result.level},
+                              {"frames", result.frames},
+                              {"ticks", result.ticks},
+                              {"workers", arguments.workers},
+                              {"records", result.records},
+                              {"records_recorded", result.records_recorded},
+                              {"records_differing", result.mismatches},
+                              {"first_difference", result.first_mismatch},
+                              {"versions_missing", result.versions_missing},
+                              {"output_sha256", result.output_sha256},
+                              {"recorded_sha256", result.recorded_sha256},
+                              {"agrees", result.agrees()}});
+  return result.agrees() ? 0 : 1;
+}
+
+int replay_marker_points(const ReplayArguments& arguments) {
+  if (arguments.tool.empty()) {
+    throw InputError("--points " + arguments.points + ": no --tool; expected a tool file");
+  }
+  const PointsResult result = replay_points(arguments.points, arguments.tool);
+  const auto frames = static_cast<std::int64_t>(result.frames.size());
+  std::printf("frames   %lld\nsolved   %lld\nrms      mean %.3f mm, largest %.3f mm\n",
+              static_cast<long long>(frames), static_cast<long long>(result.solved),
+              result.rms_mean_m * 1e3, result.rms_max_m * 1e3);
+  nlohmann::ordered_json poses = nlohmann::ordered_json::array();
+  for (const PointPose& pose : result.frames) {
+    nlohmann::ordered_json item{{"time_s", static_cast<double>(pose.time.nanoseconds) * 1e-9},
+                                {"solved", pose.solved}};
+    if (pose.solved) {
+      const Vector3& t = pose.pose.translation;
+      const Quaternion& q = pose.pose.rotation;
+      item["rms_mm"] = pose.rms_m * 1e3;
+      item["marker_mask"] = pose.marker_mask;
+      item["position_m"] = {t.x(), t.y(), t.z()};
+      item["rotation_xyzw"] = {q.x(), q.y(), q.z(), q.w()};
+      item["tip_m"] = {pose.tip_m.x(), pose.tip_m.y(), pose.tip_m.z()};
+    } else {
+      item["reason"] = std::string(name_of(pose.reason));
+    }
+    poses.push_back(std::move(item));
+  }
+  write_json(arguments.json, {{"frames", frames},
+                              {"solved", result.solved},
+                              {"rms_mean_mm", result.rms_mean_m * 1e3},
+                              {"rms_max_mm", result.rms_max_m * 1e3},
+                              {"poses", std::move(poses)}});
+  return result.solved == frames ? 0 : 1;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "replay", "Decide a recording again and compare every output record, byte for byte");
+  auto arguments = std::make_shared<ReplayArguments>();
+  command->footer(
+      "Examples:\n  glint replay out/run.mcap --workers 2 --json replay.json\n"
+      "  glint replay --points markers.csv --tool probe.toml --json poses.json\n"
+      "markers.csv: time_s,x_m,y_m,z_m, one unlabelled marker a row.");
+  command->add_option("recording", arguments->recording, "a recording of `glint run`");
+  command->add_option("--points", arguments->points, "marker positions without images (CSV)");
+  command->add_option("--tool", arguments->tool, "the tool to find in them (.toml, .rom, .ini)");
+  command->add_option("--workers", arguments->workers, "threads: 1 or 2, the same bytes")
+      ->check(CLI::Range(1, 2));
+  command->add_flag("--incomplete", arguments->incomplete,
+                    "read a recording that was cut short or dropped something");
+  command->add_option("--json", arguments->json, "write the figures here");
+  command->callback([arguments, &exit_code] {
+    if (arguments->recording.empty() == arguments->points.empty()) {
+      throw InputError("replay: expected either a recording or --points FILE");
+    }
+    exit_code = arguments->points.empty() ? replay_recording(*arguments)
+                                          : replay_marker_points(*arguments);
+  });
+}
+
+}  // namespace glint

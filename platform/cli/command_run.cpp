@@ -1,0 +1,76 @@
+// glint run: frames in, poses out over DDS and CAN, everything recorded.
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "platform/cells/cell.hpp"
+#include "platform/cli/commands.hpp"
+#include "platform/cli/output_file.hpp"
+#include "platform/cli/progress.hpp"
+#include "platform/cli/run_report.hpp"
+#include "platform/session/session.hpp"
+
+namespace glint {
+namespace {
+
+struct RunArguments {
+  std::string config, json, out = "out", can, level;
+  double duration_s = 0;
+  int workers = 0;
+  bool as_fast_as_can_be = false;
+  bool no_dds = false;
+};
+
+Cell cell_of(const RunArguments& arguments) {
+  Cell cell = arguments.config.empty() ? default_cell() : load_cell(arguments.config);
+  if (!arguments.can.empty()) cell.can.sink = arguments.can;
+  if (!arguments.level.empty()) cell.record.level = arguments.level;
+  if (arguments.duration_s > 0) cell.simulator.duration_s = arguments.duration_s;
+  if (arguments.workers > 0) cell.workers = arguments.workers;
+  if (arguments.as_fast_as_can_be) cell.realtime = false;
+  if (arguments.no_dds) cell.dds.on = false;
+  return cell;
+}
+
+int run(const RunArguments& arguments) {
+  const Cell cell = cell_of(arguments);
+  make_folder(arguments.out);
+  Progress progress("tracking");
+  SessionOptions options;
+  options.out = arguments.out;
+  options.progress = [&](double done_s, double all_s) { progress.show(done_s, all_s); };
+  SessionResult result = run_session(cell, options);
+  draw_plots(arguments.out, result);
+  const nlohmann::ordered_json summary = summary_of(cell, result);
+  print_table(summary, result);
+  write_json(arguments.json, summary);
+  return sums_hold(result) ? 0 : 1;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("run", "Track: frames in, poses out over DDS and CAN, recorded");
+  auto arguments = std::make_shared<RunArguments>();
+  command->footer(
+      "Examples:\n  glint run --out out --json out/summary.json\n"
+      "  glint run --config my_cell.toml --can socketcan:can0");
+  command->add_option("--config", arguments->config, "a cell file; without it the built-in one");
+  command->add_option("--out", arguments->out, "folder of all files written")
+      ->capture_default_str();
+  command->add_option("--json", arguments->json, "write the table's figures here");
+  command->add_option("--can", arguments->can, "log:FILE or socketcan:IF, instead of the cell's");
+  command->add_option("--record-level", arguments->level, "full, roi, blobs or outputs");
+  command->add_option("--duration", arguments->duration_s, "seconds, instead of the cell's")
+      ->check(CLI::Range(0.1, 3600.0));
+  command->add_option("--workers", arguments->workers, "threads of the frame group: 1 or 2")
+      ->check(CLI::Range(1, 2));
+  command->add_flag("--no-dds", arguments->no_dds, "send nothing over DDS");
+  command->add_flag("--fast", arguments->as_fast_as_can_be,
+                    "as fast as can be instead of in real time: no DDS, the same bytes every time");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace glint

@@ -1,0 +1,15 @@
+// The commands of `glint`. Each adds its options to the command line and leaves its exit code:
+// 0 done, 1 a check failed, 2 bad use or input, 3 a device or peer is missing.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace glint {
+
+void add_run(CLI::App& app, int& exit_code);
+void add_replay(CLI::App& app, int& exit_code);
+void add_simulate(CLI::App& app, int& exit_code);
+void add_experiment(CLI::App& app, int& exit_code);
+void add_inspect(CLI::App& app, int& exit_code);
+
+}  // namespace glint

@@ -1,0 +1,38 @@
+#include "platform/cli/output_file.hpp"
+
+#include <filesystem>
+#include <fstream>
+
+#include "platform/input_error.hpp"
+
+namespace glint {
+
+void make_folder(const std::string& path) {
+  if (path.empty()) return;
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) throw InputError(path + ": " + error.message() + "; expected a folder to write to");
+}
+
+void make_folder_of(const std::string& path) {
+  make_folder(std::filesystem::path(path).parent_path().string());
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  make_folder_of(path);
+  const std::string partial = path + ".part";
+  {
+    std::ofstream out(partial, std::ios::binary);
+    out << text;
+    if (!out.flush()) throw InputError(partial + ": cannot be written; expected a file there");
+  }
+  std::error_code error;
+  std::filesystem::rename(partial, path, error);
+  if (error) throw InputError(path + ": " + error.message() + "; expected a place for a file");
+}
+
+void write_json(const std::string& path, const nlohmann::ordered_json& figures) {
+  if (!path.empty()) write_text(path, figures.dump(2) + "\n");
+}
+
+}  // namespace glint

@@ -1,0 +1,159 @@
+#include "platform/cli/run_report.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <vector>
+
+#include "platform/cli/output_file.hpp"
+#include "platform/report/plots.hpp"
+
+namespace glint {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double k_degrees = 180.0 / 3.14159265358979323846;
+
+ordered_json as_json(const LatencyFigures& figures) {
+  return {{"n", figures.n},           {"p50", figures.p50_us}, {"p99", figures.p99_us},
+          {"p99_9", figures.p99_9_us}, {"max", figures.max_us}};
+}
+
+void row(const char* name, const std::string& value) {
+  std::printf("  %-30s %s\n", name, value.c_str());
+}
+
+std::string fixed(double value, int digits, const char* unit) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f %s", digits, value, unit);
+  return text;
+}
+
+void latency_row(const char* name, const ordered_json& item) {
+  char text[128];
+  std::snprintf(text, sizeof text, "p50 %.0f  p99 %.0f  p99.9 %.0f  max %.0f us",
+                item.at("p50").get<double>(), item.at("p99").get<double>(),
+                item.at("p99_9").get<double>(), item.at("max").get<double>());
+  row(name, text);
+}
+
+}  // namespace
+
+ordered_json summary_of(const Cell& cell, const SessionResult& result) {
+  const Accuracy& accuracy = result.accuracy;
+  ordered_json frame_to_can = as_json(figures_of_totals(result.latencies));
+  frame_to_can["computing"] = as_json(figures_of(result.latencies, &FrameToCan::computing));
+  frame_to_can["sampling"] = as_json(figures_of(result.latencies, &FrameToCan::sampling));
+  frame_to_can["sending"] = as_json(figures_of(result.latencies, &FrameToCan::sending));
+  ordered_json summary{
+      {"cell", cell.file},
+      {"camera", cell.camera.name},
+      {"duration_s", result.duration_s},
+      {"realtime", cell.realtime},
+      {"workers", cell.workers},
+      {"frames", result.frames},
+      {"frames_refused", accuracy.refused},
+      {"frames_late_rendered", result.late_renders},
+      {"frames_trackable", accuracy.trackable},
+      {"tracked_fraction", accuracy.tracked_fraction()},
+      {"poses", accuracy.poses},
+      {"poses_gross", accuracy.gross},
+      {"tip_rms_mm", accuracy.tip_rms_m * 1e3},
+      {"tip_max_mm", accuracy.tip_max_m * 1e3},
+      {"angle_rms_deg", accuracy.angle_rms_rad * k_degrees},
+      {"ticks", result.ticks},
+      {"ticks_late", result.ticks_late},
+      {"ticks_skipped", result.ticks_skipped},
+      {"worker_overruns", result.worker_overruns},
+      {"frame_to_can_us", frame_to_can},
+      {"frame_to_can_kind", "observed"},
+      {"heap_allocations_after_start", result.heap_allocations_after_start},
+      {"heap_allocations_counted", result.heap_counted},
+      {"can_frames", result.can_frames},
+      {"can_sent", result.can.sent},
+      {"can_dropped", result.can.dropped},
+      {"can_failed", result.can.failed},
+      {"can_bus_load", result.can_bus_load},
+      {"dds_offered", result.dds.offered},
+      {"dds_written", result.dds.written},
+      {"ring_dropped", result.dds.ring_dropped},
+      {"dds_received", result.dds_reader.received},
+      {"dds_missed", result.dds_reader.missed},
+      {"dds_poses_written", result.dds.poses_written},
+      {"dds_poses_received", result.dds_reader.poses_received},
+      {"recording", result.recording_file},
+      {"recording_complete", result.recording.complete()},
+      {"recording_ended_early", result.recording.ended_early},
+      {"recording_reason", result.recording.reason},
+      {"recording_bytes", result.recording.bytes},
+      {"output_sha256", result.output_sha256},
+      {"best_effort", !result.refused.empty()},
+      {"refused", result.refused}};
+  return summary;
+}
+
+bool sums_hold(const SessionResult& result) {
+  const bool dds = result.dds.offered == result.dds.written + result.dds.ring_dropped;
+  const bool reader = !result.dds_was_read ||
+                      result.dds_reader.received + result.dds_reader.missed == result.dds.written;
+  return dds && reader;
+}
+
+void print_table(const ordered_json& summary, const SessionResult& result) {
+  const Accuracy& accuracy = result.accuracy;
+  std::printf("\n%s, %.0f s%s\n", summary.at("camera").get<std::string>().c_str(),
+              result.duration_s,
+              result.refused.empty() ? "" : "  (best effort: real-time rights were refused)");
+  row("frames", std::to_string(result.frames) + " (" + std::to_string(accuracy.refused) +
+                    " refused)");
+  row("tracked", fixed(100 * accuracy.tracked_fraction(), 2, "%") + " of " +
+                     std::to_string(accuracy.trackable) + " trackable");
+  row("tip error, rms", fixed(accuracy.tip_rms_m * 1e3, 2, "mm") + "  (largest " +
+                            fixed(accuracy.tip_max_m * 1e3, 1, "mm)"));
+  row("angle error, rms", fixed(accuracy.angle_rms_rad * k_degrees, 2, "deg"));
+  const ordered_json& latency = summary.at("frame_to_can_us");
+  latency_row("frame to CAN (observed)", latency);
+  latency_row("  computing", latency.at("computing"));
+  latency_row("  sampling", latency.at("sampling"));
+  latency_row("  sending", latency.at("sending"));
+  row("ticks", std::to_string(result.ticks) + " (" + std::to_string(result.ticks_late) +
+                   " late, " + std::to_string(result.ticks_skipped) + " skipped)");
+  row("heap allocations after start",
+      result.heap_counted ? std::to_string(result.heap_allocations_after_start)
+                          : "not counted in this build");
+  row("CAN frames", std::to_string(result.can_frames) + " (bus load " +
+                        fixed(100 * result.can_bus_load, 1, "%, computed)"));
+  row("DDS", std::to_string(result.dds.written) + " written, " +
+                 std::to_string(result.dds_reader.received) + " received, " +
+                 std::to_string(result.dds_reader.missed) + " missed, " +
+                 std::to_string(result.dds.ring_dropped) + " dropped");
+  row("output_sha256", result.output_sha256);
+  for (const std::string& file : result.files) row("written", file);
+  if (!result.recording.reason.empty()) row("recording", result.recording.reason);
+  for (const std::string& refused : result.refused) row("refused", refused);
+}
+
+void draw_plots(const std::string& folder, SessionResult& result) {
+  const Accuracy& accuracy = result.accuracy;
+  if (!accuracy.tip_errors_m.empty()) {
+    std::vector<double> mm;
+    for (const double error : accuracy.tip_errors_m) mm.push_back(error * 1e3);
+    const HistogramSeries series{
+        "tip", make_histogram(mm, 0, std::max(1.0, percentile(mm, 0.999)), 60), {}};
+    const std::string path = (std::filesystem::path(folder) / "tip_error.svg").string();
+    write_text(path, histogram_plot({"Tip error against truth, camera frame", "mm", "share"},
+                                    {&series, 1}));
+    result.files.push_back(path);
+  }
+  if (!result.latencies.empty()) {
+    std::vector<double> us;
+    for (const FrameToCan& entry : result.latencies) {
+      us.push_back(static_cast<double>(entry.total().nanoseconds) * 1e-3);
+    }
+    const std::string path = (std::filesystem::path(folder) / "frame_to_can.svg").string();
+    write_text(path, latency_plot("Frame to CAN, observed", us));
+    result.files.push_back(path);
+  }
+}
+
+}  // namespace glint

@@ -1,0 +1,64 @@
+#include "platform/session/frame_group.hpp"
+
+#include <utility>
+
+#include "platform/session/pipeline.hpp"
+
+namespace glint {
+
+ChoiceRecord as_record(const graph::Choice& choice, std::int64_t unix_offset_ns) {
+  ChoiceRecord record;
+  record.group = static_cast<std::uint8_t>(choice.group);
+  record.activation = choice.activation;
+  record.nominal = Time{choice.nominal_ns};
+  record.version_count = static_cast<std::uint8_t>(choice.version_count);
+  for (int i = 0; i < choice.version_count && i < k_recorded_versions; ++i) {
+    record.versions[static_cast<std::size_t>(i)] = choice.versions[static_cast<std::size_t>(i)];
+  }
+  record.unix_offset_ns = unix_offset_ns;
+  return record;
+}
+
+FrameGroup::FrameGroup(const Cell& cell, graph::TripleBuffer<ToolSet>& tool_set, Clock now,
+                       Activate activate, RecorderLane* lane)
+    : group_(*tracker_, k_frame_group),
+      now_(std::move(now)),
+      activate_(std::move(activate)),
+      lane_(lane) {
+  configure(cell, *tracker_);
+  tracker_->latest<ToolSet>().bind(tool_set);
+}
+
+void FrameGroup::process(const ArrivedFrame& arrived) noexcept {
+  tracker_->input<Frame>() = arrived.frame;
+  tracker_->input<HeadPose>() = arrived.head;
+  (void)group_.release(arrived.frame.mid_exposure.nanoseconds);
+  activate_(*tracker_);
+
+  const Estimates& estimates = tracker_->output<Estimates>();
+  estimates_.write_slot() = estimates;
+  estimates_.publish(group_.choice().activation, now_().nanoseconds);
+  if (lane_ != nullptr) record(arrived);
+}
+
+void FrameGroup::record(const ArrivedFrame& arrived) noexcept {
+  const FrameVerdict& verdict = tracker_->token<FrameVerdict>();
+  (void)lane_->offer_head_pose(arrived.head);
+  (void)lane_->offer_choice(as_record(group_.choice(), 0));
+  // The frame comes last: with it a replay has all that the activation was given. The one or the
+  // other is left out by the recording's level.
+  (void)lane_->offer_frame(arrived.frame, tracker_->token<Rois>());
+  MarkerFrame markers;
+  markers.mid_exposure = arrived.frame.mid_exposure;
+  markers.arrival = arrived.frame.arrival;
+  markers.sequence = arrived.frame.sequence;
+  markers.reason = tracker_->token<FrameStamp>().reason;
+  markers.markers = tracker_->token<Markers>();
+  (void)lane_->offer_markers(markers);
+  if (!verdict.usable()) {
+    (void)lane_->offer_dropped(
+        {arrived.frame.mid_exposure, arrived.frame.arrival, arrived.frame.sequence, verdict.reason});
+  }
+}
+
+}  // namespace glint

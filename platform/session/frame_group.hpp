@@ -1,0 +1,50 @@
+// The frame group as it runs: a frame goes in, the tracker is activated, its estimates are
+// published to the tick group, and what a replay needs is offered to the recorder.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "graph/rate_group.hpp"
+#include "nodes/tracker.hpp"
+#include "platform/cells/cell.hpp"
+#include "platform/record/recorder.hpp"
+#include "platform/session/frame_source.hpp"
+
+namespace glint {
+
+inline constexpr std::uint8_t k_frame_group = 0;
+inline constexpr std::uint8_t k_tick_group = 1;
+
+using Clock = std::function<Time()>;
+using Activate = std::function<void(Tracker&)>;   // by one worker or by several: equal bytes
+
+// As the recording keeps a release.
+[[nodiscard]] ChoiceRecord as_record(const graph::Choice& choice, std::int64_t unix_offset_ns);
+
+class FrameGroup {
+ public:
+  // `lane` may be null: nothing is recorded. `tool_set` outlives this.
+  FrameGroup(const Cell& cell, graph::TripleBuffer<ToolSet>& tool_set, Clock now,
+             Activate activate, RecorderLane* lane);
+
+  // Estimates are published before anything is offered: latency first.
+  void process(const ArrivedFrame& arrived) noexcept;
+
+  [[nodiscard]] graph::TripleBuffer<Estimates>& estimates() noexcept { return estimates_; }
+  [[nodiscard]] const Tracker& tracker() const noexcept { return *tracker_; }
+  [[nodiscard]] std::uint64_t activations() const noexcept { return group_.choice().activation; }
+
+ private:
+  void record(const ArrivedFrame& arrived) noexcept;
+
+  std::unique_ptr<Tracker> tracker_ = std::make_unique<Tracker>();
+  graph::RateGroup<Tracker> group_;
+  graph::TripleBuffer<Estimates> estimates_;
+  Clock now_;
+  Activate activate_;
+  RecorderLane* lane_;
+};
+
+}  // namespace glint

@@ -1,0 +1,138 @@
+#include "platform/session/pipeline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace glint {
+namespace {
+
+// Smallest and largest marker of all tools: the gates must let both through.
+struct RadiusRange {
+  double smallest_m = 0.005, largest_m = 0.005;
+};
+
+RadiusRange radii(const ToolSet& tools) {
+  RadiusRange range;
+  for (int t = 0; t < tools.count; ++t) {
+    const double radius = tools.items[static_cast<std::size_t>(t)].marker_radius_m;
+    range.smallest_m = t == 0 ? radius : std::min(range.smallest_m, radius);
+    range.largest_m = t == 0 ? radius : std::max(range.largest_m, radius);
+  }
+  return range;
+}
+
+BlobSettings blob_settings(const Cell& cell) {
+  const Camera& camera = cell.camera;
+  const RadiusRange radius = radii(cell.tools);
+  const SizeGate small =
+      size_gate(radius.smallest_m, camera.range_min_m, camera.range_max_m, camera.model.fx);
+  const SizeGate large =
+      size_gate(radius.largest_m, camera.range_min_m, camera.range_max_m, camera.model.fx);
+  BlobSettings settings;
+  settings.min_area_px = small.min_area_px;
+  settings.max_area_px = large.max_area_px;
+  settings.threshold = camera.threshold;
+  settings.saturated_from = camera.depth.saturated_from;
+  return settings;
+}
+
+NominalMarker nominal_marker(const ToolSet& tools) {
+  const RadiusRange radius = radii(tools);
+  NominalMarker nominal;
+  nominal.radius_m = 0.5 * (radius.smallest_m + radius.largest_m);
+  if (tools.count > 0) nominal.shape = tools.items[0].shape;
+  return nominal;
+}
+
+CorrespondSettings correspond_settings(const Cell& cell) {
+  CorrespondSettings settings;
+  settings.focal_px = cell.camera.model.fx;
+  return settings;
+}
+
+LocateSettings locate_settings(const Cell& cell) {
+  LocateSettings settings;
+  settings.lost_after = cell.lost_after;
+  // One frame missed is still predicted; a slower camera's gap is longer.
+  settings.horizon = std::max(settings.horizon, cell.camera.period * 2);
+  return settings;
+}
+
+TrackSettings track_settings(const Cell& cell) {
+  TrackSettings settings;
+  settings.lost_after = cell.lost_after;
+  settings.velocity_gap_max = std::max(settings.velocity_gap_max, cell.camera.period * 3);
+  return settings;
+}
+
+// What both trackers have: everything from the candidate markers on.
+template <class AnyTracker>
+void configure_common(const Cell& cell, AnyTracker& tracker) {
+  tracker.template node<PredictTracks>().settings = locate_settings(cell);
+  tracker.template node<PredictTracks>().camera = cell.camera.model;
+  tracker.template for_each<Correspond>(
+      [&](Correspond& node) { node.settings = correspond_settings(cell); });
+  tracker.template for_each<FitRigid>([&](FitRigid& node) {
+    node.noise = MarkerNoise{};
+    node.noise.focal_px = cell.camera.model.fx;
+  });
+  tracker.template node<TrackTools>().settings = track_settings(cell);
+}
+
+template <class AnyGraph>
+void prepare(AnyGraph& graph) {
+  if (const graph::Prepared prepared = graph.prepare(); !prepared) {
+    throw std::logic_error("node " + std::string(prepared.name) + " cannot be prepared: " +
+                           std::string(name_of(static_cast<Reason>(prepared.reason))));
+  }
+}
+
+}  // namespace
+
+void configure(const Cell& cell, Tracker& tracker) {
+  const Camera& camera = cell.camera;
+  StampFrame& stamp = tracker.node<StampFrame>();
+  stamp.width = camera.model.width;
+  stamp.height = camera.model.height;
+  stamp.reflectivity_bits = camera.reflectivity_bits;
+  LocateRois& locate = tracker.node<LocateRois>();
+  locate.settings = locate_settings(cell);
+  locate.camera = camera.model;
+  tracker.for_each<RoiThreshold>([&](RoiThreshold& node) { node.threshold = camera.threshold; });
+  tracker.node<FindBlobs>().settings = blob_settings(cell);
+  BackProject& back_project = tracker.node<BackProject>();
+  back_project.camera = camera.model;
+  back_project.depth = camera.depth;
+  back_project.nominal = nominal_marker(cell.tools);
+  configure_common(cell, tracker);
+  prepare(tracker);
+}
+
+void configure(const Cell& cell, MarkerTracker& tracker) {
+  configure_common(cell, tracker);
+  prepare(tracker);
+}
+
+void configure(const Cell& cell, Output& output) {
+  PredictTools& predict = output.node<PredictTools>();
+  predict.settings.nominal_gap = cell.camera.period;
+  predict.settings.lost_after = cell.lost_after;
+  predict.settings.actuation_delay = cell.actuation_delay;
+  PackCan& pack = output.node<PackCan>();
+  pack.settings.format = cell.can.fd ? CanFormat::fd : CanFormat::classic;
+  pack.settings.base_identifier = cell.can.base_id;
+  pack.settings.node = static_cast<unsigned>(cell.can.node);
+  prepare(output);
+}
+
+RobotFrame declared_robot_frame(const Cell& cell) {
+  RobotFrame robot;
+  if (!cell.robot_given) return robot;
+  robot.state = RegistrationState::given;
+  robot.T_world_robot = cell.T_world_robot;
+  return robot;
+}
+
+}  // namespace glint

@@ -1,0 +1,19 @@
+// A cell inside a recording: its text and every file it names, so that a recording replays alone.
+#pragma once
+
+#include <vector>
+
+#include "platform/cells/cell.hpp"
+#include "platform/record/recording.hpp"
+#include "platform/record/recording_reader.hpp"
+
+namespace glint {
+
+// "cell.toml"; "tools.json", whose numbers read back to the same bits; and "rays.f32", the ray
+// table's floats in this machine's byte order (little endian wherever Glint runs), if there is one.
+[[nodiscard]] std::vector<Attachment> attachments_of(const Cell& cell);
+
+// Throws InputError where an attachment is missing or damaged.
+[[nodiscard]] Cell recorded_cell(RecordingReader& reader, const std::string& path);
+
+}  // namespace glint

@@ -1,0 +1,190 @@
+#include "platform/session/replay.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "kernels/wire/output_record.hpp"
+#include "nodes/output.hpp"
+#include "nodes/tracker.hpp"
+#include "platform/input_error.hpp"
+#include "platform/record/sha256.hpp"
+#include "platform/session/frame_group.hpp"
+#include "platform/session/tracker_executor.hpp"
+#include "platform/session/pipeline.hpp"
+#include "platform/session/recorded_cell.hpp"
+
+namespace glint {
+namespace {
+
+class Replayer {
+ public:
+  Replayer(const Cell& cell, Duration tick_period, int workers, ReplayResult& result)
+      : result_(result),
+        tick_period_(tick_period),
+        executor_(workers),
+        robot_(declared_robot_frame(cell)) {
+    configure(cell, *tracker_);
+    configure(cell, *marker_tracker_);
+    configure(cell, *output_);
+    tracker_->latest<ToolSet>().set(cell.tools, 1, 0);
+    marker_tracker_->latest<ToolSet>().set(cell.tools, 1, 0);
+  }
+
+  void on(const HeadPose& head) { head_ = head; }
+  void on(const DroppedInput&) {}   // said beside the frame, which is there as well
+
+  void on(const FrameMessage& frame) {
+    tracker_->input<Frame>() = frame.view();
+    tracker_->input<HeadPose>() = head_;
+    executor_.activate(*tracker_);
+    remember(tracker_->output<Estimates>());
+  }
+
+  void on(const MarkerFrame& frame) {
+    marker_tracker_->input<FrameStamp>() = {frame.mid_exposure, frame.arrival, frame.sequence,
+                                            frame.reason};
+    marker_tracker_->input<Markers>() = frame.markers;
+    marker_tracker_->input<HeadPose>() = head_;
+    executor_.activate(*marker_tracker_);
+    remember(marker_tracker_->output<Estimates>());
+  }
+
+  // A tick is decided as soon as the estimates that it read are there: its choice may stand in
+  // front of the frame, which is offered to the recorder only after its estimates are published.
+  void on(const ChoiceRecord& choice) {
+    if (choice.group != k_tick_group) return;
+    waiting_.push_back(choice);
+    run_ready();
+  }
+
+  void on(const OutputMessage& message) {
+    ++result_.records_recorded;
+    recorded_.push_back(message.record);
+    compare();
+  }
+
+  void finish() {
+    result_.versions_missing += static_cast<std::int64_t>(waiting_.size());
+    result_.output_sha256 = hash_.hex();
+  }
+
+ private:
+  using Record = std::vector<std::uint8_t>;
+
+  void remember(const Estimates& estimates) {
+    ++result_.frames;
+    estimates_[++version_] = std::make_unique<Estimates>(estimates);
+    run_ready();
+  }
+
+  void run_ready() {
+    while (!waiting_.empty() && waiting_.front().versions[0] <= version_) {
+      decide(waiting_.front());
+      waiting_.pop_front();
+    }
+  }
+
+  void decide(const ChoiceRecord& choice) {
+    const std::uint64_t version = choice.versions[0];
+    if (version > 0 && version != output_->latest<Estimates>().version()) {
+      // Versions only rise, so what is older than this one is never read again.
+      estimates_.erase(estimates_.begin(), estimates_.lower_bound(version));
+      const auto known = estimates_.find(version);
+      if (known == estimates_.end()) {
+        ++result_.versions_missing;
+        return;
+      }
+      output_->latest<Estimates>().set(*known->second, version, 0);
+    }
+    if (choice.versions[1] != output_->latest<RobotFrame>().version()) {
+      output_->latest<RobotFrame>().set(robot_, choice.versions[1], 0);
+    }
+    // Ticks that were skipped have numbers, too.
+    const auto number = static_cast<std::uint32_t>(choice.nominal.nanoseconds /
+                                                   tick_period_.nanoseconds);
+    output_->input<Now>() = {choice.nominal, number, choice.unix_offset_ns};
+    output_->activate();
+    ++result_.ticks;
+    const PoseSamples& samples = output_->output<PoseSamples>();
+    for (int t = 0; t < samples.count; ++t) {
+      Record record(k_output_record_bytes);
+      encode(samples.items[static_cast<std::size_t>(t)],
+             std::span<std::uint8_t, k_output_record_bytes>(record.data(), k_output_record_bytes));
+      hash_.add(record);
+      ++result_.records;
+      decided_.push_back(std::move(record));
+    }
+    compare();
+  }
+
+  void compare() {
+    while (!decided_.empty() && !recorded_.empty()) {
+      if (decided_.front() != recorded_.front()) {
+        if (result_.mismatches++ == 0) result_.first_mismatch = compared_;
+      }
+      ++compared_;
+      decided_.pop_front();
+      recorded_.pop_front();
+    }
+  }
+
+  ReplayResult& result_;
+  Duration tick_period_;
+  TrackerExecutor executor_;
+  RobotFrame robot_;
+  HeadPose head_;
+  std::unique_ptr<Tracker> tracker_ = std::make_unique<Tracker>();
+  std::unique_ptr<MarkerTracker> marker_tracker_ = std::make_unique<MarkerTracker>();
+  std::unique_ptr<Output> output_ = std::make_unique<Output>();
+  std::map<std::uint64_t, std::unique_ptr<Estimates>> estimates_;
+  std::uint64_t version_ = 0;
+  std::deque<ChoiceRecord> waiting_;
+  std::deque<Record> decided_, recorded_;
+  std::int64_t compared_ = 0;
+  Sha256 hash_;
+};
+
+// At level outputs nothing can be decided again: the records are only given back.
+void resend(const OutputMessage& message, Sha256& hash, ReplayResult& result) {
+  hash.add(message.record);
+  ++result.records;
+  ++result.records_recorded;
+}
+
+Time time_of(const RecordedMessage& message, Time otherwise) {
+  if (const auto* choice = std::get_if<ChoiceRecord>(&message)) return choice->nominal;
+  return otherwise;
+}
+
+}  // namespace
+
+ReplayResult replay(const std::string& file, const ReplayOptions& options) {
+  RecordingReader reader(file, options.tolerance);
+  const Cell cell = recorded_cell(reader, file);
+  ReplayResult result;
+  result.level = std::string(name_of(reader.level()));
+  if (const auto it = reader.facts().find("output_sha256"); it != reader.facts().end()) {
+    result.recorded_sha256 = it->second;
+  }
+  const bool only_outputs = reader.level() == RecordingLevel::outputs;
+  Replayer replayer(cell, reader.nominal_tick(), options.workers, result);
+  Sha256 resent;
+  Time now;
+  while (auto message = reader.next()) {
+    now = time_of(*message, now);
+    if (options.progress) options.progress(static_cast<double>(now.nanoseconds) * 1e-9);
+    if (only_outputs) {
+      if (const auto* output = std::get_if<OutputMessage>(&*message)) resend(*output, resent, result);
+      continue;
+    }
+    std::visit([&](const auto& item) { replayer.on(item); }, *message);
+  }
+  replayer.finish();
+  if (only_outputs) result.output_sha256 = resent.hex();
+  return result;
+}
+
+}  // namespace glint

@@ -1,0 +1,39 @@
+// Decides again what a recording's run decided, and compares the output records byte for byte.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "platform/record/recording_reader.hpp"
+
+namespace glint {
+
+struct ReplayOptions {
+  int workers = 1;                 // 1 or 2: the same bytes
+  ReadTolerance tolerance;
+  std::string tum_file;            // trajectory of the first tool, if not empty
+  std::function<void(double seconds)> progress;   // how far into the recording
+};
+
+struct ReplayResult {
+  std::string level;
+  std::int64_t frames = 0;
+  std::int64_t ticks = 0;
+  std::int64_t records = 0;
+  std::int64_t records_recorded = 0;
+  std::int64_t mismatches = 0;           // records that differ from the recorded ones
+  std::int64_t first_mismatch = -1;      // its number
+  std::int64_t versions_missing = 0;     // ticks that read estimates which the recording lacks
+  std::string output_sha256;             // of the records decided here
+  std::string recorded_sha256;           // of the run, as it wrote at its end
+  [[nodiscard]] bool agrees() const {
+    return mismatches == 0 && versions_missing == 0 && records == records_recorded &&
+           (recorded_sha256.empty() || output_sha256 == recorded_sha256);
+  }
+};
+
+// Throws InputError for a file that is no recording, or not a whole one.
+[[nodiscard]] ReplayResult replay(const std::string& file, const ReplayOptions& options);
+
+}  // namespace glint

@@ -1,0 +1,36 @@
+#include "platform/session/scenario_of.hpp"
+
+#include <vector>
+
+#include "platform/sensors/frame_files.hpp"
+#include "platform/sim/scenarios.hpp"
+
+namespace glint {
+
+sim::Scenario scenario_of(const Cell& cell) {
+  const SimulatorSettings& settings = cell.simulator;
+  const std::vector<Tool> tools(cell.tools.items.begin(),
+                                cell.tools.items.begin() + cell.tools.count);
+  sim::Scenario scenario;
+  if (settings.scenario == "trajectories") {
+    scenario = sim::trajectory_run(cell.camera, tools,
+                                   sim::load_trajectory(settings.head_trajectory),
+                                   sim::load_trajectory(settings.pen_trajectory),
+                                   settings.pen_scale);
+  } else if (settings.scenario == "still") {
+    scenario = sim::still_run(cell.camera, tools);
+  } else {
+    scenario = sim::default_run(tools);
+    scenario.camera = cell.camera;
+  }
+  if (!settings.background.empty()) {
+    const FrameBuffer frame =
+        load_frame(settings.background, frame_file_layout_of(settings.background_layout));
+    scenario.background = sim::background_from_frame(frame, cell.camera);
+  }
+  scenario.duration = {static_cast<std::int64_t>(settings.duration_s * 1e9)};
+  scenario.seed = settings.seed;
+  return scenario;
+}
+
+}  // namespace glint

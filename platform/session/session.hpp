@@ -1,0 +1,52 @@
+// One run of Glint, from frames to CAN, DDS and a recording, in real time or as fast as can be.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "platform/can/can_sink.hpp"
+#include "platform/cells/cell.hpp"
+#include "platform/dds/dds_sink.hpp"
+#include "platform/dds/reader_result.hpp"
+#include "platform/record/recording.hpp"
+#include "platform/session/accuracy.hpp"
+#include "platform/session/latency.hpp"
+
+namespace glint {
+
+struct SessionOptions {
+  std::string out = "out";          // folder of all files that the cell names relatively
+  bool with_reader = true;          // a DDS reader process of its own counts what arrives
+  std::function<void(double done_s, double all_s)> progress;
+};
+
+struct SessionResult {
+  Accuracy accuracy;
+  std::vector<FrameToCan> latencies;
+  std::int64_t frames = 0;
+  std::int64_t ticks = 0;
+  std::int64_t ticks_late = 0, ticks_skipped = 0;
+  std::int64_t late_renders = 0;
+  double duration_s = 0;
+  std::uint64_t heap_allocations_after_start = 0;
+  bool heap_counted = false;
+  std::uint64_t worker_overruns = 0;
+  std::uint64_t can_frames = 0;
+  CanSinkCounts can;
+  double can_bus_load = 0;                  // computed, of the bus that the cell declares
+  DdsCounts dds;
+  ReaderResult dds_reader;
+  bool dds_was_read = false;
+  RecordingOutcome recording;
+  std::string recording_file;
+  std::string output_sha256;
+  std::vector<std::string> refused;         // real-time rights that the system did not grant
+  std::vector<std::string> files;           // everything written
+};
+
+// Throws InputError, MissingDevice.
+[[nodiscard]] SessionResult run_session(const Cell& cell, const SessionOptions& options);
+
+}  // namespace glint

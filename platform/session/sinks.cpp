@@ -1,0 +1,121 @@
+#include "platform/session/sinks.hpp"
+
+#include <filesystem>
+#include <vector>
+
+#include "platform/input_error.hpp"
+#include "platform/session/recorded_cell.hpp"
+#include "schedules/bus_load.hpp"
+
+namespace glint {
+namespace {
+
+constexpr Duration k_reader_limit = milliseconds(10'000);
+
+std::string in_folder(const std::string& folder, const std::string& file) {
+  const std::filesystem::path path(file);
+  return path.is_absolute() ? file : (std::filesystem::path(folder) / path).string();
+}
+
+std::vector<std::string> names_of(const ToolSet& tools) {
+  std::vector<std::string> names;
+  for (int t = 0; t < tools.count; ++t) {
+    names.emplace_back(tools.items[static_cast<std::size_t>(t)].name.data());
+  }
+  return names;
+}
+
+Duration tick_period(const Cell& cell) {
+  return {static_cast<std::int64_t>(1e9 / cell.tick_hz)};
+}
+
+double checked_bus_load(const Cell& cell) {
+  const CanTraffic traffic{cell.tools.count, cell.tick_hz,
+                           cell.can.fd ? CanFormat::fd : CanFormat::classic};
+  const CanBitRates rates{static_cast<double>(cell.can.bit_rate),
+                          static_cast<double>(cell.can.data_bit_rate)};
+  if (const auto refusal = check_bus_load(traffic, rates)) {
+    throw InputError(cell.file + ": can: " + *refusal);
+  }
+  return bus_load(traffic, rates).fraction;
+}
+
+DdsSettings dds_settings(const Cell& cell, std::int64_t unix_offset_ns) {
+  DdsSettings settings;
+  settings.domain = cell.dds.domain;
+  settings.interface = cell.dds.interface;
+  settings.tool_names = names_of(cell.tools);
+  settings.tick_period = tick_period(cell);
+  settings.actuation_delay = cell.actuation_delay;
+  settings.unix_minus_board = {unix_offset_ns};
+  if (cell.robot_given) {
+    settings.static_transforms.push_back(
+        {settings.frames.world, settings.frames.robot, cell.T_world_robot});
+  }
+  return settings;
+}
+
+}  // namespace
+
+Sinks::Sinks(const Cell& cell, const SessionOptions& options, std::int64_t unix_offset_ns)
+    : out_(options.out), can_bus_load_(checked_bus_load(cell)) {
+  CanSinkOptions can;
+  can.directory = out_;
+  can.unix_offset_ns = unix_offset_ns;
+  can.format = cell.can.fd ? CanFormat::fd : CanFormat::classic;
+  can.when_full = cell.realtime ? WhenFull::drop : WhenFull::wait;
+  can_ = open_can_sink(cell.can.sink, can);
+  if (cell.can.sink.rfind("log:", 0) == 0) can_file_ = in_folder(out_, cell.can.sink.substr(4));
+
+  if (!cell.record.file.empty()) {
+    recording_file_ = in_folder(out_, cell.record.file);
+    RecordingInfo info;
+    info.level = recording_level(cell.record.level, cell.file);
+    info.nominal_tick = tick_period(cell);
+    info.unix_offset = {unix_offset_ns};
+    info.tool_names = names_of(cell.tools);
+    info.facts = {{"compiler", __VERSION__}, {"cell", cell.file}};
+    info.attachments = attachments_of(cell);
+    RecorderSettings settings;
+    settings.when_full = can.when_full;
+    recorder_ = std::make_unique<Recorder>(recording_file_, info, settings);
+  }
+
+  // A simulated run that does not keep real time would only overrun its DDS readers.
+  if (cell.dds.on && cell.realtime) {
+    const DdsSettings settings = dds_settings(cell, unix_offset_ns);
+    dds_ = std::make_unique<DdsSink>(settings);
+    if (options.with_reader) {
+      reader_ = std::make_unique<ReaderProcess>(settings, in_folder(out_, "dds_reader.json"));
+    }
+    dds_->start();
+    if (reader_ != nullptr && !dds_->wait_for_readers(1, k_reader_limit)) {
+      throw MissingDevice("the DDS reader did not find the topics on interface " +
+                          cell.dds.interface + "; expected it within 10 s");
+    }
+  }
+}
+
+void Sinks::close(SessionResult& result) {
+  can_->flush();
+  result.can = can_->counts();
+  result.can_bus_load = can_bus_load_;
+  can_.reset();
+  if (!can_file_.empty()) result.files.push_back(can_file_);
+  if (dds_ != nullptr) {
+    dds_->stop();
+    result.dds = dds_->counts();
+    if (reader_ != nullptr) {
+      result.dds_reader = reader_->finish(k_reader_limit);
+      result.dds_was_read = true;
+    }
+  }
+  if (recorder_ != nullptr) {
+    recorder_->add_closing_fact("output_sha256", result.output_sha256);
+    result.recording = recorder_->close();
+    result.recording_file = recording_file_;
+    result.files.push_back(recording_file_);
+  }
+}
+
+}  // namespace glint

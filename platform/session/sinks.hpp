@@ -1,0 +1,39 @@
+// Everything a run sends to, opened from a cell and closed in the right order.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "platform/can/can_sink.hpp"
+#include "platform/cells/cell.hpp"
+#include "platform/dds/dds_sink.hpp"
+#include "platform/dds/reader_process.hpp"
+#include "platform/record/recorder.hpp"
+#include "platform/session/session.hpp"
+
+namespace glint {
+
+class Sinks {
+ public:
+  // Throws InputError for a bus that cannot carry the cell's traffic or a file that cannot be made,
+  // MissingDevice for an interface that is not there.
+  Sinks(const Cell& cell, const SessionOptions& options, std::int64_t unix_offset_ns);
+
+  [[nodiscard]] CanSink* can() noexcept { return can_.get(); }
+  [[nodiscard]] DdsSink* dds() noexcept { return dds_.get(); }
+  [[nodiscard]] Recorder* recorder() noexcept { return recorder_.get(); }
+
+  // After the last offer: everything is written, and what became of it stands in the result.
+  void close(SessionResult& result);
+
+ private:
+  std::string out_;
+  double can_bus_load_ = 0;
+  std::unique_ptr<CanSink> can_;
+  std::unique_ptr<ReaderProcess> reader_;   // started before the sink, ended after it
+  std::unique_ptr<DdsSink> dds_;
+  std::unique_ptr<Recorder> recorder_;
+  std::string recording_file_, can_file_;
+};
+
+}  // namespace glint
