@@ -1,5 +1,5 @@
 # OpenCV is only what the camera models are compared with.
 glint_test(glint_camera_test camera_model_test.cpp ray_table_test.cpp back_project_test.cpp
   undistort_blobs_test.cpp
-  LIBS glint_kernels glint_sensors opencv_calib3d opencv_imgproc opencv_core LABELS unit kernels)
+  LIBS glint_kernels glint_sensors opencv_calib3d opencv_imgproc opencv_core LABELS unit)
 target_include_directories(glint_camera_test SYSTEM PRIVATE ${OPENCV_INCLUDE})

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <limits>
 #include <vector>
@@ -186,6 +187,44 @@ TEST(Correspond, APredictionDoesNotOverruleAClearResidual) {
   EXPECT_EQ(found.items[0].marker, scene.truth);
 }
 
+TEST(Correspond, APredictionDoesNotOverruleAReadingThatFitsWorseThanNoiseExplains) {
+  const Tool plate = test::tool_of<4>({{0, 0, 0}, {80, 0, 0}, {85, 66, 0}, {0, 60, 0}});
+  std::vector<Vector3> points;
+  for (std::size_t i = 0; i < 4; ++i) points.push_back(plate.markers_m[i] + Vector3(0, 0, 0.5));
+  const CorrespondSettings settings;  // noise alike in all directions: the wide gate
+  const Quaternion half = from_rotation_vector(Vector3(0, 0, 3.14159265358979));
+  const Vector3 middle(0.041, 0.031, 0);
+  const Pose turned{half, Vector3(0, 0, 0.5) + middle - half * middle};
+  const Labelings found = labelings_of(centres(plate, points), plate, settings, &turned);
+  const bool competes = std::any_of(
+      found.items.begin(), found.items.begin() + found.count, [&](const Labeling& reading) {
+        return reading.count == 4 &&
+               test::angle_between(reading.T_camera_tool.rotation, half) < 0.1;
+      });
+  ASSERT_TRUE(competes);
+  EXPECT_LT(found.items[0].rms_m, 1e-9);
+  EXPECT_LT(found.items[0].T_camera_tool.rotation.angularDistance(Quaternion::Identity()), 1e-6);
+}
+
+TEST(Correspond, KeepsShortSidesAcrossTheRayWhoseErrorIsOfSecondOrder) {
+  const Tool small = test::tool_of<4>({{0, 0, 0}, {40, 0, 0}, {47, 33, 0}, {-5, 50, 0}});
+  CorrespondSettings settings = ahat();
+  settings.range_sigma_m = 0.005;
+  settings.max_rms_m = 0.015;
+  Random random(14);
+  int found = 0;
+  for (int frame = 0; frame < 2000; ++frame) {
+    Markers markers;
+    const Quaternion tilt = from_rotation_vector(random.vector(0.3));
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Vector3 point = tilt * small.markers_m[i] + Vector3(0, 0, 0.5);
+      test::add_marker(markers, small, point + point.normalized() * (0.005 * random.normal()));
+    }
+    if (labelings_of(markers, small, settings).count > 0) ++found;
+  }
+  EXPECT_GE(found, 1998);  // 1,970 with the first order alone
+}
+
 TEST(Correspond, RejectsTheMirrorImageThatHasTheSameDistances) {
   const Tool pen = test::five_marker_pen();
   std::vector<Vector3> mirrored;
@@ -286,6 +325,9 @@ TEST(Correspond, LeavesOutMarkersWithoutDepthOrOfAnImpossibleSize) {
   EXPECT_EQ(labelings_of(no_depth, pen, ahat()).items[0].count, 4);
   Markers broken = scene.markers;
   broken.items[0].surface_range_m = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(labelings_of(broken, pen, ahat()).items[0].count, 4);
+  broken = scene.markers;
+  broken.items[0].ray.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(labelings_of(broken, pen, ahat()).items[0].count, 4);
   Markers large = scene.markers;
   for (int i = 0; i < 5; ++i) large.items[static_cast<std::size_t>(i)].area_px = 24;  // as expected
