@@ -49,7 +49,7 @@ bool Release::wait_for(const Time* deadline) noexcept {
     until.tv_nsec = static_cast<long>(deadline->nanoseconds % 1'000'000'000);
   }
   while (!take()) {
-    if (!sleep_while_zero(count_, deadline != nullptr ? &until : nullptr)) return take();
+    if (!sleep_while_zero(count_, deadline != nullptr ? &until : nullptr)) return false;
   }
   return true;
 }

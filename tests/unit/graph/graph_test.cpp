@@ -62,6 +62,22 @@ TEST(Graph, PreparesAllNodesAndNamesTheFirstThatFails) {
   EXPECT_EQ(prepared.reason, static_cast<int>(Ready::no_offset));
 }
 
+// Two nodes that cannot get ready, listed against the order they run in.
+template <class In, class Out, int reason>
+struct Unready {
+  Ready prepare() const { return static_cast<Ready>(reason); }
+  void operator()(const In&, Out&) const noexcept {}
+};
+
+TEST(Graph, StopsPreparingAtTheFirstFailure) {
+  using FailsFirst = Unready<Row, Scaled, 3>;
+  using FailsNext = Unready<Scaled, Total, 4>;
+  static Graph<Inputs<Row>, Outputs<Total>, FailsNext, FailsFirst> graph;
+  const Prepared prepared = graph.prepare();
+  EXPECT_EQ(prepared.node, 0);
+  EXPECT_EQ(prepared.reason, 3);
+}
+
 struct Seen {
   std::vector<int>* numbers;
   void on_node_begin(int node) { numbers->push_back(node); }

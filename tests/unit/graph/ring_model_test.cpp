@@ -89,8 +89,8 @@ Verdict verdict_of() {
 
 TEST(RingModel, NeverSharesASlotLosesOrReordersAnItem) {
   const Verdict smallest = verdict_of<1, 4, 4>();
-  const Verdict fills_up = verdict_of<2, 4, 3>();
-  const Verdict runs_empty = verdict_of<2, 3, 4>();
+  const Verdict fills_up = verdict_of<2, 4, 2>();
+  const Verdict runs_empty = verdict_of<2, 2, 4>();
   EXPECT_GT(fills_up.interleavings, 10'000);
   for (const Verdict& verdict : {smallest, fills_up, runs_empty}) {
     EXPECT_GT(verdict.interleavings, 1);

@@ -102,6 +102,31 @@ TEST(Workers, GiveTheSameBytesAsTheSerialExecutor) {
   EXPECT_EQ(sums_of<3>(), sums);
 }
 
+// Which thread ran each node last; every node has an entry of its own, so threads do not collide.
+struct Whereabouts {
+  std::array<std::thread::id, 10>* threads;
+  void on_node_begin(int node) noexcept {
+    (*threads)[static_cast<std::size_t>(node)] = std::this_thread::get_id();
+  }
+  void on_node_end(int /*node*/) noexcept {}
+};
+
+TEST(Workers, TakeTheCopiesOfTheirNumberAndLeaveTheRestToTheFirst) {
+  static_assert(WideGraph::node_count == 10);
+  std::array<std::thread::id, 10> threads{};
+  auto graph = std::make_unique<WideGraph>();
+  Workers<2, Yield, Whereabouts> workers(1'000'000, {}, Whereabouts{&threads});
+  workers.begin(*graph);
+  std::thread other([&] { workers.run(*graph, 1); });
+  const std::thread::id second = other.get_id();
+  workers.run(*graph, 0);
+  other.join();
+  const std::thread::id first = std::this_thread::get_id();
+  const std::array<std::thread::id, 10> expected = {first, first, second, first, second,
+                                                    first, first, second, first, first};
+  EXPECT_EQ(threads, expected);  // Make, Spread x5, SumUp x3, Merge
+}
+
 TEST(Workers, CountOneOverrunForAWaitBeyondItsSpins) {
   struct Pause {
     std::atomic<bool>* late;
