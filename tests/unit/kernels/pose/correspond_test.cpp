@@ -329,6 +329,8 @@ TEST(Correspond, LeavesOutMarkersWithoutDepthOrOfAnImpossibleSize) {
   broken = scene.markers;
   broken.items[0].ray.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(labelings_of(broken, pen, ahat()).items[0].count, 4);
+  for (Marker& marker : broken.items) marker.ray.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(labelings_of(broken, pen, ahat()).reason, Reason::too_few_markers);
   Markers large = scene.markers;
   for (int i = 0; i < 5; ++i) large.items[static_cast<std::size_t>(i)].area_px = 24;  // as expected
   EXPECT_EQ(labelings_of(large, pen, ahat()).items[0].count, 5);
