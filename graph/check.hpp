@@ -78,8 +78,10 @@ template <class Wires, class Listed, class Parameter>
     constexpr bool other =
         !written && written_with_other_count<Wires, Token>(typename Wires::Tokens{});
     (void)sizeof(WrongPartsCount<Token, Node, !other>);
-    (void)sizeof(NoWriter < Token, Node, written || handed_in || other >);
-    (void)sizeof(PreviousOfInput < Token, kind == PortKind::read || !handed_in >);
+    constexpr bool found = written || handed_in || other;
+    (void)sizeof(NoWriter<Token, Node, found>);
+    constexpr bool remembers_input = kind == PortKind::previous && handed_in;
+    (void)sizeof(PreviousOfInput<Token, !remembers_input>);
   }
   return true;
 }
