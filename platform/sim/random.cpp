@@ -30,7 +30,17 @@ Vector3 gaussian_vector(const RandomKey& key, std::uint64_t index) {
 
 std::vector<float> gaussian_table(const RandomKey& key, int count) {
   std::vector<float> table(static_cast<std::size_t>(count));
-  for (std::size_t i = 0; i < table.size(); ++i) table[i] = static_cast<float>(gaussian(key, i));
+  double sum = 0, squares = 0;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const double value = gaussian(key, i);
+    sum += value;
+    squares += value * value;
+  }
+  const double mean = sum / count;
+  const double scale = 1 / std::sqrt(squares / count - mean * mean);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    table[i] = static_cast<float>(scale * (gaussian(key, i) - mean));
+  }
   return table;
 }
 

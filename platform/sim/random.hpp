@@ -52,7 +52,8 @@ struct RandomKey {
 [[nodiscard]] double gaussian(const RandomKey& key, std::uint64_t index);
 [[nodiscard]] Vector3 gaussian_vector(const RandomKey& key, std::uint64_t index);
 
-// count normal values, to be read from any place.
+// count normal values, at least 2, whose own mean is 0 and standard deviation 1: used over and
+// over, they would otherwise make every frame too bright by the same amount.
 [[nodiscard]] std::vector<float> gaussian_table(const RandomKey& key, int count);
 
 }  // namespace glint::sim

@@ -1,0 +1,103 @@
+#include "platform/sim/visibility.hpp"
+
+#include <gtest/gtest.h>
+
+#include "small_scene.hpp"
+
+namespace glint::sim {
+namespace {
+
+int mask_of(const Scenario& scenario) {
+  SimFrame frame;
+  Simulator(scenario).render(0, frame);
+  return frame.truth.visible_mask.front();
+}
+
+TEST(Visible, AreAllMarkersThatNothingHides) { EXPECT_EQ(mask_of(dark_scene()), 0b11111); }
+
+TEST(Visible, IsNoMarkerBehindAFinger) {
+  Scenario scenario = dark_scene();
+  // Before marker 1 at (53, 8, 510) mm, between it and the camera.
+  scenario.tools[0].parts.push_back({{0.04, 0.008, -0.05}, {0.06, 0.008, -0.05}, 0.008, 300});
+  EXPECT_EQ(mask_of(scenario), 0b11101);
+}
+
+TEST(Visible, IsAMarkerBeforeAHand) {
+  Scenario scenario = dark_scene();
+  scenario.tools[0].parts.push_back({{0.03, 0.01, 0.06}, {0.07, 0.01, 0.06}, 0.02, 300});
+  EXPECT_EQ(mask_of(scenario), 0b11111);
+}
+
+TEST(Visible, IsNoMarkerThatTheShaftCovers) {
+  Scenario scenario = dark_scene();
+  scenario.tools[0].parts.push_back({{0, 0, -0.02}, {0.1, 0.02, -0.005}, 0.005, 90});
+  EXPECT_EQ(mask_of(scenario) & 0b00011, 0);
+}
+
+TEST(Visible, IsNoMarkerThatTheFrameCuts) {
+  // Marker 2 is at the column 80 - 253 * (x + 0.045) / 0.49; 2 px from the border.
+  EXPECT_EQ(mask_of(dark_scene({-0.106, 0, 0.5})), 0b11011);
+  EXPECT_EQ(mask_of(dark_scene({-0.095, 0, 0.5})), 0b11111);
+}
+
+TEST(Visible, IsNoMarkerOutOfRange) {
+  EXPECT_EQ(mask_of(dark_scene({0, 0, 1.2})), 0);
+  EXPECT_EQ(mask_of(dark_scene({0, 0, 0.97})), 0b11111);
+}
+
+TEST(Visible, IsNoMarkerThatIsTooDark) {
+  Scenario scenario = dark_scene();
+  scenario.signal.marker = 1200;
+  EXPECT_EQ(mask_of(scenario), 0);
+}
+
+TEST(Visible, IsNoMarkerThatMergesWithClutter) {
+  Scenario scenario = dark_scene();
+  scenario.clutter.push_back({{0.012, -0.002, 0.55}, Vector3::Zero(), 0.005, 8000});
+  EXPECT_EQ(mask_of(scenario), 0b11110);
+}
+
+TEST(Visible, IsNothingWhileAHandPassesBefore) {
+  Scenario scenario = dark_scene();
+  scenario.duration = milliseconds(2000);
+  scenario.occlusions.push_back({{Time{500'000'000}, Time{1'500'000'000}}, 0, 0.09, 0.6});
+  const Simulator simulator(scenario);
+  SimFrame frame;
+  simulator.render(10, frame);
+  EXPECT_EQ(frame.truth.visible_mask[0], 0b11111);
+  simulator.render(45, frame);
+  EXPECT_EQ(frame.truth.visible_mask[0], 0);
+  for (const auto pixel : frame.pixels.reflectivity_16) ASSERT_LT(pixel, 3000);  // the hand
+  simulator.render(80, frame);
+  EXPECT_EQ(frame.truth.visible_mask[0], 0b11111);
+}
+
+TEST(Visible, IsNothingWhileThePenIsAway) {
+  Scenario scenario = dark_scene();
+  scenario.duration = milliseconds(2000);
+  scenario.aways.push_back({{Time{500'000'000}, Time{1'500'000'000}}, 0, Vector3(0, -1, 0)});
+  const Simulator simulator(scenario);
+  SimFrame frame;
+  simulator.render(45, frame);
+  EXPECT_EQ(frame.truth.visible_mask[0], 0);
+  EXPECT_NEAR(frame.truth.T_world_tool[0].translation.y(), -1.002, 1e-9);
+  simulator.render(80, frame);
+  EXPECT_EQ(frame.truth.visible_mask[0], 0b11111);
+}
+
+TEST(Saturation, LeavesTheMarkersCoreWithoutDepth) {
+  Scenario scenario = dark_scene();
+  scenario.signal.marker = 20'000;
+  scenario.signal.sphere_limb = 0.5;
+  scenario.noise.depth_saturation = 16'000;
+  SimFrame frame;
+  Simulator(scenario).render(0, frame);
+  for (int i = 0; i < 5; ++i) {
+    const Measured measured = measure(frame, projected(scenario, i));
+    EXPECT_GE(measured.zero_depths, 5);
+    EXPECT_GE(measured.bright - measured.zero_depths, 5);  // the ring still has it
+  }
+}
+
+}  // namespace
+}  // namespace glint::sim
