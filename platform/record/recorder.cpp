@@ -152,7 +152,7 @@ void Recorder::run() {
 bool Recorder::write_next() {
   for (RecorderLane& lane : lanes_) {
     const OfferSlot offer = lane.ring_.front();
-    if (offer.empty() || offer.ticket > next_ + 100) continue;
+    if (offer.empty() || offer.ticket != next_) continue;
     write_item(offer);
     lane.ring_.release();
     ++next_;

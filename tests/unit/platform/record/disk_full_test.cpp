@@ -8,6 +8,7 @@
 #include <csignal>
 
 #include "platform/input_error.hpp"
+#include "platform/record/growing_file.hpp"
 #include "platform/record/recorder.hpp"
 #include "platform/record/recording_reader.hpp"
 #include "tests/unit/platform/record/recording_samples.hpp"
@@ -82,19 +83,43 @@ TEST(DiskFull, EndsTheRecordingWithItsLastWholeChunk) {
   record_past_the_end(folder.file("disk/run.mcap"));
 }
 
-TEST(DiskFull, LimitOnTheSizeOfFilesEndsTheRecordingLikewise) {
-  const TemporaryFolder folder;
-  const pid_t child = ::fork();  // the limit holds for a whole process
+// Runs `check` in a process that can write no file beyond 1 MB: the limit holds for a whole
+// process.
+template <class Check>
+void with_file_limit(Check check) {
+  const pid_t child = ::fork();
   if (child == 0) {
     std::signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{1'000'000, 1'000'000};
     ::setrlimit(RLIMIT_FSIZE, &limit);
-    record_past_the_end(folder.file("run.mcap"));
-    ::_exit(HasFailure() ? 1 : 0);
+    check();
+    ::_exit(testing::Test::HasFailure() ? 1 : 0);
   }
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
+TEST(DiskFull, LimitOnTheSizeOfFilesEndsTheRecordingLikewise) {
+  const TemporaryFolder folder;
+  with_file_limit([&] { record_past_the_end(folder.file("run.mcap")); });
+}
+
+TEST(DiskFull, LeavesNothingOfWhatDidNotFitWhole) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a");
+  with_file_limit([&] {
+    GrowingFile file(path);
+    const std::vector<std::uint8_t> small(10, 1), large(600'000, 2);
+    EXPECT_TRUE(file.append({small, large}));
+    EXPECT_FALSE(file.append({small, large}));
+    EXPECT_EQ(file.size(), 600'010U);
+    EXPECT_EQ(std::filesystem::file_size(path + ".part"), 600'010U);
+    EXPECT_NE(file.error().find("write at byte 600010"), std::string::npos) << file.error();
+    EXPECT_TRUE(file.append({small}));
+    EXPECT_TRUE(file.name());
+    EXPECT_EQ(std::filesystem::file_size(path), 600'020U);
+  });
 }
 
 }  // namespace
