@@ -45,9 +45,10 @@ struct CanFrames {
     else
       ++dropped;
   }
-  [[nodiscard]] std::span<const CanFrame> frames() const {
+  [[nodiscard]] std::span<const CanFrame> frames() const& {
     return {items.data(), static_cast<std::size_t>(count)};
   }
+  std::span<const CanFrame> frames() && = delete;  // of a temporary they would be gone
 };
 
 }  // namespace glint

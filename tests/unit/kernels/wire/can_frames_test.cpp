@@ -83,7 +83,8 @@ TEST(CanFrames, OfOneEstimateShareTheCounter) {
   PoseSample s = still_sample();
   for (const std::uint32_t tick : {0U, 1U, 14U, 15U, 16U, 4000000000U}) {
     s.tick_number = tick;
-    for (const CanFrame& frame : packed(s).frames()) EXPECT_EQ(frame.data[1] & 0xFU, tick % 15);
+    const CanFrames frames = packed(s);
+    for (const CanFrame& frame : frames.frames()) EXPECT_EQ(frame.data[1] & 0xFU, tick % 15);
   }
 }
 
@@ -181,7 +182,8 @@ TEST(CanFrames, GiveEachToolAndFrameItsOwnIdentifier) {
     packing.format = format;
     for (std::uint8_t tool = 0; tool < k_tools_max; ++tool) {
       s.tool = tool;
-      for (const CanFrame& frame : packed(s, packing).frames()) {
+      const CanFrames frames = packed(s, packing);
+      for (const CanFrame& frame : frames.frames()) {
         EXPECT_TRUE(seen.insert(frame.identifier).second);
         EXPECT_EQ((frame.identifier - k_can_base_max) / 16, tool);
       }
