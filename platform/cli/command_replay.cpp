@@ -17,14 +17,14 @@ namespace {
 struct ReplayArguments {
   std::string recording, points, tool, json;
   int workers = 1;
-  bool incomplete = false;
+  ReadTolerance tolerance;
 };
 
 int replay_recording(const ReplayArguments& arguments) {
   Progress progress("replaying");
   ReplayOptions options;
   options.workers = arguments.workers;
-  options.tolerance = {arguments.incomplete, arguments.incomplete};
+  options.tolerance = arguments.tolerance;
   options.progress = [&](double seconds) { progress.show(seconds, 0); };
   const ReplayResult result = replay(arguments.recording, options);
   std::printf("level            %s\nframes           %lld\nticks            %lld\n",
@@ -104,8 +104,10 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->add_option("--tool", arguments->tool, "the tool to find in them (.toml, .rom, .ini)");
   command->add_option("--workers", arguments->workers, "threads: 1 or 2, the same bytes")
       ->check(CLI::Range(1, 2));
-  command->add_flag("--incomplete", arguments->incomplete,
-                    "read a recording that was cut short or dropped something");
+  command->add_flag("--allow-truncated", arguments->tolerance.truncated,
+                    "read a file that was cut short up to its last whole chunk");
+  command->add_flag("--allow-incomplete", arguments->tolerance.incomplete,
+                    "read a recording that dropped something or ended early");
   command->add_option("--json", arguments->json, "write the figures here");
   command->callback([arguments, &exit_code] {
     if (arguments->recording.empty() == arguments->points.empty()) {

@@ -21,7 +21,11 @@ sim::Scenario scenario_of(const Cell& cell) {
     scenario = sim::still_run(cell.camera, tools);
   } else {
     scenario = sim::default_run(tools);
+    const sim::Scenario sensor = sim::still_run(cell.camera, tools);
     scenario.camera = cell.camera;
+    scenario.noise = sensor.noise;
+    scenario.signal = sensor.signal;
+    scenario.localisation = sensor.localisation;
   }
   if (!settings.background.empty()) {
     const FrameBuffer frame =

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <memory>
 #include <thread>
+#include <utility>
 
 #include "platform/rt/allocation_counter.hpp"
 #include "platform/rt/clock.hpp"
@@ -119,7 +120,7 @@ void run_live(const Cell& cell, Time epoch, SimulatedSource& source, Groups& gro
 
 // Frames and ticks in the order of their nominal times, in one thread: the same bytes every time.
 void run_in_order(const Cell& cell, Time& now, SimulatedSource& source, Groups& groups,
-                  const SessionOptions& options, SessionResult& result) {
+                  double all_s, const SessionOptions& options, SessionResult& result) {
   const Duration period = tick_period(cell);
   Time next_tick;
   const auto tick_until = [&](Time limit) {
@@ -136,7 +137,7 @@ void run_in_order(const Cell& cell, Time& now, SimulatedSource& source, Groups& 
     groups.process(arrived);
     source.give_back(arrived);
     if (options.progress) {
-      options.progress(static_cast<double>(now.nanoseconds) * 1e-9, cell.simulator.duration_s);
+      options.progress(static_cast<double>(now.nanoseconds) * 1e-9, all_s);
     }
   }
   tick_until(last + cell.lost_after);
@@ -145,7 +146,12 @@ void run_in_order(const Cell& cell, Time& now, SimulatedSource& source, Groups& 
 }  // namespace
 
 SessionResult run_session(const Cell& cell, const SessionOptions& options) {
-  const sim::Simulator simulator(scenario_of(cell));
+  return run_session(cell, scenario_of(cell), options);
+}
+
+SessionResult run_session(const Cell& cell, sim::Scenario scenario,
+                          const SessionOptions& options) {
+  const sim::Simulator simulator(std::move(scenario));
   SessionResult result;
   if (cell.realtime) {
     if (const MemoryLock lock = lock_memory(); !lock.locked) {
@@ -174,12 +180,13 @@ SessionResult run_session(const Cell& cell, const SessionOptions& options) {
     const Time last = simulator.timing(simulator.frame_count() - 1).arrival;
     run_live(cell, epoch, source, *groups, last, options, result);
   } else {
-    run_in_order(cell, simulated_now, source, *groups, options, result);
+    run_in_order(cell, simulated_now, source, *groups, simulator.scenario().duration.seconds(),
+                 options, result);
   }
 
   groups->outcomes.resize(groups->processed);
   result.frames = static_cast<std::int64_t>(groups->processed);
-  result.duration_s = cell.simulator.duration_s;
+  result.duration_s = simulator.scenario().duration.seconds();
   result.accuracy = judge(groups->outcomes, source.truths(), cell.tools, cell.lost_after);
   result.latencies = groups->tick.latencies().entries();
   result.late_renders = source.late_renders();

@@ -46,7 +46,10 @@ struct SessionResult {
   std::vector<std::string> files;           // everything written
 };
 
-// Throws InputError, MissingDevice.
+// On simulated frames: of the scenario that the cell asks for, or of one's own (its camera is the
+// cell's). Throws InputError, MissingDevice.
 [[nodiscard]] SessionResult run_session(const Cell& cell, const SessionOptions& options);
+[[nodiscard]] SessionResult run_session(const Cell& cell, sim::Scenario scenario,
+                                        const SessionOptions& options);
 
 }  // namespace glint

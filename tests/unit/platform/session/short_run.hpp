@@ -1,0 +1,50 @@
+// Short runs that tests share: in order, without DDS, into a folder that goes away with the test.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "platform/session/scenario_of.hpp"
+#include "platform/session/session.hpp"
+
+namespace glint {
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "glint-XXXXXX").string();
+    path_ = mkdtemp(pattern.data());
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] std::string path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+inline Cell short_cell(double seconds, const std::string& level = "roi") {
+  Cell cell = default_cell();
+  cell.realtime = false;
+  cell.workers = 1;
+  cell.simulator.duration_s = seconds;
+  cell.record.level = level;
+  return cell;
+}
+
+inline SessionResult short_run(const Cell& cell, const sim::Scenario& scenario,
+                               const std::string& folder) {
+  SessionOptions options;
+  options.out = folder;
+  return run_session(cell, scenario, options);
+}
+
+inline SessionResult short_run(const Cell& cell, const std::string& folder) {
+  return short_run(cell, scenario_of(cell), folder);
+}
+
+}  // namespace glint
