@@ -1,6 +1,7 @@
 #include "platform/experiments/experiment.hpp"
 
 #include <chrono>
+#include <opencv2/core/utility.hpp>
 
 #include "platform/experiments/declared.hpp"
 #include "platform/experiments/glint_chain.hpp"
@@ -69,6 +70,7 @@ ErrorColumn make_error_column(std::span<const double> values, std::span<const do
 
 ExperimentResult run_experiment(ExperimentKind kind, const std::vector<ExperimentRun>& runs,
                                 const ExperimentOptions& options) {
+  cv::setNumThreads(1);  // both methods on one thread
   ExperimentResult result;
   result.kind = kind;
   result.quick = options.quick;

@@ -3,8 +3,7 @@
 // precomputed fixed-point maps, 8 bits throughout, one pass of the blob detector, buffers kept.
 //
 // Source: Puljiz et al., Inside-out Infrared Marker Tracking via Head Mounted Displays for Smart
-//         Robot Programming (arXiv 1903), section III: cv::undistort, threshold 250, half size,
-//         blob detection.
+//         Robot Programming, section III: cv::undistort, threshold 250, half size, blob detection.
 #pragma once
 
 #include <opencv2/core.hpp>

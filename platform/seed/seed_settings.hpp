@@ -8,8 +8,9 @@
 namespace glint {
 
 struct SeedSettings {
-  // Two distances are equal if they differ by less: 6 sigma of two ranges with 1 mm each would be
-  // 8.5 mm, and the built-in pen's sides differ by 8 mm; every method here has to choose.
+  // Two distances are equal if they differ by less. Twice the range noise of 1.5 mm a marker gives
+  // a distance 2.1 mm (1 sigma); wider than 3 sigma of that, narrower than the 8 mm by which the
+  // sides of a well-made tool differ.
   double delta_m = 0.007;
   double max_rms_m = 0.005;       // of the fit; beyond it the set is not the tool
   int min_markers = 3;            // as published

@@ -57,6 +57,7 @@ TEST(Statistics, PicksPercentilesAmongTheValues) {
   EXPECT_EQ(percentile(values, 0.99), 990);
   EXPECT_EQ(percentile(values, 0.999), 999);
   EXPECT_EQ(percentile(values, 1), 1000);
+  EXPECT_EQ(percentile(std::vector<double>{3, 1, 2}, 0.5), 2);
 }
 
 TEST(Statistics, CountsEveryValueOnceAlsoAtTheEdges) {
