@@ -1,6 +1,10 @@
 #include "platform/dds/reader_process.hpp"
 
+#include <unistd.h>
+
 #include <csignal>
+#include <cstdio>
+#include <string>
 #include <thread>
 
 #include "platform/dds/dds_sink.hpp"
@@ -15,8 +19,8 @@ constexpr Duration k_limit = milliseconds(20'000);
 
 class ReaderProcesses : public DdsTest {
  protected:
-  std::string file_ = testing::TempDir() + "glint_dds_reader_" +
-                      testing::UnitTest::GetInstance()->current_test_info()->name() + ".json";
+  ~ReaderProcesses() override { std::remove(file_.c_str()); }
+  std::string file_ = testing::TempDir() + "glint_dds_reader_" + std::to_string(getpid()) + ".json";
 };
 
 // Offers samples as fast as the sink takes them, so that the ring never overflows.

@@ -2,17 +2,26 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 #include "platform/input_error.hpp"
 
 namespace glint {
 namespace {
 
-const std::string file = testing::TempDir() + "glint_reader_result.json";
+class ReaderResults : public testing::Test {
+ protected:
+  ~ReaderResults() override { std::remove(file.c_str()); }
+  const std::string file =
+      testing::TempDir() + "glint_reader_result_" + std::to_string(getpid()) + ".json";
+};
 
-TEST(ReaderResults, ComeBackAsTheyWereSaved) {
+TEST_F(ReaderResults, ComeBackAsTheyWereSaved) {
   ReaderResult result;
   result.received = 1;
   result.missed = 2;
@@ -41,7 +50,7 @@ TEST(ReaderResults, ComeBackAsTheyWereSaved) {
   EXPECT_EQ(back.latency_max_us, 11.5);
 }
 
-TEST(ReaderResults, ThatAreNoneAreRefusedByName) {
+TEST_F(ReaderResults, ThatAreNoneAreRefusedByName) {
   for (const char* text : {"", "{}", "[1]", "{\"received\": \"many\"}"}) {
     std::ofstream(file) << text;
     try {
