@@ -17,7 +17,8 @@ struct RecordingReader::Body {
       refuse("an MCAP file of another program", "a recording of Glint");
     facts = opening->second;
     if (facts[k_fact_format] != std::to_string(k_recording_format))
-      refuse("format '" + facts[k_fact_format] + "'", "format " + std::to_string(k_recording_format));
+      refuse("format '" + facts[k_fact_format] + "'",
+             "format " + std::to_string(k_recording_format));
     level = recording_level(facts[k_fact_level], path);
     nominal_tick = {number(k_fact_nominal_tick)};
     unix_offset = {number(k_fact_unix_offset)};

@@ -25,6 +25,7 @@ struct RecordedTopics {
   std::string pose_covariance;  // the same, with _cov
   std::string tip_frame;        // glint_NAME_tip
 };
-[[nodiscard]] RecordedTopics tool_topics(const std::vector<std::string>& tool_names, std::size_t tool);
+[[nodiscard]] RecordedTopics tool_topics(const std::vector<std::string>& tool_names,
+                                         std::size_t tool);
 
 }  // namespace glint
