@@ -5,6 +5,7 @@
 
 #include "glint_default_cell.hpp"
 #include "kernels/elementary.hpp"
+#include "kernels/wire/can_frames.hpp"
 #include "platform/cells/tool_file.hpp"
 #include "platform/cells/toml_reader.hpp"
 #include "platform/input_error.hpp"
@@ -120,7 +121,7 @@ void read_sinks(TomlReader& root, Cell& cell) {
     TomlReader reader(*table, cell.file, "can.");
     cell.can.sink = reader.text("sink", cell.can.sink);
     cell.can.fd = reader.one_of("frames", "classic", {"classic", "fd"}) == "fd";
-    cell.can.base_id = static_cast<std::uint32_t>(reader.integer("base_id", 0x1A0, 0x001, 0x7FF));
+    cell.can.base_id = static_cast<std::uint32_t>(reader.integer("base_id", k_can_base_default, 1, k_can_base_max));
     cell.can.bit_rate = reader.integer("bit_rate", cell.can.bit_rate, 10'000, 1'000'000);
     cell.can.data_bit_rate =
         reader.integer("data_bit_rate", cell.can.data_bit_rate, 10'000, 8'000'000);
@@ -132,6 +133,12 @@ void read_sinks(TomlReader& root, Cell& cell) {
     cell.dds.on = reader.boolean("on", cell.dds.on);
     cell.dds.interface = reader.text("interface", cell.dds.interface);
     cell.dds.domain = static_cast<int>(reader.integer("domain", cell.dds.domain, 0, 232));
+    reader.done();
+  }
+  if (const toml::table* table = root.table("files")) {
+    TomlReader reader(*table, cell.file, "files.");
+    cell.files.tum = reader.text("tum", cell.files.tum);
+    cell.files.csv = reader.text("csv", cell.files.csv);
     reader.done();
   }
   if (const toml::table* table = root.table("record")) {

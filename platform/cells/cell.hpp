@@ -34,6 +34,17 @@ struct RecordSettings {
   std::string level = "roi";             // full, roi, blobs, outputs
 };
 
+// Trajectories as text; relative to --out, empty: none.
+struct FileSettings {
+  std::string tum = "tip.tum";           // the first tool's tip, for evo and its kin
+  std::string csv;                       // every sample of every tool
+};
+
+enum class Method : std::uint8_t {
+  glint,
+  seed,   // the published method, first tool only; outside real time and determinism
+};
+
 // Where simulated frames come from; everything else about the simulator has one declared default.
 struct SimulatorSettings {
   std::string scenario = "default";      // default, still, or trajectories
@@ -61,6 +72,8 @@ struct Cell {
   CanSettings can;
   DdsCellSettings dds;
   RecordSettings record;
+  FileSettings files;
+  Method method = Method::glint;         // chosen on the command line
   bool robot_given = true;               // T_world_robot holds; otherwise the pose stays in the world
   Pose T_world_robot;
 };

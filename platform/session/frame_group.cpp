@@ -22,23 +22,29 @@ ChoiceRecord as_record(const graph::Choice& choice, std::int64_t unix_offset_ns)
 FrameGroup::FrameGroup(const Cell& cell, graph::TripleBuffer<ToolSet>& tool_set, Clock now,
                        Activate activate, RecorderLane* lane)
     : group_(*tracker_, k_frame_group),
+      newest_(&tracker_->output<Estimates>()),
       now_(std::move(now)),
       activate_(std::move(activate)),
       lane_(lane) {
   configure(cell, *tracker_);
   tracker_->latest<ToolSet>().bind(tool_set);
+  if (cell.method == Method::seed) seed_ = std::make_unique<SeedMethod>(cell);
 }
 
 void FrameGroup::process(const ArrivedFrame& arrived) noexcept {
-  tracker_->input<Frame>() = arrived.frame;
-  tracker_->input<HeadPose>() = arrived.head;
   (void)group_.release(arrived.frame.mid_exposure.nanoseconds);
-  activate_(*tracker_);
-
-  const Estimates& estimates = tracker_->output<Estimates>();
-  estimates_.write_slot() = estimates;
+  newest_ = &estimate(arrived);
+  estimates_.write_slot() = *newest_;
   estimates_.publish(group_.choice().activation, now_().nanoseconds);
   if (lane_ != nullptr) record(arrived);
+}
+
+const Estimates& FrameGroup::estimate(const ArrivedFrame& arrived) noexcept {
+  if (seed_ != nullptr) return seed_->process(arrived);
+  tracker_->input<Frame>() = arrived.frame;
+  tracker_->input<HeadPose>() = arrived.head;
+  activate_(*tracker_);
+  return tracker_->output<Estimates>();
 }
 
 void FrameGroup::record(const ArrivedFrame& arrived) noexcept {

@@ -11,6 +11,7 @@
 #include "platform/cells/cell.hpp"
 #include "platform/record/recorder.hpp"
 #include "platform/session/frame_source.hpp"
+#include "platform/session/seed_method.hpp"
 
 namespace glint {
 
@@ -33,14 +34,18 @@ class FrameGroup {
   void process(const ArrivedFrame& arrived) noexcept;
 
   [[nodiscard]] graph::TripleBuffer<Estimates>& estimates() noexcept { return estimates_; }
-  [[nodiscard]] const Tracker& tracker() const noexcept { return *tracker_; }
+  // What the last frame left.
+  [[nodiscard]] const Estimates& newest() const noexcept { return *newest_; }
   [[nodiscard]] std::uint64_t activations() const noexcept { return group_.choice().activation; }
 
  private:
+  [[nodiscard]] const Estimates& estimate(const ArrivedFrame& arrived) noexcept;
   void record(const ArrivedFrame& arrived) noexcept;
 
   std::unique_ptr<Tracker> tracker_ = std::make_unique<Tracker>();
   graph::RateGroup<Tracker> group_;
+  std::unique_ptr<SeedMethod> seed_;   // null: the tracker
+  const Estimates* newest_;
   graph::TripleBuffer<Estimates> estimates_;
   Clock now_;
   Activate activate_;

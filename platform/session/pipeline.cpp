@@ -49,6 +49,8 @@ NominalMarker nominal_marker(const ToolSet& tools) {
 CorrespondSettings correspond_settings(const Cell& cell) {
   CorrespondSettings settings;
   settings.focal_px = cell.camera.model.fx;
+  // A smaller labeling is of use only where another tool may hold the missing marker.
+  settings.fewer_kept = cell.tools.count > 1 ? 1 : 0;
   return settings;
 }
 

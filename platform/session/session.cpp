@@ -40,7 +40,7 @@ struct Groups {
         frame(cell, tool_set, now, [this](Tracker& tracker) { executor.activate(tracker); },
               sinks.recorder() != nullptr ? &sinks.recorder()->frame_lane() : nullptr),
         tick(cell, frame.estimates(), robot, now,
-             {sinks.can(), sinks.dds(),
+             {sinks.can(), sinks.dds(), sinks.files(),
               sinks.recorder() != nullptr ? &sinks.recorder()->tick_lane() : nullptr},
              unix_offset_ns, static_cast<std::size_t>(simulator.frame_count())) {
     tool_set.write_slot() = cell.tools;
@@ -53,7 +53,7 @@ struct Groups {
   void process(const ArrivedFrame& arrived) noexcept {
     frame.process(arrived);
     if (processed < outcomes.size()) {
-      outcomes[processed++] = outcome_of(frame.tracker().output<Estimates>());
+      outcomes[processed++] = outcome_of(frame.newest());
     }
   }
 

@@ -39,6 +39,7 @@ struct SessionResult {
   DdsCounts dds;
   ReaderResult dds_reader;
   bool dds_was_read = false;
+  std::uint64_t files_dropped = 0;          // samples that TUM and CSV files lack
   RecordingOutcome recording;
   std::string recording_file;
   std::string output_sha256;

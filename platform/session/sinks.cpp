@@ -81,6 +81,12 @@ Sinks::Sinks(const Cell& cell, const SessionOptions& options, std::int64_t unix_
     recorder_ = std::make_unique<Recorder>(recording_file_, info, settings);
   }
 
+  if (!cell.files.tum.empty()) tum_file_ = in_folder(out_, cell.files.tum);
+  if (!cell.files.csv.empty()) csv_file_ = in_folder(out_, cell.files.csv);
+  if (!tum_file_.empty() || !csv_file_.empty()) {
+    files_ = std::make_unique<FileSink>(tum_file_, csv_file_, can.when_full);
+  }
+
   // A simulated run that does not keep real time would only overrun its DDS readers.
   if (cell.dds.on && cell.realtime) {
     const DdsSettings settings = dds_settings(cell, unix_offset_ns);
@@ -108,6 +114,14 @@ void Sinks::close(SessionResult& result) {
     if (reader_ != nullptr) {
       result.dds_reader = reader_->finish(k_reader_limit);
       result.dds_was_read = true;
+    }
+  }
+  if (files_ != nullptr) {
+    result.files_dropped = files_->dropped();
+    const std::string wrong = files_->close();
+    if (!wrong.empty()) result.refused.push_back(wrong);
+    for (const std::string& file : {tum_file_, csv_file_}) {
+      if (!file.empty()) result.files.push_back(file);
     }
   }
   if (recorder_ != nullptr) {

@@ -9,6 +9,7 @@
 #include "platform/dds/dds_sink.hpp"
 #include "platform/dds/reader_process.hpp"
 #include "platform/record/recorder.hpp"
+#include "platform/session/file_sink.hpp"
 #include "platform/session/session.hpp"
 
 namespace glint {
@@ -22,6 +23,7 @@ class Sinks {
   [[nodiscard]] CanSink* can() noexcept { return can_.get(); }
   [[nodiscard]] DdsSink* dds() noexcept { return dds_.get(); }
   [[nodiscard]] Recorder* recorder() noexcept { return recorder_.get(); }
+  [[nodiscard]] FileSink* files() noexcept { return files_.get(); }
 
   // After the last offer: everything is written, and what became of it stands in the result.
   void close(SessionResult& result);
@@ -33,7 +35,8 @@ class Sinks {
   std::unique_ptr<ReaderProcess> reader_;   // started before the sink, ended after it
   std::unique_ptr<DdsSink> dds_;
   std::unique_ptr<Recorder> recorder_;
-  std::string recording_file_, can_file_;
+  std::unique_ptr<FileSink> files_;
+  std::string recording_file_, can_file_, tum_file_, csv_file_;
 };
 
 }  // namespace glint

@@ -39,6 +39,7 @@ void TickGroup::tick(std::uint32_t number, Time nominal, Time woken) noexcept {
     ++records_;
     if (sinks_.lane != nullptr) (void)sinks_.lane->offer_output(sample, record);
     if (sinks_.dds != nullptr) (void)sinks_.dds->offer(sample);
+    if (sinks_.files != nullptr) sinks_.files->offer(sample);
   }
 }
 

@@ -13,6 +13,7 @@
 #include "platform/dds/dds_sink.hpp"
 #include "platform/record/recorder.hpp"
 #include "platform/record/sha256.hpp"
+#include "platform/session/file_sink.hpp"
 #include "platform/session/frame_group.hpp"
 #include "platform/session/latency.hpp"
 
@@ -22,6 +23,7 @@ namespace glint {
 struct TickSinks {
   CanSink* can = nullptr;
   DdsSink* dds = nullptr;
+  FileSink* files = nullptr;
   RecorderLane* lane = nullptr;
 };
 

@@ -1,0 +1,54 @@
+#include "platform/session/file_sink.hpp"
+
+#include <chrono>
+
+namespace glint {
+namespace {
+constexpr auto k_poll = std::chrono::milliseconds(2);
+}  // namespace
+
+FileSink::FileSink(const std::string& tum_file, const std::string& csv_file, WhenFull when_full)
+    : when_full_(when_full) {
+  if (!tum_file.empty()) tum_ = std::make_unique<TumFile>(tum_file);
+  if (!csv_file.empty()) csv_ = std::make_unique<CsvFile>(csv_file);
+  thread_ = std::thread([this] { run(); });
+}
+
+void FileSink::offer(const PoseSample& sample) noexcept {
+  while (when_full_ == WhenFull::wait && waiting_ >= k_ring_capacity) {
+    std::this_thread::sleep_for(k_poll);
+  }
+  ++waiting_;
+  if (!ring_.push(sample)) --waiting_;
+}
+
+bool FileSink::write_waiting() {
+  PoseSample sample;
+  if (!ring_.pop(sample)) return false;
+  --waiting_;
+  if (tum_ != nullptr) tum_->write(sample);
+  if (csv_ != nullptr) csv_->write(sample);
+  return true;
+}
+
+void FileSink::run() {
+  for (;;) {
+    const bool last_look = ending_;
+    while (write_waiting()) {
+    }
+    if (last_look) return;
+    std::this_thread::sleep_for(k_poll);
+  }
+}
+
+std::string FileSink::close() {
+  if (!thread_.joinable()) return {};
+  ending_ = true;
+  thread_.join();
+  std::string wrong;
+  if (tum_ != nullptr && !tum_->close()) wrong = tum_->file().error();
+  if (csv_ != nullptr && !csv_->close() && wrong.empty()) wrong = csv_->file().error();
+  return wrong;
+}
+
+}  // namespace glint

@@ -1,0 +1,49 @@
+// Pose samples to text files (TUM, CSV) from a thread of its own behind a bounded ring: the tick
+// thread only copies. What the ring cannot hold is counted.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "graph/ring.hpp"
+#include "kernels/wire/pose_sample.hpp"
+#include "platform/record/trajectory_files.hpp"
+#include "platform/when_full.hpp"
+
+namespace glint {
+
+class FileSink {
+ public:
+  static constexpr int k_ring_capacity = 1024;   // 4 s of one tool at 250 Hz
+
+  // Empty names make no file. Throws InputError where a file cannot be made.
+  FileSink(const std::string& tum_file, const std::string& csv_file, WhenFull when_full);
+  ~FileSink() { close(); }
+  FileSink(const FileSink&) = delete;
+  FileSink& operator=(const FileSink&) = delete;
+
+  // From one thread. No heap, no lock; WhenFull::wait sleeps where the ring is full.
+  void offer(const PoseSample& sample) noexcept;
+
+  // Writes what waits and closes the files. The first line that says what went wrong, or nothing.
+  std::string close();
+  [[nodiscard]] std::uint64_t dropped() const noexcept { return ring_.dropped(); }
+
+ private:
+  void run();
+  bool write_waiting();
+
+  graph::Ring<PoseSample, k_ring_capacity> ring_;
+  std::unique_ptr<TumFile> tum_;
+  std::unique_ptr<CsvFile> csv_;
+  WhenFull when_full_;
+  std::atomic<std::int64_t> waiting_{0};
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+};
+
+}  // namespace glint

@@ -1,0 +1,30 @@
+// The published method in place of Glint's tracker: the same frames, the same output at a steady
+// rate. One tool, the first of the cell.
+#pragma once
+
+#include "nodes/check_frame.hpp"
+#include "nodes/pose_nodes.hpp"
+#include "nodes/track_tools.hpp"
+#include "platform/cells/cell.hpp"
+#include "platform/seed/seed_tracker.hpp"
+#include "platform/session/frame_source.hpp"
+
+namespace glint {
+
+class SeedMethod {
+ public:
+  explicit SeedMethod(const Cell& cell);
+
+  // Outside real time: OpenCV allocates.
+  [[nodiscard]] const Estimates& process(const ArrivedFrame& arrived);
+
+ private:
+  SeedTracker seed_;
+  CheckFrame check_;
+  TrackTools track_;
+  graph::Latest<ToolSet> tools_;
+  graph::Parts<FittedTools, k_tool_slices> fitted_;
+  Estimates last_, estimates_;
+};
+
+}  // namespace glint
