@@ -145,6 +145,13 @@ void draw_plots(const std::string& folder, SessionResult& result) {
                                     {&series, 1}));
     result.files.push_back(path);
   }
+  if (!accuracy.path_seen_m.empty()) {
+    const TrajectorySeries series[] = {{"truth", accuracy.path_truth_m},
+                                       {"tracked", accuracy.path_seen_m}};
+    const std::string path = (std::filesystem::path(folder) / "tip_path.svg").string();
+    write_text(path, trajectory_plot("The pen's tip, world", series));
+    result.files.push_back(path);
+  }
   if (!result.latencies.empty()) {
     std::vector<double> us;
     for (const FrameToCan& entry : result.latencies) {

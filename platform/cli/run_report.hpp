@@ -13,7 +13,7 @@ namespace glint {
 
 void print_table(const nlohmann::ordered_json& summary, const SessionResult& result);
 
-// error_histogram.svg, latency.svg in `folder`; adds their names to result.files.
+// tip_error.svg, tip_path.svg and frame_to_can.svg in `folder`; their names go to result.files.
 void draw_plots(const std::string& folder, SessionResult& result);
 
 // Whether the run's own sums hold: nothing lost without being counted.

@@ -64,6 +64,11 @@ Accuracy judge(const std::vector<FrameOutcome>& outcomes, const std::vector<sim:
       result.tip_max_m = std::max(result.tip_max_m, tip_error);
       result.tip_errors_m.push_back(tip_error);
       result.angle_errors_rad.push_back(angle);
+      if (t == 0) {
+        result.path_truth_m.push_back(truth.T_world_tool[0] * tools.items[0].tip_m);
+        result.path_seen_m.push_back(truth.T_world_camera *
+                                     (tool.T_camera_tool * tools.items[0].tip_m));
+      }
     }
   }
   if (result.poses > 0) {

@@ -37,6 +37,8 @@ struct Accuracy {
   double angle_rms_rad = 0;
   std::vector<double> tip_errors_m;   // one for each pose, for histograms
   std::vector<double> angle_errors_rad;
+  // The first tool's tip in the true world, for plots: where it was and where it was seen.
+  std::vector<Vector3> path_truth_m, path_seen_m;
 
   [[nodiscard]] double tracked_fraction() const {
     return trackable > 0 ? static_cast<double>(tracked) / static_cast<double>(trackable) : 0.0;
