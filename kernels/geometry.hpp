@@ -18,7 +18,9 @@ struct Pose {
   Vector3 translation = Vector3::Zero();
 
   // Maps a point's coordinates.
-  [[nodiscard]] Vector3 operator*(const Vector3& point) const { return rotation * point + translation; }
+  [[nodiscard]] Vector3 operator*(const Vector3& point) const {
+    return rotation * point + translation;
+  }
   // T_a_c = T_a_b * T_b_c
   [[nodiscard]] Pose operator*(const Pose& other) const {
     return {(rotation * other.rotation).normalized(), rotation * other.translation + translation};

@@ -4,13 +4,13 @@
 
 namespace glint {
 
-inline constexpr int k_width_max = 512;         // AHAT: 512 x 512
+inline constexpr int k_width_max = 512;  // AHAT: 512 x 512
 inline constexpr int k_height_max = 512;
 inline constexpr int k_tools_max = 16;
 inline constexpr int k_markers_per_tool_max = 8;
 inline constexpr int k_blobs_max = 256;
-inline constexpr int k_row_bands = 2;           // how often the frame is split; never the worker count
+inline constexpr int k_row_bands = 2;  // how often the frame is split; never the worker count
 inline constexpr int k_runs_per_band_max = 8192;
-inline constexpr int k_labelings_max = 8;       // kept for each tool, best first
+inline constexpr int k_labelings_max = 8;  // kept for each tool, best first
 
 }  // namespace glint

@@ -8,25 +8,25 @@
 namespace glint {
 
 enum class Reason : std::uint8_t {
-  none = 0,              // all is well
-  no_frame_yet = 1,      // nothing has been measured since the start
-  too_few_markers = 2,   // fewer candidates in view than a pose needs
-  no_labeling = 3,       // markers in view, but no set of them has the tool's distances
-  taken_by_other = 4,    // every labeling needs a marker that another tool holds
-  degenerate = 5,        // fewer than three distinct points
-  collinear = 6,         // the rotation about their line is free
-  bad_fit = 7,           // fitted, but the residual is beyond what the noise explains
-  frame_late = 8,        // stamped before a frame already processed
-  frame_doubled = 9,     // carries a stamp or sequence number already seen
-  frame_invalid = 10,    // no usable pixels, size or stamp
-  head_pose_missing = 11,// the pose holds in the camera's frame only
-  too_old = 12,          // the newest measurement is older than the limit
-  runs_full = 13,        // more runs of bright pixels than the budget; the rest were counted
-  blobs_full = 14,       // more blobs than the budget; the best were kept
-  search_full = 15,      // the hypothesis budget ended the search; the best so far was kept
-  not_prepared = 16,     // the node or table it needs was never prepared
-  out_of_range = 17,     // a value does not fit its field and is sent as invalid
-  no_reference = 18,     // the robot's frame is not known yet
+  none = 0,                // all is well
+  no_frame_yet = 1,        // nothing has been measured since the start
+  too_few_markers = 2,     // fewer candidates in view than a pose needs
+  no_labeling = 3,         // markers in view, but no set of them has the tool's distances
+  taken_by_other = 4,      // every labeling needs a marker that another tool holds
+  degenerate = 5,          // fewer than three distinct points
+  collinear = 6,           // the rotation about their line is free
+  bad_fit = 7,             // fitted, but the residual is beyond what the noise explains
+  frame_late = 8,          // stamped before a frame already processed
+  frame_doubled = 9,       // carries a stamp or sequence number already seen
+  frame_invalid = 10,      // no usable pixels, size or stamp
+  head_pose_missing = 11,  // the pose holds in the camera's frame only
+  too_old = 12,            // the newest measurement is older than the limit
+  runs_full = 13,          // more runs of bright pixels than the budget; the rest were counted
+  blobs_full = 14,         // more blobs than the budget; the best were kept
+  search_full = 15,        // the hypothesis budget ended the search; the best so far was kept
+  not_prepared = 16,       // the node or table it needs was never prepared
+  out_of_range = 17,       // a value does not fit its field and is sent as invalid
+  no_reference = 18,       // the robot's frame is not known yet
 };
 
 // The name as it stands in this list; "unknown" for a value that is not in it.

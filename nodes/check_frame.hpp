@@ -10,7 +10,7 @@
 
 namespace glint {
 
-inline constexpr int k_resync_frames = 8;   // 0.2 s at 45 Hz: below lost_after, above any reordering
+inline constexpr int k_resync_frames = 8;  // 0.2 s at 45 Hz: below lost_after, above any reordering
 
 // Takes the stamp off a frame and checks its size against the camera's.
 struct StampFrame {
@@ -24,10 +24,10 @@ struct StampFrame {
     stamp.sequence = frame.sequence;
     const bool plane_there =
         reflectivity_bits == 8 ? !frame.reflectivity_8.empty() : !frame.reflectivity_16.empty();
-    const bool depth_fits = !frame.depth.empty() && frame.depth.width == width &&
-                            frame.depth.height == height;
-    const bool fits = plane_there && depth_fits && frame.width() == width &&
-                      frame.height() == height;
+    const bool depth_fits =
+        !frame.depth.empty() && frame.depth.width == width && frame.depth.height == height;
+    const bool fits =
+        plane_there && depth_fits && frame.width() == width && frame.height() == height;
     stamp.reason = fits ? Reason::none : Reason::frame_invalid;
   }
 };
@@ -36,9 +36,9 @@ struct CheckFrame {
   void operator()(const FrameStamp& stamp, FrameVerdict& verdict) noexcept;
 
  private:
-  Time newest_;                 // of the frames accepted
+  Time newest_;  // of the frames accepted
   std::uint32_t sequence_ = 0;
-  Time refused_newest_;         // of the frames refused in a row
+  Time refused_newest_;  // of the frames refused in a row
   int refused_in_row_ = 0;
   FrameVerdict counts_;
 };

@@ -27,12 +27,13 @@ void add_disjoint(Roi box, Rois& rois) {
     }
     box = unite(box, rois.items[i]);
     rois.items[i] = rois.items[--rois.count];
-    i = 0;   // the grown box may meet one passed before; each merge removes one, so this ends
+    i = 0;  // the grown box may meet one passed before; each merge removes one, so this ends
   }
   rois.items[rois.count++] = box;
 }
 
-// The box of the tool's markers with its reach about each; nothing where a marker cannot be projected.
+// The box of the tool's markers with its reach about each; nothing where a marker cannot be
+// projected.
 bool box_of(const CameraModel& camera, const Tool& tool, const Prediction& prediction, Roi& box) {
   double x0 = 1e9, y0 = 1e9, x1 = -1e9, y1 = -1e9;
   for (int m = 0; m < tool.marker_count; ++m) {
@@ -46,8 +47,9 @@ bool box_of(const CameraModel& camera, const Tool& tool, const Prediction& predi
     x1 = std::max(x1, pixel.value.x() + radius_px);
     y1 = std::max(y1, pixel.value.y() + radius_px);
   }
-  box = {clamp_to_int(std::floor(x0), 0, camera.width), clamp_to_int(std::floor(y0), 0, camera.height),
-         clamp_to_int(std::ceil(x1), 0, camera.width), clamp_to_int(std::ceil(y1), 0, camera.height)};
+  box = {
+      clamp_to_int(std::floor(x0), 0, camera.width), clamp_to_int(std::floor(y0), 0, camera.height),
+      clamp_to_int(std::ceil(x1), 0, camera.width), clamp_to_int(std::ceil(y1), 0, camera.height)};
   return box.x0 < box.x1 && box.y0 < box.y1;
 }
 
@@ -79,7 +81,7 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
     if (in_world) {
       predicted = head.T_world_camera.inverse() * predicted;
     } else if (track.base == ReferenceFrame::world) {
-      predicted = track.T_camera_tool;   // the head's pose went missing: hold what the camera saw
+      predicted = track.T_camera_tool;  // the head's pose went missing: hold what the camera saw
     }
     prediction.has_prior = true;
     prediction.missed_last = !track.seen_now;
@@ -87,8 +89,8 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
     const double seconds = gap.seconds();
     // Without a velocity the tool may have moved at a hand's speed, 1 m/s, in any direction.
     const double drift_m = moves ? 0.0 : 1.0 * seconds;
-    prediction.reach_m = settings.margin_m + drift_m +
-                         0.5 * settings.acceleration_max_m_s2 * seconds * seconds;
+    prediction.reach_m =
+        settings.margin_m + drift_m + 0.5 * settings.acceleration_max_m_s2 * seconds * seconds;
     for (int m = 0; m < set.items[t].marker_count; ++m) {
       const Result<Vector2> pixel = project(camera, predicted * set.items[t].markers_m[m]);
       if (pixel) predictions.markers_px[predictions.marker_count++] = pixel.value;

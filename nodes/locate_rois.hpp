@@ -23,7 +23,7 @@ struct LocateSettings {
   // How far a hand can stray from a constant velocity: half its greatest acceleration times the gap
   // squared. 30 m/s^2 is a brisk jerk of the wrist (TUM-VI room1 peaks below it).
   double acceleration_max_m_s2 = 30.0;
-  double margin_m = 0.015;   // prediction noise of a tool that rests
+  double margin_m = 0.015;  // prediction noise of a tool that rests
 };
 
 // Priors for every tool, from the tracks of the last frame, and the pixels of their markers.

@@ -36,8 +36,8 @@ std::array<Matrix3, k_markers_per_tool_max> covariances_of(const PointPairs& pai
   std::array<Matrix3, k_markers_per_tool_max> covariances;
   for (std::size_t i = 0; i < pairs.count; ++i) {
     const double range = pairs.measured[i].norm();
-    const double across = noise.focal_px > 0 ? noise.pixel_sigma_px * range / noise.focal_px
-                                             : noise.range_sigma_m;
+    const double across =
+        noise.focal_px > 0 ? noise.pixel_sigma_px * range / noise.focal_px : noise.range_sigma_m;
     covariances[i] = marker_covariance(pairs.measured[i] / range, noise.range_sigma_m, across);
   }
   return covariances;

@@ -30,15 +30,15 @@ struct AssignMarkers {
                   Assignment& assignment) noexcept;
 
  private:
-  std::array<Labelings, k_tools_max> per_tool_;   // the slices' answers, by tool
+  std::array<Labelings, k_tools_max> per_tool_;  // the slices' answers, by tool
   std::array<int, k_tools_max> chosen_{};
 };
 
 // The declared noise of one marker: 1 sigma along its ray and, from the pixel's, across it.
 struct MarkerNoise {
   double range_sigma_m = 0.0015;
-  double pixel_sigma_px = 0.1;   // an axis
-  double focal_px = 0;           // 0: as much across as along (points without an image)
+  double pixel_sigma_px = 0.1;  // an axis
+  double focal_px = 0;          // 0: as much across as along (points without an image)
 };
 
 // The rigid fit over the markers assigned, with the first-order covariance of the tip.

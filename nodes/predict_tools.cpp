@@ -6,7 +6,7 @@ namespace glint {
 namespace {
 
 struct Aged {
-  Pose pose;   // T_base_tool at the actuation time
+  Pose pose;  // T_base_tool at the actuation time
   Vector3 velocity_m_s = Vector3::Zero();
   Vector3 angular_velocity_rad_s = Vector3::Zero();
 };

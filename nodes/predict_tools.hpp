@@ -13,9 +13,9 @@
 namespace glint {
 
 struct PredictSettings {
-  Duration nominal_gap = {22'222'222};        // the camera's period: 22.2 ms for AHAT
-  Duration lost_after = milliseconds(250);    // at most 400
-  Duration actuation_delay = {};              // the pose is for tick + this
+  Duration nominal_gap = {22'222'222};      // the camera's period: 22.2 ms for AHAT
+  Duration lost_after = milliseconds(250);  // at most 400
+  Duration actuation_delay = {};            // the pose is for tick + this
 };
 
 struct PredictTools {

@@ -20,15 +20,15 @@ struct FrameStamp {
   Time mid_exposure;
   Time arrival;
   std::uint32_t sequence = 0;
-  Reason reason = Reason::none;   // frame_invalid: wrong size, or a plane is missing
+  Reason reason = Reason::none;  // frame_invalid: wrong size, or a plane is missing
 };
 
 // Whether this activation's frame may be used, and what had to be refused so far.
 struct FrameVerdict {
   FrameStamp stamp;
-  Reason reason = Reason::none;   // frame_late, frame_doubled, frame_invalid
-  bool resynchronised = false;    // the stamps restarted: older tracks mean nothing any more
-  std::uint32_t accepted = 0;     // counters since the start
+  Reason reason = Reason::none;  // frame_late, frame_doubled, frame_invalid
+  bool resynchronised = false;   // the stamps restarted: older tracks mean nothing any more
+  std::uint32_t accepted = 0;    // counters since the start
   std::uint32_t late = 0, doubled = 0, invalid = 0, resynchronisations = 0;
   [[nodiscard]] bool usable() const { return reason == Reason::none; }
 };
@@ -36,9 +36,9 @@ struct FrameVerdict {
 // Where each tool should be seen at this frame's mid-exposure.
 struct Prediction {
   bool has_prior = false;
-  bool missed_last = false;   // the last frame did not show it: search the whole frame
+  bool missed_last = false;  // the last frame did not show it: search the whole frame
   Pose T_camera_tool;
-  double reach_m = 0;         // how far the tool may be from there
+  double reach_m = 0;  // how far the tool may be from there
 };
 struct Predictions {
   std::array<Prediction, k_tools_max> tools;
@@ -53,7 +53,7 @@ struct ToolLabelings {
 // One labeling for each tool, no marker given twice.
 struct Assignment {
   std::array<Labeling, k_tools_max> labeling;
-  std::array<Reason, k_tools_max> reason{};   // none: labeling holds
+  std::array<Reason, k_tools_max> reason{};  // none: labeling holds
 };
 
 // The pose of each tool in this frame.
@@ -62,7 +62,7 @@ struct FittedTool {
   std::uint8_t marker_mask = 0;
   double rms_m = 0;
   Pose T_camera_tool;
-  Matrix6 covariance = Matrix6::Zero();   // of the tip, about the camera's axes
+  Matrix6 covariance = Matrix6::Zero();  // of the tip, about the camera's axes
 };
 struct FittedTools {
   std::array<FittedTool, k_tools_max> tools;
@@ -71,24 +71,24 @@ struct FittedTools {
 // What is known of a tool after a frame: its newest pose and the one before, from which velocity
 // follows. `base` is the frame both are in: the world, or the camera where no head pose was valid.
 struct Track {
-  bool alive = false;            // a pose younger than lost_after exists
-  bool seen_now = false;         // this frame gave it
-  bool has_previous = false;     // `previous` is in the same base and recent enough
-  Reason reason = Reason::no_frame_yet;   // why this frame gave none
+  bool alive = false;                    // a pose younger than lost_after exists
+  bool seen_now = false;                 // this frame gave it
+  bool has_previous = false;             // `previous` is in the same base and recent enough
+  Reason reason = Reason::no_frame_yet;  // why this frame gave none
   ReferenceFrame base = ReferenceFrame::camera;
   std::uint8_t marker_mask = 0;
   std::uint32_t frame_sequence = 0;
   double rms_m = 0;
-  StampedPose newest, previous;  // T_base_tool
-  Pose T_camera_tool;            // the newest, as the camera saw it
-  Matrix6 covariance = Matrix6::Zero();   // of the tip, about the base's axes
+  StampedPose newest, previous;          // T_base_tool
+  Pose T_camera_tool;                    // the newest, as the camera saw it
+  Matrix6 covariance = Matrix6::Zero();  // of the tip, about the base's axes
 };
 
 // The frame group's result.
 struct Estimates {
   FrameVerdict verdict;
   int tool_count = 0;
-  std::array<Vector3, k_tools_max> tip_m;   // tool frame: the tick group needs no tool set
+  std::array<Vector3, k_tools_max> tip_m;  // tool frame: the tick group needs no tool set
   std::array<Track, k_tools_max> tracks;
 };
 
@@ -96,7 +96,7 @@ struct Estimates {
 struct Now {
   Time tick;
   std::uint32_t number = 0;
-  std::int64_t unix_offset_ns = 0;   // added to a Time it gives nanoseconds since 1970 (UTC)
+  std::int64_t unix_offset_ns = 0;  // added to a Time it gives nanoseconds since 1970 (UTC)
 };
 
 // Where the robot's base is in the headset's world.

@@ -50,7 +50,7 @@ void TrackTools::operator()(const FrameVerdict& verdict, const HeadPose& head,
     }
     estimates.tip_m[t] = set.items[t].tip_m;
     track = last.value().tracks[t];
-    if (!verdict.usable()) continue;   // a refused frame changes nothing that is known of a tool
+    if (!verdict.usable()) continue;  // a refused frame changes nothing that is known of a tool
     if (verdict.resynchronised) track = Track{};
 
     const FittedTool& found = fitted[t % fitted.size()].tools[t];

@@ -1,6 +1,7 @@
 // The frame group: from a camera frame to what is known of every tool.
 //
-//   Frame ─► StampFrame ─► CheckFrame ─► PredictTracks ─► LocateRois ─► RoiThreshold x2 ─► FindBlobs
+//   Frame ─► StampFrame ─► CheckFrame ─► PredictTracks ─► LocateRois ─► RoiThreshold x2 ─►
+//   FindBlobs
 //     ─► BackProject ─► Correspond x2 ─► AssignMarkers ─► FitRigid x2 ─► TrackTools ─► Estimates
 //                           ▲ PredictTracks and TrackTools read Previous<Estimates>
 //
@@ -16,12 +17,11 @@
 
 namespace glint {
 
-using Tracker =
-    graph::Graph<graph::Inputs<Frame, HeadPose, graph::Latest<ToolSet>>, graph::Outputs<Estimates>,
-                 StampFrame, CheckFrame, PredictTracks, LocateRois,
-                 graph::Split<RoiThreshold, k_row_bands>, FindBlobs, BackProject,
-                 graph::Split<Correspond, k_tool_slices>, AssignMarkers,
-                 graph::Split<FitRigid, k_tool_slices>, TrackTools>;
+using Tracker = graph::Graph<graph::Inputs<Frame, HeadPose, graph::Latest<ToolSet>>,
+                             graph::Outputs<Estimates>, StampFrame, CheckFrame, PredictTracks,
+                             LocateRois, graph::Split<RoiThreshold, k_row_bands>, FindBlobs,
+                             BackProject, graph::Split<Correspond, k_tool_slices>, AssignMarkers,
+                             graph::Split<FitRigid, k_tool_slices>, TrackTools>;
 static_assert(graph::valid<Tracker>);
 
 using MarkerTracker =

@@ -11,22 +11,22 @@
 namespace glint {
 
 enum BlobFlag : std::uint8_t {
-  k_blob_touches_edge = 1,   // cut by the frame's border
-  k_blob_saturated = 2,      // at least one pixel at the sensor's maximum
+  k_blob_touches_edge = 1,  // cut by the frame's border
+  k_blob_saturated = 2,     // at least one pixel at the sensor's maximum
 };
 
 struct Blob {
-  Vector2 centroid_px = Vector2::Zero();   // pixel centres at integer + 0.5
-  std::uint32_t area_px = 0;               // pixels above the threshold
-  std::uint16_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;   // bounding box, half open
-  std::uint16_t peak = 0;                  // brightest reflectivity, raw
-  std::uint8_t flags = 0;                  // BlobFlag
+  Vector2 centroid_px = Vector2::Zero();         // pixel centres at integer + 0.5
+  std::uint32_t area_px = 0;                     // pixels above the threshold
+  std::uint16_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // bounding box, half open
+  std::uint16_t peak = 0;                        // brightest reflectivity, raw
+  std::uint8_t flags = 0;                        // BlobFlag
 };
 
 struct Blobs {
-  std::array<Blob, k_blobs_max> items;     // by rows: top first, then left first
+  std::array<Blob, k_blobs_max> items;  // by rows: top first, then left first
   int count = 0;
-  std::uint32_t dropped = 0;               // beyond the buffer, or outside the size gate
+  std::uint32_t dropped = 0;  // beyond the buffer, or outside the size gate
   Reason reason = Reason::none;
 };
 

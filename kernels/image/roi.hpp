@@ -8,7 +8,7 @@
 namespace glint {
 
 struct Roi {
-  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;   // x0 <= x < x1, y0 <= y < y1
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // x0 <= x < x1, y0 <= y < y1
 };
 
 struct Rois {

@@ -10,14 +10,14 @@
 namespace glint {
 
 struct Run {
-  std::uint16_t y = 0, x0 = 0, x1 = 0;   // pixels x0 <= x < x1 of row y
+  std::uint16_t y = 0, x0 = 0, x1 = 0;  // pixels x0 <= x < x1 of row y
 };
 
 // The runs of one band of rows, in row order and, within a row, from left to right.
 struct Runs {
   std::array<Run, k_runs_per_band_max> items;
   int count = 0;
-  std::uint32_t dropped = 0;   // met after the buffer was full
+  std::uint32_t dropped = 0;  // met after the buffer was full
   Reason reason = Reason::none;
 };
 

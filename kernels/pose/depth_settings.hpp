@@ -6,16 +6,16 @@
 namespace glint {
 
 enum class DepthKind : std::uint8_t {
-  radial,   // along the pixel's ray (HoloLens 1 and 2)
-  z,        // along the optical axis
+  radial,  // along the pixel's ray (HoloLens 1 and 2)
+  z,       // along the optical axis
 };
 
 struct DepthSettings {
   DepthKind kind = DepthKind::radial;
-  double unit_m = 0.001;            // metres a raw count
-  std::uint16_t invalid_from = 4090;   // raw values from here on mean "none", like 0
-  double wrap_range_m = 0;          // ranges repeat at this distance; 0: they do not
-  std::uint16_t saturated_from = 0xFFFF;   // reflectivity from here on spoils the pixel's own depth
+  double unit_m = 0.001;                  // metres a raw count
+  std::uint16_t invalid_from = 4090;      // raw values from here on mean "none", like 0
+  double wrap_range_m = 0;                // ranges repeat at this distance; 0: they do not
+  std::uint16_t saturated_from = 0xFFFF;  // reflectivity from here on spoils the pixel's own depth
 };
 
 }  // namespace glint

@@ -7,8 +7,8 @@
 namespace glint {
 
 struct HeadPose {
-  Time time;              // equals the frame's mid_exposure: already interpolated to it
-  bool valid = false;     // without it the tool's pose still holds in the camera's frame
+  Time time;           // equals the frame's mid_exposure: already interpolated to it
+  bool valid = false;  // without it the tool's pose still holds in the camera's frame
   Pose T_world_camera;
 };
 

@@ -13,17 +13,17 @@ namespace glint {
 struct Labeling {
   // marker[i] is the index into Markers of the tool's marker i, -1 where it was not seen.
   std::array<std::int16_t, k_markers_per_tool_max> marker{};
-  int count = 0;         // how many are seen, 3 at least
-  double rms_m = 0;      // of the rigid fit over them
-  Pose T_camera_tool;    // that fit
+  int count = 0;       // how many are seen, 3 at least
+  double rms_m = 0;    // of the rigid fit over them
+  Pose T_camera_tool;  // that fit
 };
 
 // The tool's labelings, best first: more markers before fewer, then the smaller rms.
 struct Labelings {
   std::array<Labeling, k_labelings_max> items;
   int count = 0;
-  std::uint32_t hypotheses = 0;   // partial assignments tried
-  Reason reason = Reason::none;   // why there is none, or search_full
+  std::uint32_t hypotheses = 0;  // partial assignments tried
+  Reason reason = Reason::none;  // why there is none, or search_full
 };
 
 }  // namespace glint

@@ -10,9 +10,9 @@
 namespace glint {
 
 enum MarkerFlag : std::uint8_t {
-  k_marker_no_depth = 1,        // neither the centre nor the ring gave a range: never labelled
-  k_marker_ring_depth = 2,      // the centre was saturated or zero; the range is the ring's
-  k_marker_wrapped = 4,         // the range was found to have wrapped and was unwrapped
+  k_marker_no_depth = 1,    // neither the centre nor the ring gave a range: never labelled
+  k_marker_ring_depth = 2,  // the centre was saturated or zero; the range is the ring's
+  k_marker_wrapped = 4,     // the range was found to have wrapped and was unwrapped
   k_marker_saturated = 8,
   k_marker_touches_edge = 16,
 };
@@ -20,12 +20,12 @@ enum MarkerFlag : std::uint8_t {
 // The marker's surface point is ray * surface_range_m. A sphere's centre lies its radius further
 // along the ray, a disc's at the surface: which of the two is the tool's affair.
 struct Marker {
-  Vector3 ray = Vector3::UnitZ();   // unit, camera frame
-  double surface_range_m = 0;       // radial, along the ray
+  Vector3 ray = Vector3::UnitZ();  // unit, camera frame
+  double surface_range_m = 0;      // radial, along the ray
   Vector2 centroid_px = Vector2::Zero();
   std::uint32_t area_px = 0;
-  std::uint16_t blob = 0;           // index into Blobs
-  std::uint8_t flags = 0;           // MarkerFlag
+  std::uint16_t blob = 0;  // index into Blobs
+  std::uint8_t flags = 0;  // MarkerFlag
 };
 
 struct Markers {

@@ -1,5 +1,5 @@
-// What Glint says about one tool at one tick: everything CAN and DDS carry, plus what a reader needs
-// to trust it. Its byte layout (output_record.hpp) is what output_sha256 is taken over.
+// What Glint says about one tool at one tick: everything CAN and DDS carry, plus what a reader
+// needs to trust it. Its byte layout (output_record.hpp) is what output_sha256 is taken over.
 #pragma once
 
 #include <cstdint>
@@ -15,24 +15,24 @@ enum class RegistrationState : std::uint8_t { none = 0, given = 1, accepted = 2,
 enum class ReferenceFrame : std::uint8_t { camera = 0, world = 1, robot = 2 };
 
 struct PoseSample {
-  Time tick;                    // nominal release of the tick
-  Time measurement;             // mid-exposure of the frame the pose rests on
+  Time tick;         // nominal release of the tick
+  Time measurement;  // mid-exposure of the frame the pose rests on
   std::uint32_t tick_number = 0;
   std::uint32_t frame_sequence = 0;
   std::uint8_t tool = 0;
-  std::uint8_t marker_mask = 0; // bit i: the tool's marker i was used
+  std::uint8_t marker_mask = 0;  // bit i: the tool's marker i was used
   std::uint8_t buttons = 0;
   TrackState state = TrackState::none;
   RegistrationState registration = RegistrationState::none;
   ReferenceFrame frame = ReferenceFrame::camera;
   Reason reason = Reason::no_frame_yet;
   // Without a pose (state none or lost) the fields below are zero, the rotation identity.
-  Pose pose;                    // T_frame_tip: the tool's axes, origin at its tip
-  Vector3 velocity_m_s = Vector3::Zero();         // of the tip, in `frame`
+  Pose pose;                               // T_frame_tip: the tool's axes, origin at its tip
+  Vector3 velocity_m_s = Vector3::Zero();  // of the tip, in `frame`
   Vector3 angular_velocity_rad_s = Vector3::Zero();
-  Matrix6 covariance = Matrix6::Zero();           // x,y,z [m], rotation about fixed axes x,y,z [rad]
-  double sigma_position_m = 0;                    // an axis: root of a third of the block's trace
-  double sigma_orientation_rad = 0;               // likewise
+  Matrix6 covariance = Matrix6::Zero();  // x,y,z [m], rotation about fixed axes x,y,z [rad]
+  double sigma_position_m = 0;           // an axis: root of a third of the block's trace
+  double sigma_orientation_rad = 0;      // likewise
   double registration_rms_m = 0;
 
   [[nodiscard]] bool has_pose() const {

@@ -6,8 +6,8 @@
 #include "glint_default_cell.hpp"
 #include "kernels/elementary.hpp"
 #include "kernels/wire/can_frames.hpp"
-#include "platform/cells/tool_file.hpp"
 #include "platform/cells/toml_reader.hpp"
+#include "platform/cells/tool_file.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {
@@ -21,8 +21,7 @@ std::string opened_path(const std::string& path, const std::string& key, const s
   std::string text = path;
   for (std::size_t from = text.find("${"); from != std::string::npos; from = text.find("${")) {
     const std::size_t to = text.find('}', from);
-    const std::string name =
-        to == std::string::npos ? "" : text.substr(from + 2, to - from - 2);
+    const std::string name = to == std::string::npos ? "" : text.substr(from + 2, to - from - 2);
     const char* value = name.empty() ? nullptr : std::getenv(name.c_str());
     if (value == nullptr) {
       throw InputError(cell + ": " + key + " is \"" + path + "\": the environment has no " +
@@ -50,7 +49,8 @@ struct CellParser {
 
 Quaternion from_fixed_axes(const std::vector<double>& degrees) {
   const auto about = [&](int axis) {
-    const SineCosine half = sine_cosine(0.5 * degrees[static_cast<std::size_t>(axis)] * k_radians_per_degree);
+    const SineCosine half =
+        sine_cosine(0.5 * degrees[static_cast<std::size_t>(axis)] * k_radians_per_degree);
     Vector3 v = Vector3::Zero();
     v[axis] = half.sine;
     return Quaternion(half.cosine, v.x(), v.y(), v.z());
@@ -66,8 +66,8 @@ void CellParser::read_camera(const toml::table* table) {
   cell.camera = model == "hololens2_ahat" ? hololens2_ahat() : hololens1_short_throw();
   cell.ray_table = resolved(reader.text("ray_table", ""), "camera.ray_table");
   const int top = cell.camera.reflectivity_bits == 8 ? 255 : 65535;
-  cell.camera.threshold = static_cast<std::uint16_t>(
-      reader.integer("threshold", cell.camera.threshold, 1, top - 1));
+  cell.camera.threshold =
+      static_cast<std::uint16_t>(reader.integer("threshold", cell.camera.threshold, 1, top - 1));
   reader.done();
   if (cell.ray_table.empty()) return;
   if (carried == nullptr) {
@@ -111,8 +111,8 @@ void read_rates(const toml::table* table, Cell& cell) {
   cell.tick_hz = reader.real("tick_hz", cell.tick_hz, 1, 1000);
   cell.workers = static_cast<int>(reader.integer("workers", cell.workers, 1, 2));
   cell.lost_after = milliseconds(reader.integer("lost_after_ms", 250, 1, 400));
-  cell.actuation_delay = {static_cast<std::int64_t>(
-      reader.real("actuation_delay_ms", 0, 0, 100) * 1e6)};
+  cell.actuation_delay = {
+      static_cast<std::int64_t>(reader.real("actuation_delay_ms", 0, 0, 100) * 1e6)};
   reader.done();
 }
 
@@ -121,7 +121,8 @@ void read_sinks(TomlReader& root, Cell& cell) {
     TomlReader reader(*table, cell.file, "can.");
     cell.can.sink = reader.text("sink", cell.can.sink);
     cell.can.fd = reader.one_of("frames", "classic", {"classic", "fd"}) == "fd";
-    cell.can.base_id = static_cast<std::uint32_t>(reader.integer("base_id", k_can_base_default, 1, k_can_base_max));
+    cell.can.base_id = static_cast<std::uint32_t>(
+        reader.integer("base_id", k_can_base_default, 1, k_can_base_max));
     cell.can.bit_rate = reader.integer("bit_rate", cell.can.bit_rate, 10'000, 1'000'000);
     cell.can.data_bit_rate =
         reader.integer("data_bit_rate", cell.can.data_bit_rate, 10'000, 8'000'000);
@@ -155,8 +156,7 @@ void read_robot(const toml::table* table, Cell& cell) {
   if (table == nullptr) return;
   TomlReader reader(*table, cell.file, "robot.");
   if (const auto position = reader.reals("position_mm", 3)) {
-    cell.T_world_robot.translation =
-        Vector3((*position)[0], (*position)[1], (*position)[2]) * 1e-3;
+    cell.T_world_robot.translation = Vector3((*position)[0], (*position)[1], (*position)[2]) * 1e-3;
   }
   if (const auto rotation = reader.reals("rotation_deg", 3)) {
     cell.T_world_robot.rotation = from_fixed_axes(*rotation);

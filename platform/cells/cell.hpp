@@ -15,12 +15,12 @@
 namespace glint {
 
 struct CanSettings {
-  std::string sink = "log:can.log";      // log:FILE or socketcan:IF; FILE is relative to --out
-  bool fd = false;                       // the FD frame instead of the classic ones
+  std::string sink = "log:can.log";  // log:FILE or socketcan:IF; FILE is relative to --out
+  bool fd = false;                   // the FD frame instead of the classic ones
   std::uint32_t base_id = 0x1A0;
   std::int64_t bit_rate = 1'000'000;
   std::int64_t data_bit_rate = 4'000'000;
-  int node = 32;                         // heartbeat 0x700 + node
+  int node = 32;  // heartbeat 0x700 + node
 };
 
 struct DdsCellSettings {
@@ -30,41 +30,41 @@ struct DdsCellSettings {
 };
 
 struct RecordSettings {
-  std::string file = "run.mcap";         // relative to --out; empty: no recording
-  std::string level = "roi";             // full, roi, blobs, outputs
+  std::string file = "run.mcap";  // relative to --out; empty: no recording
+  std::string level = "roi";      // full, roi, blobs, outputs
 };
 
 // Trajectories as text; relative to --out, empty: none.
 struct FileSettings {
-  std::string tum = "tip.tum";           // the first tool's tip, for evo and its kin
-  std::string csv;                       // every sample of every tool
+  std::string tum = "tip.tum";  // the first tool's tip, for evo and its kin
+  std::string csv;              // every sample of every tool
 };
 
 enum class Method : std::uint8_t {
   glint,
-  seed,   // the published method, first tool only; outside real time and determinism
+  seed,  // the published method, first tool only; outside real time and determinism
 };
 
 // Where simulated frames come from; everything else about the simulator has one declared default.
 struct SimulatorSettings {
-  std::string scenario = "default";      // default, still, or trajectories
+  std::string scenario = "default";  // default, still, or trajectories
   double duration_s = 60;
   std::uint64_t seed = 1;
-  std::string head_trajectory, pen_trajectory;   // files; scenario = "trajectories"
-  double pen_scale = 1.0;                        // pen motion is scaled into view
-  std::string background;                        // a frame file, or empty for the drawn room
+  std::string head_trajectory, pen_trajectory;  // files; scenario = "trajectories"
+  double pen_scale = 1.0;                       // pen motion is scaled into view
+  std::string background;                       // a frame file, or empty for the drawn room
   std::string background_layout = "adi";
 };
 
 struct Cell {
-  std::string file;                      // where it was read, for messages
-  std::string text;                      // as read: goes into every recording
+  std::string file;  // where it was read, for messages
+  std::string text;  // as read: goes into every recording
   Camera camera;
-  std::string ray_table;                 // path, or empty
+  std::string ray_table;  // path, or empty
   ToolSet tools;
   std::vector<std::string> tool_files;
   SimulatorSettings simulator;
-  bool realtime = true;                  // frames arrive at their time; otherwise as fast as can be
+  bool realtime = true;  // frames arrive at their time; otherwise as fast as can be
   double tick_hz = 250;
   Duration lost_after = milliseconds(250);
   Duration actuation_delay;
@@ -73,8 +73,8 @@ struct Cell {
   DdsCellSettings dds;
   RecordSettings record;
   FileSettings files;
-  Method method = Method::glint;         // chosen on the command line
-  bool robot_given = true;               // T_world_robot holds; otherwise the pose stays in the world
+  Method method = Method::glint;  // chosen on the command line
+  bool robot_given = true;        // T_world_robot holds; otherwise the pose stays in the world
   Pose T_world_robot;
 };
 
@@ -84,7 +84,7 @@ struct Cell {
 // What a recording carries in place of the files that a cell names.
 struct CellFiles {
   ToolSet tools;
-  std::shared_ptr<const std::vector<float>> rays;    // null: the cell names no ray table
+  std::shared_ptr<const std::vector<float>> rays;  // null: the cell names no ray table
 };
 
 // Throws InputError: file:line, what was found, what was expected.

@@ -126,9 +126,9 @@ int inspect_frame(const InspectArguments& arguments) {
   std::printf("%-16s %d (and %u outside the size gate)\n", "blobs", blobs.count, blobs.dropped);
 
   make_folder(arguments.out);
-  const std::string picture =
-      (std::filesystem::path(arguments.out) /
-       (std::filesystem::path(arguments.frame).stem().string() + ".png")).string();
+  const std::string picture = (std::filesystem::path(arguments.out) /
+                               (std::filesystem::path(arguments.frame).stem().string() + ".png"))
+                                  .string();
   write_picture(picture, tracker->input<Frame>(), tracker->token<Rois>(), blobs, markers, lines);
   std::printf("%-16s %s\n", "picture", picture.c_str());
   write_json(arguments.json, {{"frame", arguments.frame},

@@ -113,8 +113,8 @@ void add_replay(CLI::App& app, int& exit_code) {
     if (arguments->recording.empty() == arguments->points.empty()) {
       throw InputError("replay: expected either a recording or --points FILE");
     }
-    exit_code = arguments->points.empty() ? replay_recording(*arguments)
-                                          : replay_marker_points(*arguments);
+    exit_code =
+        arguments->points.empty() ? replay_recording(*arguments) : replay_marker_points(*arguments);
   });
 }
 

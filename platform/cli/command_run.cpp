@@ -33,7 +33,7 @@ Cell cell_of(const RunArguments& arguments) {
   if (arguments.no_dds) cell.dds.on = false;
   if (arguments.method == "seed") {
     cell.method = Method::seed;
-    cell.record.level = "outputs";   // nothing of it can be decided again
+    cell.record.level = "outputs";  // nothing of it can be decided again
   }
   return cell;
 }
@@ -72,8 +72,9 @@ void add_run(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.1, 3600.0));
   command->add_option("--workers", arguments->workers, "threads of the frame group: 1 or 2")
       ->check(CLI::Range(1, 2));
-  command->add_option("--method", arguments->method,
-                      "glint, or seed: the method as published, the baseline")
+  command
+      ->add_option("--method", arguments->method,
+                   "glint, or seed: the method as published, the baseline")
       ->check(CLI::IsMember({"glint", "seed"}));
   command->add_flag("--no-dds", arguments->no_dds, "send nothing over DDS");
   command->add_flag("--fast", arguments->as_fast_as_can_be,

@@ -28,7 +28,8 @@ void Progress::show(double done, double all, const std::string& note) {
   last_shown_ms_ = now_ms();
   shown_ = true;
   if (all > 0) {
-    std::fprintf(stderr, "\r\033[K%s %3.0f %%  %s", what_.c_str(), 100.0 * done / all, note.c_str());
+    std::fprintf(stderr, "\r\033[K%s %3.0f %%  %s", what_.c_str(), 100.0 * done / all,
+                 note.c_str());
   } else {
     std::fprintf(stderr, "\r\033[K%s %.1f s  %s", what_.c_str(), done, note.c_str());
   }

@@ -15,8 +15,11 @@ using nlohmann::ordered_json;
 constexpr double k_degrees = 180.0 / 3.14159265358979323846;
 
 ordered_json as_json(const LatencyFigures& figures) {
-  return {{"n", figures.n},           {"p50", figures.p50_us}, {"p99", figures.p99_us},
-          {"p99_9", figures.p99_9_us}, {"max", figures.max_us}};
+  return {{"n", figures.n},
+          {"p50", figures.p50_us},
+          {"p99", figures.p99_us},
+          {"p99_9", figures.p99_9_us},
+          {"max", figures.max_us}};
 }
 
 void row(const char* name, const std::string& value) {
@@ -45,50 +48,49 @@ ordered_json summary_of(const Cell& cell, const SessionResult& result) {
   frame_to_can["computing"] = as_json(figures_of(result.latencies, &FrameToCan::computing));
   frame_to_can["sampling"] = as_json(figures_of(result.latencies, &FrameToCan::sampling));
   frame_to_can["sending"] = as_json(figures_of(result.latencies, &FrameToCan::sending));
-  ordered_json summary{
-      {"cell", cell.file},
-      {"camera", cell.camera.name},
-      {"duration_s", result.duration_s},
-      {"realtime", cell.realtime},
-      {"workers", cell.workers},
-      {"frames", result.frames},
-      {"frames_refused", accuracy.refused},
-      {"frames_late_rendered", result.late_renders},
-      {"frames_trackable", accuracy.trackable},
-      {"tracked_fraction", accuracy.tracked_fraction()},
-      {"poses", accuracy.poses},
-      {"poses_gross", accuracy.gross},
-      {"tip_rms_mm", accuracy.tip_rms_m * 1e3},
-      {"tip_max_mm", accuracy.tip_max_m * 1e3},
-      {"angle_rms_deg", accuracy.angle_rms_rad * k_degrees},
-      {"ticks", result.ticks},
-      {"ticks_late", result.ticks_late},
-      {"ticks_skipped", result.ticks_skipped},
-      {"worker_overruns", result.worker_overruns},
-      {"frame_to_can_us", frame_to_can},
-      {"frame_to_can_kind", "observed"},
-      {"heap_allocations_after_start", result.heap_allocations_after_start},
-      {"heap_allocations_counted", result.heap_counted},
-      {"can_frames", result.can_frames},
-      {"can_sent", result.can.sent},
-      {"can_dropped", result.can.dropped},
-      {"can_failed", result.can.failed},
-      {"can_bus_load", result.can_bus_load},
-      {"dds_offered", result.dds.offered},
-      {"dds_written", result.dds.written},
-      {"ring_dropped", result.dds.ring_dropped},
-      {"dds_received", result.dds_reader.received},
-      {"dds_missed", result.dds_reader.missed},
-      {"dds_poses_written", result.dds.poses_written},
-      {"dds_poses_received", result.dds_reader.poses_received},
-      {"recording", result.recording_file},
-      {"recording_complete", result.recording.complete()},
-      {"recording_ended_early", result.recording.ended_early},
-      {"recording_reason", result.recording.reason},
-      {"recording_bytes", result.recording.bytes},
-      {"output_sha256", result.output_sha256},
-      {"best_effort", !result.refused.empty()},
-      {"refused", result.refused}};
+  ordered_json summary{{"cell", cell.file},
+                       {"camera", cell.camera.name},
+                       {"duration_s", result.duration_s},
+                       {"realtime", cell.realtime},
+                       {"workers", cell.workers},
+                       {"frames", result.frames},
+                       {"frames_refused", accuracy.refused},
+                       {"frames_late_rendered", result.late_renders},
+                       {"frames_trackable", accuracy.trackable},
+                       {"tracked_fraction", accuracy.tracked_fraction()},
+                       {"poses", accuracy.poses},
+                       {"poses_gross", accuracy.gross},
+                       {"tip_rms_mm", accuracy.tip_rms_m * 1e3},
+                       {"tip_max_mm", accuracy.tip_max_m * 1e3},
+                       {"angle_rms_deg", accuracy.angle_rms_rad * k_degrees},
+                       {"ticks", result.ticks},
+                       {"ticks_late", result.ticks_late},
+                       {"ticks_skipped", result.ticks_skipped},
+                       {"worker_overruns", result.worker_overruns},
+                       {"frame_to_can_us", frame_to_can},
+                       {"frame_to_can_kind", "observed"},
+                       {"heap_allocations_after_start", result.heap_allocations_after_start},
+                       {"heap_allocations_counted", result.heap_counted},
+                       {"can_frames", result.can_frames},
+                       {"can_sent", result.can.sent},
+                       {"can_dropped", result.can.dropped},
+                       {"can_failed", result.can.failed},
+                       {"can_bus_load", result.can_bus_load},
+                       {"dds_offered", result.dds.offered},
+                       {"dds_written", result.dds.written},
+                       {"ring_dropped", result.dds.ring_dropped},
+                       {"dds_received", result.dds_reader.received},
+                       {"dds_missed", result.dds_reader.missed},
+                       {"dds_poses_written", result.dds.poses_written},
+                       {"dds_poses_received", result.dds_reader.poses_received},
+                       {"recording", result.recording_file},
+                       {"recording_complete", result.recording.complete()},
+                       {"recording_ended_early", result.recording.ended_early},
+                       {"recording_reason", result.recording.reason},
+                       {"recording_bytes", result.recording.bytes},
+                       {"output_sha256", result.output_sha256},
+                       {"best_effort", !result.refused.empty()},
+                       {"refused", result.refused}};
   return summary;
 }
 
@@ -104,8 +106,8 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
   std::printf("\n%s, %.0f s%s\n", summary.at("camera").get<std::string>().c_str(),
               result.duration_s,
               result.refused.empty() ? "" : "  (best effort: real-time rights were refused)");
-  row("frames", std::to_string(result.frames) + " (" + std::to_string(accuracy.refused) +
-                    " refused)");
+  row("frames",
+      std::to_string(result.frames) + " (" + std::to_string(accuracy.refused) + " refused)");
   row("tracked", fixed(100 * accuracy.tracked_fraction(), 2, "%") + " of " +
                      std::to_string(accuracy.trackable) + " trackable");
   row("tip error, rms", fixed(accuracy.tip_rms_m * 1e3, 2, "mm") + "  (largest " +
@@ -116,11 +118,11 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
   latency_row("  computing", latency.at("computing"));
   latency_row("  sampling", latency.at("sampling"));
   latency_row("  sending", latency.at("sending"));
-  row("ticks", std::to_string(result.ticks) + " (" + std::to_string(result.ticks_late) +
-                   " late, " + std::to_string(result.ticks_skipped) + " skipped)");
-  row("heap allocations after start",
-      result.heap_counted ? std::to_string(result.heap_allocations_after_start)
-                          : "not counted in this build");
+  row("ticks", std::to_string(result.ticks) + " (" + std::to_string(result.ticks_late) + " late, " +
+                   std::to_string(result.ticks_skipped) + " skipped)");
+  row("heap allocations after start", result.heap_counted
+                                          ? std::to_string(result.heap_allocations_after_start)
+                                          : "not counted in this build");
   row("CAN frames", std::to_string(result.can_frames) + " (bus load " +
                         fixed(100 * result.can_bus_load, 1, "%, computed)"));
   row("DDS", std::to_string(result.dds.written) + " written, " +

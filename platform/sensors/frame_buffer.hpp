@@ -11,9 +11,9 @@ namespace glint {
 struct FrameBuffer {
   int width = 0;
   int height = 0;
-  std::vector<std::uint8_t> reflectivity_8;     // one of the two is empty
+  std::vector<std::uint8_t> reflectivity_8;  // one of the two is empty
   std::vector<std::uint16_t> reflectivity_16;
-  std::vector<std::uint16_t> depth;             // may be empty
+  std::vector<std::uint16_t> depth;  // may be empty
 
   [[nodiscard]] Frame view(Time mid_exposure, Time arrival, std::uint32_t sequence) const {
     Frame frame;

@@ -21,21 +21,21 @@ struct ToolOutcome {
   Pose T_camera_tool;
 };
 struct FrameOutcome {
-  Reason verdict = Reason::none;   // why the frame itself was refused
+  Reason verdict = Reason::none;  // why the frame itself was refused
   std::array<ToolOutcome, k_tools_max> tools;
 };
 
 struct Accuracy {
-  std::int64_t frames = 0;            // delivered
-  std::int64_t refused = 0;           // late, doubled, invalid
-  std::int64_t trackable = 0;         // tool and frame
-  std::int64_t tracked = 0;           // of those
-  std::int64_t poses = 0;             // all accepted poses, also of frames that were not trackable
-  std::int64_t gross = 0;             // further than 20 mm or 15 deg from truth, or no tool there
+  std::int64_t frames = 0;     // delivered
+  std::int64_t refused = 0;    // late, doubled, invalid
+  std::int64_t trackable = 0;  // tool and frame
+  std::int64_t tracked = 0;    // of those
+  std::int64_t poses = 0;      // all accepted poses, also of frames that were not trackable
+  std::int64_t gross = 0;      // further than 20 mm or 15 deg from truth, or no tool there
   double tip_rms_m = 0;
   double tip_max_m = 0;
   double angle_rms_rad = 0;
-  std::vector<double> tip_errors_m;   // one for each pose, for histograms
+  std::vector<double> tip_errors_m;  // one for each pose, for histograms
   std::vector<double> angle_errors_rad;
   // The first tool's tip in the true world, for plots: where it was and where it was seen.
   std::vector<Vector3> path_truth_m, path_seen_m;

@@ -18,7 +18,7 @@ namespace glint {
 
 class FileSink {
  public:
-  static constexpr int k_ring_capacity = 1024;   // 4 s of one tool at 250 Hz
+  static constexpr int k_ring_capacity = 1024;  // 4 s of one tool at 250 Hz
 
   // Empty names make no file. Throws InputError where a file cannot be made.
   FileSink(const std::string& tum_file, const std::string& csv_file, WhenFull when_full);

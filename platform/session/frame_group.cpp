@@ -62,8 +62,8 @@ void FrameGroup::record(const ArrivedFrame& arrived) noexcept {
   markers.markers = tracker_->token<Markers>();
   (void)lane_->offer_markers(markers);
   if (!verdict.usable()) {
-    (void)lane_->offer_dropped(
-        {arrived.frame.mid_exposure, arrived.frame.arrival, arrived.frame.sequence, verdict.reason});
+    (void)lane_->offer_dropped({arrived.frame.mid_exposure, arrived.frame.arrival,
+                                arrived.frame.sequence, verdict.reason});
   }
 }
 

@@ -19,7 +19,7 @@ inline constexpr std::uint8_t k_frame_group = 0;
 inline constexpr std::uint8_t k_tick_group = 1;
 
 using Clock = std::function<Time()>;
-using Activate = std::function<void(Tracker&)>;   // by one worker or by several: equal bytes
+using Activate = std::function<void(Tracker&)>;  // by one worker or by several: equal bytes
 
 // As the recording keeps a release.
 [[nodiscard]] ChoiceRecord as_record(const graph::Choice& choice, std::int64_t unix_offset_ns);
@@ -27,8 +27,8 @@ using Activate = std::function<void(Tracker&)>;   // by one worker or by several
 class FrameGroup {
  public:
   // `lane` may be null: nothing is recorded. `tool_set` outlives this.
-  FrameGroup(const Cell& cell, graph::TripleBuffer<ToolSet>& tool_set, Clock now,
-             Activate activate, RecorderLane* lane);
+  FrameGroup(const Cell& cell, graph::TripleBuffer<ToolSet>& tool_set, Clock now, Activate activate,
+             RecorderLane* lane);
 
   // Estimates are published before anything is offered: latency first.
   void process(const ArrivedFrame& arrived) noexcept;
@@ -44,7 +44,7 @@ class FrameGroup {
 
   std::unique_ptr<Tracker> tracker_ = std::make_unique<Tracker>();
   graph::RateGroup<Tracker> group_;
-  std::unique_ptr<SeedMethod> seed_;   // null: the tracker
+  std::unique_ptr<SeedMethod> seed_;  // null: the tracker
   const Estimates* newest_;
   graph::TripleBuffer<Estimates> estimates_;
   Clock now_;

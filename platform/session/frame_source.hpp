@@ -8,9 +8,9 @@
 namespace glint {
 
 struct ArrivedFrame {
-  Frame frame;      // its pixels stay valid until give_back()
+  Frame frame;  // its pixels stay valid until give_back()
   HeadPose head;
-  int slot = -1;    // the source's own number for the pixels' place
+  int slot = -1;  // the source's own number for the pixels' place
 };
 
 class FrameSource {

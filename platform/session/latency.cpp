@@ -12,8 +12,8 @@ LatencyFigures figures(std::vector<std::int64_t> nanoseconds) {
   if (nanoseconds.empty()) return result;
   std::sort(nanoseconds.begin(), nanoseconds.end());
   const auto rank = [&](double part) {
-    const auto at = static_cast<std::size_t>(
-        std::ceil(part * static_cast<double>(nanoseconds.size())) - 1.0);
+    const auto at =
+        static_cast<std::size_t>(std::ceil(part * static_cast<double>(nanoseconds.size())) - 1.0);
     return static_cast<double>(nanoseconds[std::min(at, nanoseconds.size() - 1)]) * 1e-3;
   };
   result.p50_us = rank(0.50);

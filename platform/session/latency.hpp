@@ -11,9 +11,9 @@
 namespace glint {
 
 struct FrameToCan {
-  Duration computing;   // arrival -> estimate published
-  Duration sampling;    // published -> the tick that reads it has woken
-  Duration sending;     // that -> its first CAN frame is written
+  Duration computing;  // arrival -> estimate published
+  Duration sampling;   // published -> the tick that reads it has woken
+  Duration sending;    // that -> its first CAN frame is written
   [[nodiscard]] Duration total() const { return computing + sampling + sending; }
 };
 

@@ -12,7 +12,9 @@ namespace {
 using nlohmann::json;
 
 json as_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
-Vector3 vector_of(const json& item) { return Vector3(item.at(0).get<double>(), item.at(1).get<double>(), item.at(2).get<double>()); }
+Vector3 vector_of(const json& item) {
+  return Vector3(item.at(0).get<double>(), item.at(1).get<double>(), item.at(2).get<double>());
+}
 
 json as_json(const ToolSet& set) {
   json tools = json::array();
@@ -46,8 +48,8 @@ ToolSet tools_of(const json& tools, const std::string& path) {
     tool.shape = item.at("shape") == "disc" ? MarkerShape::disc : MarkerShape::sphere;
     tool.tip_m = vector_of(item.at("tip_m"));
     if (const Reason reason = prepare_tool(tool); reason != Reason::none) {
-      throw InputError(path + ": tools.json: tool " + name + " is " +
-                       std::string(name_of(reason)) + "; expected a rigid body of markers");
+      throw InputError(path + ": tools.json: tool " + name + " is " + std::string(name_of(reason)) +
+                       "; expected a rigid body of markers");
     }
   }
   return set;
@@ -87,13 +89,15 @@ Cell recorded_cell(RecordingReader& reader, const std::string& path) {
   }
   Cell cell = cell_from_text({text.data.begin(), text.data.end()}, path + ":cell.toml", &files);
   const CameraModel& model = cell.camera.model;
-  if (model.lens == Lens::lut &&
-      files.rays->size() != static_cast<std::size_t>(model.width) * static_cast<std::size_t>(model.height) * 3) {
+  if (model.lens == Lens::lut && files.rays->size() != static_cast<std::size_t>(model.width) *
+                                                           static_cast<std::size_t>(model.height) *
+                                                           3) {
     throw InputError(path + ": attachment rays.f32 has " + std::to_string(files.rays->size()) +
                      " numbers; expected 3 for each pixel");
   }
   if (!cell.ray_table.empty() && files.rays == nullptr) {
-    throw InputError(path + ": no attachment rays.f32; expected the calibration that the cell names");
+    throw InputError(path +
+                     ": no attachment rays.f32; expected the calibration that the cell names");
   }
   return cell;
 }

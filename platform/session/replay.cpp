@@ -12,9 +12,9 @@
 #include "platform/input_error.hpp"
 #include "platform/record/sha256.hpp"
 #include "platform/session/frame_group.hpp"
-#include "platform/session/tracker_executor.hpp"
 #include "platform/session/pipeline.hpp"
 #include "platform/session/recorded_cell.hpp"
+#include "platform/session/tracker_executor.hpp"
 
 namespace glint {
 namespace {
@@ -34,7 +34,7 @@ class Replayer {
   }
 
   void on(const HeadPose& head) { head_ = head; }
-  void on(const DroppedInput&) {}   // said beside the frame, which is there as well
+  void on(const DroppedInput&) {}  // said beside the frame, which is there as well
 
   void on(const FrameMessage& frame) {
     tracker_->input<Frame>() = frame.view();
@@ -103,8 +103,8 @@ class Replayer {
       output_->latest<RobotFrame>().set(robot_, choice.versions[1], 0);
     }
     // Ticks that were skipped have numbers, too.
-    const auto number = static_cast<std::uint32_t>(choice.nominal.nanoseconds /
-                                                   tick_period_.nanoseconds);
+    const auto number =
+        static_cast<std::uint32_t>(choice.nominal.nanoseconds / tick_period_.nanoseconds);
     output_->input<Now>() = {choice.nominal, number, choice.unix_offset_ns};
     output_->activate();
     ++result_.ticks;
@@ -177,7 +177,8 @@ ReplayResult replay(const std::string& file, const ReplayOptions& options) {
     now = time_of(*message, now);
     if (options.progress) options.progress(static_cast<double>(now.nanoseconds) * 1e-9);
     if (only_outputs) {
-      if (const auto* output = std::get_if<OutputMessage>(&*message)) resend(*output, resent, result);
+      if (const auto* output = std::get_if<OutputMessage>(&*message))
+        resend(*output, resent, result);
       continue;
     }
     std::visit([&](const auto& item) { replayer.on(item); }, *message);

@@ -10,10 +10,10 @@
 namespace glint {
 
 struct ReplayOptions {
-  int workers = 1;                 // 1 or 2: the same bytes
+  int workers = 1;  // 1 or 2: the same bytes
   ReadTolerance tolerance;
-  std::string tum_file;            // trajectory of the first tool, if not empty
-  std::function<void(double seconds)> progress;   // how far into the recording
+  std::string tum_file;                          // trajectory of the first tool, if not empty
+  std::function<void(double seconds)> progress;  // how far into the recording
 };
 
 struct ReplayResult {
@@ -22,11 +22,11 @@ struct ReplayResult {
   std::int64_t ticks = 0;
   std::int64_t records = 0;
   std::int64_t records_recorded = 0;
-  std::int64_t mismatches = 0;           // records that differ from the recorded ones
-  std::int64_t first_mismatch = -1;      // its number
-  std::int64_t versions_missing = 0;     // ticks that read estimates which the recording lacks
-  std::string output_sha256;             // of the records decided here
-  std::string recorded_sha256;           // of the run, as it wrote at its end
+  std::int64_t mismatches = 0;        // records that differ from the recorded ones
+  std::int64_t first_mismatch = -1;   // its number
+  std::int64_t versions_missing = 0;  // ticks that read estimates which the recording lacks
+  std::string output_sha256;          // of the records decided here
+  std::string recorded_sha256;        // of the run, as it wrote at its end
   [[nodiscard]] bool agrees() const {
     return mismatches == 0 && versions_missing == 0 && records == records_recorded &&
            (recorded_sha256.empty() || output_sha256 == recorded_sha256);

@@ -15,7 +15,7 @@ struct PointPose {
   Reason reason = Reason::none;
   std::uint8_t marker_mask = 0;
   double rms_m = 0;
-  Pose pose;       // T_file_tool, in the frame of the file's coordinates
+  Pose pose;  // T_file_tool, in the frame of the file's coordinates
   Vector3 tip_m = Vector3::Zero();
 };
 

@@ -28,17 +28,16 @@ constexpr int k_frame_priority = 45;
 // From here to the first frame everything else starts.
 constexpr Duration k_lead = milliseconds(300);
 
-Duration tick_period(const Cell& cell) {
-  return {static_cast<std::int64_t>(1e9 / cell.tick_hz)};
-}
+Duration tick_period(const Cell& cell) { return {static_cast<std::int64_t>(1e9 / cell.tick_hz)}; }
 
 // What both kinds of run share: the groups, what they exchange, and where their output goes.
 struct Groups {
   Groups(const Cell& cell, const sim::Simulator& simulator, Sinks& sinks, Clock now,
          std::int64_t unix_offset_ns)
       : executor(cell.workers, k_frame_priority),
-        frame(cell, tool_set, now, [this](Tracker& tracker) { executor.activate(tracker); },
-              sinks.recorder() != nullptr ? &sinks.recorder()->frame_lane() : nullptr),
+        frame(
+            cell, tool_set, now, [this](Tracker& tracker) { executor.activate(tracker); },
+            sinks.recorder() != nullptr ? &sinks.recorder()->frame_lane() : nullptr),
         tick(cell, frame.estimates(), robot, now,
              {sinks.can(), sinks.dds(), sinks.files(),
               sinks.recorder() != nullptr ? &sinks.recorder()->tick_lane() : nullptr},
@@ -149,8 +148,7 @@ SessionResult run_session(const Cell& cell, const SessionOptions& options) {
   return run_session(cell, scenario_of(cell), options);
 }
 
-SessionResult run_session(const Cell& cell, sim::Scenario scenario,
-                          const SessionOptions& options) {
+SessionResult run_session(const Cell& cell, sim::Scenario scenario, const SessionOptions& options) {
   const sim::Simulator simulator(std::move(scenario));
   SessionResult result;
   if (cell.realtime) {

@@ -17,8 +17,8 @@
 namespace glint {
 
 struct SessionOptions {
-  std::string out = "out";          // folder of all files that the cell names relatively
-  bool with_reader = true;          // a DDS reader process of its own counts what arrives
+  std::string out = "out";  // folder of all files that the cell names relatively
+  bool with_reader = true;  // a DDS reader process of its own counts what arrives
   std::function<void(double done_s, double all_s)> progress;
 };
 
@@ -35,16 +35,16 @@ struct SessionResult {
   std::uint64_t worker_overruns = 0;
   std::uint64_t can_frames = 0;
   CanSinkCounts can;
-  double can_bus_load = 0;                  // computed, of the bus that the cell declares
+  double can_bus_load = 0;  // computed, of the bus that the cell declares
   DdsCounts dds;
   ReaderResult dds_reader;
   bool dds_was_read = false;
-  std::uint64_t files_dropped = 0;          // samples that TUM and CSV files lack
+  std::uint64_t files_dropped = 0;  // samples that TUM and CSV files lack
   RecordingOutcome recording;
   std::string recording_file;
   std::string output_sha256;
-  std::vector<std::string> refused;         // real-time rights that the system did not grant
-  std::vector<std::string> files;           // everything written
+  std::vector<std::string> refused;  // real-time rights that the system did not grant
+  std::vector<std::string> files;    // everything written
 };
 
 // On simulated frames: of the scenario that the cell asks for, or of one's own (its camera is the

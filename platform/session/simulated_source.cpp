@@ -34,8 +34,8 @@ void SimulatedSource::render_all() {
     }
     sim::SimFrame& frame = *slots_[static_cast<std::size_t>(slot)];
     simulator_.render(i, frame);
-    truths_[static_cast<std::size_t>(i)] = frame.truth;   // here, for it allocates
-    (void)rendered_.push(slot);   // cannot be full: it holds more than there are slots
+    truths_[static_cast<std::size_t>(i)] = frame.truth;  // here, for it allocates
+    (void)rendered_.push(slot);  // cannot be full: it holds more than there are slots
     ++rendered_count_;
   }
 }
@@ -58,7 +58,7 @@ bool SimulatedSource::wait(ArrivedFrame& arrived) {
   Time arrival = frame.arrival;
   if (sleep_until_ && late) {
     ++late_renders_;
-    arrival = now_();   // the last byte is in memory only now
+    arrival = now_();  // the last byte is in memory only now
   }
   arrived.frame = frame.pixels.view(frame.mid_exposure, arrival, frame.sequence);
   arrived.head = frame.head;

@@ -20,7 +20,7 @@ using SleepUntil = std::function<void(Time)>;
 
 class SimulatedSource final : public FrameSource {
  public:
-  static constexpr int k_slots = 24;   // half a second at 45 Hz, 1 MB each for AHAT
+  static constexpr int k_slots = 24;  // half a second at 45 Hz, 1 MB each for AHAT
 
   // `sleep_until` empty: frames arrive as fast as they are asked for, stamped with their simulated
   // arrival. `now` gives the session's clock.

@@ -25,9 +25,7 @@ std::vector<std::string> names_of(const ToolSet& tools) {
   return names;
 }
 
-Duration tick_period(const Cell& cell) {
-  return {static_cast<std::int64_t>(1e9 / cell.tick_hz)};
-}
+Duration tick_period(const Cell& cell) { return {static_cast<std::int64_t>(1e9 / cell.tick_hz)}; }
 
 double checked_bus_load(const Cell& cell) {
   const CanTraffic traffic{cell.tools.count, cell.tick_hz,

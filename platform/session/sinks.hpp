@@ -32,7 +32,7 @@ class Sinks {
   std::string out_;
   double can_bus_load_ = 0;
   std::unique_ptr<CanSink> can_;
-  std::unique_ptr<ReaderProcess> reader_;   // started before the sink, ended after it
+  std::unique_ptr<ReaderProcess> reader_;  // started before the sink, ended after it
   std::unique_ptr<DdsSink> dds_;
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<FileSink> files_;

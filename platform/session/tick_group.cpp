@@ -55,8 +55,8 @@ void TickGroup::send(Time woken) noexcept {
     ++can_frames_;
     if (first && first_carried) {
       const Time published{estimates.time_ns()};
-      latencies_.add({published - estimates.value().verdict.stamp.arrival, woken - published,
-                      now_() - woken});
+      latencies_.add(
+          {published - estimates.value().verdict.stamp.arrival, woken - published, now_() - woken});
     }
     first = false;
   }

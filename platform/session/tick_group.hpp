@@ -39,7 +39,9 @@ class TickGroup {
   [[nodiscard]] const LatencyLog& latencies() const noexcept { return latencies_; }
   [[nodiscard]] std::uint64_t can_frames() const noexcept { return can_frames_; }
   [[nodiscard]] std::uint64_t records() const noexcept { return records_; }
-  [[nodiscard]] const PoseSamples& samples() const noexcept { return output_->output<PoseSamples>(); }
+  [[nodiscard]] const PoseSamples& samples() const noexcept {
+    return output_->output<PoseSamples>();
+  }
   // Over all output records so far, lower-case hex.
   [[nodiscard]] std::string output_sha256() const;
 
@@ -53,7 +55,7 @@ class TickGroup {
   std::int64_t unix_offset_ns_;
   LatencyLog latencies_;
   Sha256 hash_;
-  std::uint64_t carried_version_ = 0;   // of the estimates that CAN has carried already
+  std::uint64_t carried_version_ = 0;  // of the estimates that CAN has carried already
   std::uint64_t can_frames_ = 0;
   std::uint64_t records_ = 0;
 };

@@ -15,7 +15,8 @@ class TrackerExecutor {
 
   explicit TrackerExecutor(int workers, int priority = 0) {
     if (workers < 2) return;
-    const std::vector<ThreadSettings> others{{.name = "glint-worker", .core = -1, .priority = priority}};
+    const std::vector<ThreadSettings> others{
+        {.name = "glint-worker", .core = -1, .priority = priority}};
     pair_ = std::make_unique<ParallelExecutor<2>>(others, k_spins_max);
   }
 

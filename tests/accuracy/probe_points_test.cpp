@@ -116,8 +116,8 @@ TEST_P(ProbePoints, AreSolvedInEveryFrameWhereTheLabelsPutTheTip) {
   for (std::size_t f = 0; f < result.frames.size(); ++f) {
     const RigidFit reference = labelled_fit(probe, probe_markers(trial, f));
     ASSERT_EQ(reference.reason, Reason::none) << f;
-    tip_most = std::max(tip_most,
-                        (result.frames[f].tip_m - reference.transform.translation).norm());
+    tip_most =
+        std::max(tip_most, (result.frames[f].tip_m - reference.transform.translation).norm());
   }
   const double rms_most = result.rms_max_m;
   std::printf("  %zu frames: rms at most %.3f mm, tip within %.4f mm\n", result.frames.size(),

@@ -31,10 +31,10 @@ struct FramesSeen {
 
 TEST(Accuracy, CountsThreeMarkersOnlyShortlyAfterATrackedFrame) {
   FramesSeen run;
-  run.frame(0, 0b0111, false);      // never tracked before: not trackable
+  run.frame(0, 0b0111, false);  // never tracked before: not trackable
   run.frame(100, 0b1111, true);
-  run.frame(200, 0b0111, false);    // trackable, missed
-  run.frame(400, 0b0111, false);    // 300 ms after the tracked frame: not trackable
+  run.frame(200, 0b0111, false);  // trackable, missed
+  run.frame(400, 0b0111, false);  // 300 ms after the tracked frame: not trackable
   EXPECT_EQ(run.judged().trackable, 2);
   EXPECT_EQ(run.judged().tracked, 1);
 }

@@ -18,7 +18,7 @@ TEST_P(Replay, DecidesAlikeWithOneWorkerAndWithTwo) {
     const ReplayResult result = replay(run.recording_file, options);
     EXPECT_TRUE(result.agrees()) << result.mismatches << " differ, first " << result.first_mismatch;
     EXPECT_EQ(result.output_sha256, run.output_sha256);
-    EXPECT_EQ(result.records, run.ticks - 3);   // none before the first frame names its tools
+    EXPECT_EQ(result.records, run.ticks - 3);  // none before the first frame names its tools
   }
 }
 
