@@ -68,7 +68,8 @@ struct PublishedFigures {
 };
 [[nodiscard]] PublishedFigures published_figures(ExperimentKind kind);
 
-// The tip along one run, in the reference's frame, for the plot.
+// The tip along one run, in the reference's frame, frame by frame; not finite where there is no
+// pose.
 struct ExperimentPath {
   std::vector<Vector3> reference_m, seed_m, glint_m;
 };

@@ -1,5 +1,6 @@
 #include "platform/experiments/experiment_report.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -9,6 +10,8 @@ namespace glint {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::size_t k_path_frames = 300;  // ten seconds
 
 Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
@@ -64,6 +67,12 @@ std::string row(const char* name, const std::optional<double>& published, double
 
 HistogramSeries series_of(const std::string& name, const ErrorColumn& column) {
   return {name, column.histogram, column.fit};
+}
+
+// Longer paths only blacken the picture.
+TrajectorySeries beginning_of(const std::string& name, const std::vector<Vector3>& path_m) {
+  const auto length = static_cast<std::ptrdiff_t>(std::min(path_m.size(), k_path_frames));
+  return {name, {path_m.begin(), path_m.begin() + length}};
 }
 
 }  // namespace
@@ -140,10 +149,10 @@ std::vector<std::string> write_experiment_plots(const ExperimentResult& result,
         histogram_plot({"Angle error, " + name, "error about an axis [deg]", "part a degree"},
                        std::vector{series_of("seed", result.seed.angle_deg),
                                    series_of("Glint", result.glint.angle_deg)}));
-  write("path", trajectory_plot("Tip, " + name, std::vector<TrajectorySeries>{
-                                                    {"reference", result.path.reference_m},
-                                                    {"seed", result.path.seed_m},
-                                                    {"Glint", result.path.glint_m}}));
+  write("path", trajectory_plot("Tip, " + name + ", ten seconds",
+                                std::vector{beginning_of("reference", result.path.reference_m),
+                                            beginning_of("seed", result.path.seed_m),
+                                            beginning_of("Glint", result.path.glint_m)}));
   return written;
 }
 

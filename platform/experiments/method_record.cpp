@@ -1,5 +1,6 @@
 #include "platform/experiments/method_record.hpp"
 
+#include <limits>
 #include <utility>
 
 namespace glint {
@@ -39,7 +40,10 @@ void MethodRecord::take_judged(const sim::SimFrame& frame, const Result<Pose>& a
                                double seconds) {
   take_time(seconds);
   ++frames_;
-  if (!answer || !frame.head.valid) return;
+  if (!answer || !frame.head.valid) {
+    path_m_.emplace_back(Vector3::Constant(std::numeric_limits<double>::quiet_NaN()));
+    return;
+  }
   if (!aligned_) {
     T_reference_world_ = align_worlds(aligning_);
     aligned_ = true;

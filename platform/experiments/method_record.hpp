@@ -22,7 +22,8 @@ class MethodRecord {
   void take_judged(const sim::SimFrame& frame, const Result<Pose>& answer, double seconds);
 
   [[nodiscard]] MethodFigures figures() const;
-  // The tip in the reference's frame, as judged in the run at hand.
+  // The tip in the reference's frame, for each judged frame of the run at hand; not finite where
+  // there was none.
   [[nodiscard]] const std::vector<Vector3>& path_m() const { return path_m_; }
 
  private:

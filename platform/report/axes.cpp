@@ -76,7 +76,7 @@ void Axes::draw(const AxesText& text) {
   }
   canvas_.text({left, top - 10}, text.title, {.size = 14, .bold = true});
   canvas_.text({left + size_.x() / 2, bottom + 36}, text.x_label, {.anchor = TextAnchor::middle});
-  canvas_.text({left - 44, top + size_.y() / 2}, text.y_label,
+  canvas_.text({left - 54, top + size_.y() / 2}, text.y_label,
                {.anchor = TextAnchor::middle, .upwards = true});
 }
 

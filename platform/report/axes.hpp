@@ -34,7 +34,7 @@ struct AxesText {
 
 class Axes {
  public:
-  // corner and size of the plotted area; labels are drawn outside of it: 60 left, 48 below, 28
+  // corner and size of the plotted area; labels are drawn outside of it: 70 left, 48 below, 28
   // above.
   Axes(SvgCanvas& canvas, const Vector2& corner, const Vector2& size, const Range& x,
        const Range& y);

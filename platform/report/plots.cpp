@@ -7,7 +7,7 @@
 namespace glint {
 namespace {
 
-constexpr double k_left = 66, k_top = 42, k_right = 22, k_bottom = 54;
+constexpr double k_left = 74, k_top = 42, k_right = 22, k_bottom = 54;
 constexpr double k_plot_width = 640, k_plot_height = 340;
 constexpr int k_bell_points = 200;
 constexpr int k_latency_bins = 60;
@@ -110,7 +110,7 @@ std::string trajectory_plot(const std::string& title, std::span<const Trajectory
       aside.take(point.x(), point.z());
     }
   }
-  constexpr double side = 360, gap = 74;
+  constexpr double side = 360, gap = 84;
   SvgCanvas canvas = canvas_for(2 * side + gap, side);
   double span = 1e-3;
   for (const Limits* limits : {&above, &aside})

@@ -54,6 +54,9 @@ TEST(MethodRecord, CountsAFrameWithoutAPoseAsNoSample) {
   record.take_judged(frame_with(k_pose), {k_pose}, 1);
   EXPECT_EQ(record.figures().frames, 3);
   EXPECT_EQ(record.figures().samples, 1);
+  ASSERT_EQ(record.path_m().size(), 3u);  // a gap for each frame without
+  EXPECT_FALSE(record.path_m()[1].allFinite());
+  EXPECT_TRUE(record.path_m()[2].allFinite());
 }
 
 TEST(MethodRecord, AlignsEachRunAnew) {
