@@ -1,4 +1,5 @@
 // glint run: frames in, poses out over DDS and CAN, everything recorded.
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <memory>
@@ -13,6 +14,9 @@
 
 namespace glint {
 namespace {
+
+// Set by Ctrl-C: the run ends at once, with its table and everything written.
+std::atomic<bool> g_stop{false};
 
 struct RunArguments {
   std::string config, json, out = "out", can, level;
@@ -45,6 +49,9 @@ int run(const RunArguments& arguments) {
   SessionOptions options;
   options.out = arguments.out;
   options.progress = [&](double done_s, double all_s) { progress.show(done_s, all_s); };
+  options.stop = &g_stop;
+  std::signal(SIGINT, [](int) { g_stop = true; });
+  std::signal(SIGTERM, [](int) { g_stop = true; });
   SessionResult result = run_session(cell, options);
   draw_plots(arguments.out, result);
   const nlohmann::ordered_json summary = summary_of(cell, result);

@@ -65,6 +65,10 @@ struct Groups {
   std::size_t processed = 0;
 };
 
+bool stopped(const SessionOptions& options) noexcept {
+  return options.stop != nullptr && *options.stop;
+}
+
 void note(const ThreadReport& report, SessionResult& result) {
   if (!report.refused.empty()) result.refused.push_back(report.name + ": " + report.refused);
 }
@@ -82,7 +86,7 @@ void run_live(const Cell& cell, Time epoch, SimulatedSource& source, Groups& gro
   RealTimeThread frame_thread({"glint-frame", -1, k_frame_priority}, [&] {
     AllocationCounter::arm();
     ArrivedFrame arrived;
-    while (source.wait(arrived)) {
+    while (!stopped(options) && source.wait(arrived)) {
       groups.process(arrived);
       source.give_back(arrived);
     }
@@ -94,7 +98,7 @@ void run_live(const Cell& cell, Time epoch, SimulatedSource& source, Groups& gro
     for (;;) {
       const Tick tick = loop.next();
       const Time nominal = after_epoch(tick.nominal);
-      if (frames_done && nominal > end) break;
+      if (frames_done && (nominal > end || stopped(options))) break;
       groups.tick.tick(tick.number, nominal, after_epoch(tick.woken));
       ++result.ticks;
       reached_ns = nominal.nanoseconds;
@@ -102,7 +106,8 @@ void run_live(const Cell& cell, Time epoch, SimulatedSource& source, Groups& gro
     AllocationCounter::disarm();
   });
   const double all_s = static_cast<double>(end.nanoseconds) * 1e-9;
-  while (!frames_done || reached_ns < (end - tick_period(cell)).nanoseconds) {
+  while (!frames_done ||
+         (reached_ns < (end - tick_period(cell)).nanoseconds && !stopped(options))) {
     if (options.progress) options.progress(static_cast<double>(reached_ns) * 1e-9, all_s);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
@@ -130,7 +135,7 @@ void run_in_order(const Cell& cell, Time& now, SimulatedSource& source, Groups& 
   };
   ArrivedFrame arrived;
   Time last;
-  while (source.wait(arrived)) {
+  while (!stopped(options) && source.wait(arrived)) {
     tick_until(arrived.frame.arrival);
     now = last = arrived.frame.arrival;
     groups.process(arrived);

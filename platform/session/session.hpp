@@ -1,6 +1,7 @@
 // One run of Glint, from frames to CAN, DDS and a recording, in real time or as fast as can be.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -20,6 +21,7 @@ struct SessionOptions {
   std::string out = "out";  // folder of all files that the cell names relatively
   bool with_reader = true;  // a DDS reader process of its own counts what arrives
   std::function<void(double done_s, double all_s)> progress;
+  const std::atomic<bool>* stop = nullptr;  // set: the run ends here, whole as far as it went
 };
 
 struct SessionResult {
