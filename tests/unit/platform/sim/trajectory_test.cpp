@@ -85,9 +85,9 @@ TEST(TrajectoryFile, RefusesOneThatIsNotThere) {
 Trajectory parabola() {
   Trajectory path;
   for (int i = 0; i <= 10; ++i) {
-    const double t = 0.05 * i;
-    path.samples.push_back(
-        {Time{i * 50'000'000LL}, {from_rotation_vector({0, 0, t}), Vector3(t, t * t, 1)}});
+    const std::int64_t ns = i * 50'000'000LL + (i % 2) * 15'000'000LL;  // unevenly
+    const double t = static_cast<double>(ns) * 1e-9;
+    path.samples.push_back({Time{ns}, {from_rotation_vector({0, 0, t}), Vector3(t, t * t, 1)}});
   }
   return path;
 }
@@ -95,8 +95,8 @@ Trajectory parabola() {
 TEST(Trajectory, FollowsAParabolaBetweenItsSamples) {
   const Trajectory path = parabola();
   for (int i = 0; i < 40; ++i) {
-    const double t = 0.05 + 0.01 * i;
-    const Pose pose = interpolated(path, Time{50'000'000 + i * 10'000'000LL});
+    const double t = 0.07 + 0.009 * i;
+    const Pose pose = interpolated(path, Time{70'000'000 + i * 9'000'000LL});
     EXPECT_NEAR(pose.translation.x(), t, 1e-12);
     EXPECT_NEAR(pose.translation.y(), t * t, 1e-12);
     EXPECT_NEAR(rotation_vector(pose.rotation).z(), t, 1e-12);
