@@ -173,13 +173,13 @@ SignalSettings hololens1_signal() {
 // motion_ and _per_ figure acts only while the head moves, every rest_ figure always.
 LocalisationSettings hololens1_localisation() {
   LocalisationSettings localisation;
-  localisation.rest_position_m = 0.0019;
-  localisation.rest_angle_rad = 0.0045;
-  localisation.rest_correlation_s = 20;
+  localisation.rest_position_m = 0.00203;
+  localisation.rest_angle_rad = 0.0058;
+  localisation.rest_correlation_s = 3;
   localisation.position_per_speed_s = 0.245;
   localisation.position_per_turn_m = 0.041;
-  localisation.angle_per_speed_s_m = 0.6;
-  localisation.angle_per_turn_s = 0.24;
+  localisation.angle_per_speed_s_m = 0.62;
+  localisation.angle_per_turn_s = 0.25;
   localisation.motion_correlation_s = 0.6;
   localisation.motion_position_bias = Vector3(0.05, 0.05, 0.05);
   localisation.motion_angle_bias = Vector3(0.025, 0.025, 0.025);
