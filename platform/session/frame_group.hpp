@@ -10,19 +10,14 @@
 #include "nodes/tracker.hpp"
 #include "platform/cells/cell.hpp"
 #include "platform/record/recorder.hpp"
+#include "platform/session/choices.hpp"
 #include "platform/session/frame_source.hpp"
 #include "platform/session/seed_method.hpp"
 
 namespace glint {
 
-inline constexpr std::uint8_t k_frame_group = 0;
-inline constexpr std::uint8_t k_tick_group = 1;
-
 using Clock = std::function<Time()>;
 using Activate = std::function<void(Tracker&)>;  // by one worker or by several: equal bytes
-
-// As the recording keeps a release.
-[[nodiscard]] ChoiceRecord as_record(const graph::Choice& choice, std::int64_t unix_offset_ns);
 
 class FrameGroup {
  public:

@@ -11,7 +11,7 @@
 #include "nodes/tracker.hpp"
 #include "platform/input_error.hpp"
 #include "platform/record/sha256.hpp"
-#include "platform/session/frame_group.hpp"
+#include "platform/session/choices.hpp"
 #include "platform/session/pipeline.hpp"
 #include "platform/session/recorded_cell.hpp"
 #include "platform/session/tracker_executor.hpp"

@@ -1,0 +1,18 @@
+#include "platform/session/choices.hpp"
+
+namespace glint {
+
+ChoiceRecord as_record(const graph::Choice& choice, std::int64_t unix_offset_ns) {
+  ChoiceRecord record;
+  record.group = static_cast<std::uint8_t>(choice.group);
+  record.activation = choice.activation;
+  record.nominal = Time{choice.nominal_ns};
+  record.version_count = static_cast<std::uint8_t>(choice.version_count);
+  for (int i = 0; i < choice.version_count && i < k_recorded_versions; ++i) {
+    record.versions[static_cast<std::size_t>(i)] = choice.versions[static_cast<std::size_t>(i)];
+  }
+  record.unix_offset_ns = unix_offset_ns;
+  return record;
+}
+
+}  // namespace glint
