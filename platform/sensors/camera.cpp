@@ -24,7 +24,8 @@ Camera hololens1_short_throw() {
   camera.depth.unit_m = 0.001;
   camera.depth.invalid_from = 4090;  // HoloLensForCV: from here on the depth is invalid
   camera.depth.wrap_range_m = 0;
-  camera.depth.saturated_from = 255;
+  // Eight bits clip far below what spoils a pixel's depth; the sensor itself then writes none.
+  camera.depth.saturated_from = 0xFFFF;
   camera.reflectivity_bits = 8;
   camera.threshold = 250;  // the seed's
   camera.period = Duration{33'333'333};

@@ -30,6 +30,7 @@ struct Reflector {
   double limb = 1;             // sphere: share of the signal left at its limb
   double range_error_m = 0;    // added to all its ranges
   int tool = -1, marker = -1;  // -1: clutter
+  int index = 0;               // in the order in which the scene was built
 
   [[nodiscard]] bool is_disc() const { return normal.squaredNorm() > 0; }
 };

@@ -54,9 +54,6 @@ Interval seconds(int begin, int end) {
 Scenario hololens1(const std::vector<Tool>& tools) {
   Scenario scenario;
   scenario.camera = hololens1_short_throw();
-  // Eight bits clip far below what spoils a pixel's depth: NoiseSettings::depth_saturation does
-  // that here, and writes 0.
-  scenario.camera.depth.saturated_from = 0xFFFF;
   scenario.noise = hololens1_noise();
   scenario.signal = hololens1_signal();
   scenario.localisation = hololens1_localisation();

@@ -120,12 +120,13 @@ void build_scene(const Scenario& scenario, Time mid_exposure, std::uint32_t sequ
   }
   add_clutter(scenario, camera_world, out);
   add_occlusions(scenario, camera_world.middle, mid_exposure, out);
-  // The farthest first; where two are equally far, the one that was added first.
-  std::stable_sort(out.reflectors.items.begin(),
-                   out.reflectors.items.begin() + out.reflectors.count,
-                   [](const Reflector& a, const Reflector& b) {
-                     return a.centre.squaredNorm() > b.centre.squaredNorm();
-                   });
+  // A total order, as a stable sort would allocate.
+  for (int i = 0; i < out.reflectors.count; ++i) out.reflectors[i].index = i;
+  std::sort(out.reflectors.items.begin(), out.reflectors.items.begin() + out.reflectors.count,
+            [](const Reflector& a, const Reflector& b) {
+              const double far_a = a.centre.squaredNorm(), far_b = b.centre.squaredNorm();
+              return far_a != far_b ? far_a > far_b : a.index < b.index;
+            });
 }
 
 }  // namespace glint::sim
