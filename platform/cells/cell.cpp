@@ -179,6 +179,16 @@ void CellParser::read_tools(TomlReader& root) {
     cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] =
         name == "pen" ? default_pen() : load_tool(resolved(name, "tools"));
   }
+  // Topics, frames and columns are named after the tool.
+  for (int t = 1; t < cell.tools.count; ++t) {
+    for (int other = 0; other < t; ++other) {
+      const std::string name = cell.tools.items[static_cast<std::size_t>(t)].name.data();
+      if (name != cell.tools.items[static_cast<std::size_t>(other)].name.data()) continue;
+      throw InputError(cell.file + ": tools " + std::to_string(other + 1) + " and " +
+                       std::to_string(t + 1) + " are both named \"" + name +
+                       "\"; expected a name of its own for each");
+    }
+  }
 }
 
 }  // namespace
