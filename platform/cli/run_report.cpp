@@ -122,7 +122,7 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
                    std::to_string(result.ticks_skipped) + " skipped)");
   row("heap allocations after start", result.heap_counted
                                           ? std::to_string(result.heap_allocations_after_start)
-                                          : "not counted in this build");
+                                          : "not counted (only in a live run)");
   row("CAN frames", std::to_string(result.can_frames) + " (bus load " +
                         fixed(100 * result.can_bus_load, 1, "%, computed)"));
   row("DDS", std::to_string(result.dds.written) + " written, " +
