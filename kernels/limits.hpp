@@ -13,4 +13,15 @@ inline constexpr int k_row_bands = 2;  // how often the frame is split; never th
 inline constexpr int k_runs_per_band_max = 8192;
 inline constexpr int k_labelings_max = 8;  // kept for each tool, best first
 
+// The problem that one cell takes on: at most the constants above. Nodes stop at these, and what a
+// chain may need at worst is computed from them; a smaller cell has a smaller bound.
+struct Limits {
+  int width = k_width_max;
+  int height = k_height_max;
+  int tools = k_tools_max;
+  int markers_per_tool = k_markers_per_tool_max;
+  int blobs = k_blobs_max;
+  int runs_per_band = k_runs_per_band_max;
+};
+
 }  // namespace glint

@@ -1,0 +1,49 @@
+// How often a node's loops may run in one activation, and how often they did.
+//
+// A worst case is a sum of counts times costs. The counts are the code's: a node names its loops,
+// says how often each may run under given limits, and after an activation how often each did. The
+// costs belong to a board and are no affair of this folder.
+//
+//   struct FindBlobs {
+//     static constexpr std::array<std::string_view, 3> k_loops = {"call", "runs", "pixels"};
+//     [[nodiscard]] static constexpr LoopCounts worst(const Limits& limits) noexcept;
+//     [[nodiscard]] LoopCounts counts() const noexcept;  // of the last activation
+//   };
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace glint::graph {
+
+inline constexpr std::size_t k_loops_max = 8;
+
+// In the order of the node's k_loops; entries beyond them are zero. The first is always "call": 1.
+struct LoopCounts {
+  std::array<std::int64_t, k_loops_max> n{};
+
+  [[nodiscard]] constexpr std::int64_t operator[](std::size_t loop) const { return n[loop]; }
+  constexpr std::int64_t& operator[](std::size_t loop) { return n[loop]; }
+  bool operator==(const LoopCounts&) const = default;
+};
+
+// Whether no loop ran more often than it may.
+[[nodiscard]] constexpr bool within(const LoopCounts& counts, const LoopCounts& worst) {
+  for (std::size_t loop = 0; loop < k_loops_max; ++loop) {
+    if (counts[loop] > worst[loop]) return false;
+  }
+  return true;
+}
+
+// A node whose worst case can be computed: of one copy, where it stands under Split.
+template <class Node, class Limits>
+concept Budgeted = requires(const Node& node, const Limits& limits) {
+  requires Node::k_loops.size() >= 1 && Node::k_loops.size() <= k_loops_max;
+  { Node::worst(limits) } -> std::same_as<LoopCounts>;
+  { node.counts() } -> std::same_as<LoopCounts>;
+};
+
+}  // namespace glint::graph

@@ -1,0 +1,36 @@
+// Which node runs on which core, and in which order: what synthesis makes and the runtime follows.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// One node's place. On a core, the nodes of one group run in the order of `start_ns`.
+struct PlannedNode {
+  int group = 0;  // index into the task model's groups
+  int node = 0;   // index into that group's nodes
+  int core = 0;
+  std::int64_t start_ns = 0;  // from the group's release, every node at its bound, undisturbed
+  std::int64_t end_ns = 0;
+};
+
+struct PlannedGroup {
+  std::string name;
+  int priority = 0;
+  std::int64_t makespan_ns = 0;
+  std::int64_t least_possible_ns = 0;  // a lower bound on any plan's makespan
+  bool optimal = false;                // makespan == the optimum, proven
+};
+
+struct Plan {
+  std::string graph_signature;  // of every graph in it, "0x.." joined by '+'
+  std::string board;            // name of the board file
+  std::string board_sha256;     // of the costs that the bounds come from
+  int cores = 1;
+  std::vector<PlannedGroup> groups;
+  std::vector<PlannedNode> nodes;
+};
+
+}  // namespace glint
