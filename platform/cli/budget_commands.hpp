@@ -1,0 +1,14 @@
+// The parts of `glint budget`. Each adds itself below `budget` and leaves its exit code.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace glint {
+
+void add_budget_measure(CLI::App& budget, int& exit_code);
+void add_budget_schedule(CLI::App& budget, int& exit_code);
+void add_budget_check(CLI::App& budget, int& exit_code);
+void add_budget_report(CLI::App& budget, int& exit_code);
+void add_budget_diff(CLI::App& budget, int& exit_code);
+
+}  // namespace glint

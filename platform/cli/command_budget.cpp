@@ -1,0 +1,12 @@
+#include "platform/cli/budget_commands.hpp"
+#include "platform/cli/commands.hpp"
+
+namespace glint {
+
+void add_budget(CLI::App& app, int& exit_code) {
+  CLI::App* budget = app.add_subcommand("budget", "how late an output can be, before it runs");
+  budget->require_subcommand(1);
+  (void)exit_code;
+}
+
+}  // namespace glint
