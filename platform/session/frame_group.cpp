@@ -7,15 +7,15 @@
 namespace glint {
 
 FrameGroup::FrameGroup(const Cell& cell, graph::TripleBuffer<ToolSet>& tool_set, Clock now,
-                       Activate activate, RecorderLane* lane)
+                       Activate activate, RecorderLane* lane, std::unique_ptr<FrameMethod> method)
     : group_(*tracker_, k_frame_group),
+      method_(std::move(method)),
       newest_(&tracker_->output<Estimates>()),
       now_(std::move(now)),
       activate_(std::move(activate)),
       lane_(lane) {
   configure(cell, *tracker_);
   tracker_->latest<ToolSet>().bind(tool_set);
-  if (cell.method == Method::seed) seed_ = std::make_unique<SeedMethod>(cell);
 }
 
 void FrameGroup::process(const ArrivedFrame& arrived) noexcept {
@@ -27,7 +27,7 @@ void FrameGroup::process(const ArrivedFrame& arrived) noexcept {
 }
 
 const Estimates& FrameGroup::estimate(const ArrivedFrame& arrived) noexcept {
-  if (seed_ != nullptr) return seed_->process(arrived);
+  if (method_ != nullptr) return method_->process(arrived);
   tracker_->input<Frame>() = arrived.frame;
   tracker_->input<HeadPose>() = arrived.head;
   activate_(*tracker_);

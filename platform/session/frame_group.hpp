@@ -11,8 +11,7 @@
 #include "platform/cells/cell.hpp"
 #include "platform/record/recorder.hpp"
 #include "platform/session/choices.hpp"
-#include "platform/session/frame_source.hpp"
-#include "platform/session/seed_method.hpp"
+#include "platform/session/frame_method.hpp"
 
 namespace glint {
 
@@ -21,9 +20,10 @@ using Activate = std::function<void(Tracker&)>;  // by one worker or by several:
 
 class FrameGroup {
  public:
-  // `lane` may be null: nothing is recorded. `tool_set` outlives this.
+  // `lane` may be null: nothing is recorded. `tool_set` outlives this. With a `method` it decides
+  // in the tracker's place.
   FrameGroup(const Cell& cell, graph::TripleBuffer<ToolSet>& tool_set, Clock now, Activate activate,
-             RecorderLane* lane);
+             RecorderLane* lane, std::unique_ptr<FrameMethod> method = nullptr);
 
   // Estimates are published before anything is offered: latency first.
   void process(const ArrivedFrame& arrived) noexcept;
@@ -39,7 +39,7 @@ class FrameGroup {
 
   std::unique_ptr<Tracker> tracker_ = std::make_unique<Tracker>();
   graph::RateGroup<Tracker> group_;
-  std::unique_ptr<SeedMethod> seed_;  // null: the tracker
+  std::unique_ptr<FrameMethod> method_;  // null: the tracker
   const Estimates* newest_;
   graph::TripleBuffer<Estimates> estimates_;
   Clock now_;

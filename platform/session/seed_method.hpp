@@ -7,16 +7,16 @@
 #include "nodes/track_tools.hpp"
 #include "platform/cells/cell.hpp"
 #include "platform/seed/seed_tracker.hpp"
-#include "platform/session/frame_source.hpp"
+#include "platform/session/frame_method.hpp"
 
 namespace glint {
 
-class SeedMethod {
+class SeedMethod final : public FrameMethod {
  public:
   explicit SeedMethod(const Cell& cell);
 
   // Outside real time: OpenCV allocates.
-  [[nodiscard]] const Estimates& process(const ArrivedFrame& arrived);
+  [[nodiscard]] const Estimates& process(const ArrivedFrame& arrived) override;
 
  private:
   SeedTracker seed_;

@@ -13,6 +13,7 @@
 #include "platform/session/frame_group.hpp"
 #include "platform/session/pipeline.hpp"
 #include "platform/session/scenario_of.hpp"
+#include "platform/session/seed_method.hpp"
 #include "platform/session/simulated_source.hpp"
 #include "platform/session/sinks.hpp"
 #include "platform/session/tick_group.hpp"
@@ -30,6 +31,11 @@ constexpr Duration k_lead = milliseconds(300);
 
 Duration tick_period(const Cell& cell) { return {static_cast<std::int64_t>(1e9 / cell.tick_hz)}; }
 
+std::unique_ptr<FrameMethod> method_of(const Cell& cell) {
+  if (cell.method == Method::seed) return std::make_unique<SeedMethod>(cell);
+  return nullptr;  // the tracker
+}
+
 // What both kinds of run share: the groups, what they exchange, and where their output goes.
 struct Groups {
   Groups(const Cell& cell, const sim::Simulator& simulator, Sinks& sinks, Clock now,
@@ -37,7 +43,8 @@ struct Groups {
       : executor(cell.workers, k_frame_priority),
         frame(
             cell, tool_set, now, [this](Tracker& tracker) { executor.activate(tracker); },
-            sinks.recorder() != nullptr ? &sinks.recorder()->frame_lane() : nullptr),
+            sinks.recorder() != nullptr ? &sinks.recorder()->frame_lane() : nullptr,
+            method_of(cell)),
         tick(cell, frame.estimates(), robot, now,
              {sinks.can(), sinks.dds(), sinks.files(),
               sinks.recorder() != nullptr ? &sinks.recorder()->tick_lane() : nullptr},

@@ -7,24 +7,19 @@
 #include <string>
 #include <vector>
 
-#include "platform/can/can_sink.hpp"
 #include "platform/cells/cell.hpp"
-#include "platform/dds/dds_sink.hpp"
-#include "platform/dds/reader_result.hpp"
-#include "platform/record/recording.hpp"
 #include "platform/session/accuracy.hpp"
 #include "platform/session/latency.hpp"
+#include "platform/session/sink_outcome.hpp"
 
 namespace glint {
 
-struct SessionOptions {
-  std::string out = "out";  // folder of all files that the cell names relatively
-  bool with_reader = true;  // a DDS reader process of its own counts what arrives
+struct SessionOptions : SinkOptions {
   std::function<void(double done_s, double all_s)> progress;
   const std::atomic<bool>* stop = nullptr;  // set: the run ends here, whole as far as it went
 };
 
-struct SessionResult {
+struct SessionResult : SinkOutcome {
   Accuracy accuracy;
   std::vector<FrameToCan> latencies;
   std::int64_t frames = 0;
@@ -36,17 +31,6 @@ struct SessionResult {
   bool heap_counted = false;
   std::uint64_t worker_overruns = 0;
   std::uint64_t can_frames = 0;
-  CanSinkCounts can;
-  double can_bus_load = 0;  // computed, of the bus that the cell declares
-  DdsCounts dds;
-  ReaderResult dds_reader;
-  bool dds_was_read = false;
-  std::uint64_t files_dropped = 0;  // samples that TUM and CSV files lack
-  RecordingOutcome recording;
-  std::string recording_file;
-  std::string output_sha256;
-  std::vector<std::string> refused;  // real-time rights that the system did not grant
-  std::vector<std::string> files;    // everything written
 };
 
 // On simulated frames: of the scenario that the cell asks for, or of one's own (its camera is the

@@ -55,7 +55,7 @@ DdsSettings dds_settings(const Cell& cell, std::int64_t unix_offset_ns) {
 
 }  // namespace
 
-Sinks::Sinks(const Cell& cell, const SessionOptions& options, std::int64_t unix_offset_ns)
+Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_offset_ns)
     : out_(options.out), can_bus_load_(checked_bus_load(cell)) {
   CanSinkOptions can;
   can.directory = out_;
@@ -100,7 +100,7 @@ Sinks::Sinks(const Cell& cell, const SessionOptions& options, std::int64_t unix_
   }
 }
 
-void Sinks::close(SessionResult& result) {
+void Sinks::close(SinkOutcome& result) {
   can_->flush();
   result.can = can_->counts();
   result.can_bus_load = can_bus_load_;

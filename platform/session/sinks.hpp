@@ -10,7 +10,7 @@
 #include "platform/dds/reader_process.hpp"
 #include "platform/record/recorder.hpp"
 #include "platform/session/file_sink.hpp"
-#include "platform/session/session.hpp"
+#include "platform/session/sink_outcome.hpp"
 
 namespace glint {
 
@@ -18,7 +18,7 @@ class Sinks {
  public:
   // Throws InputError for a bus that cannot carry the cell's traffic or a file that cannot be made,
   // MissingDevice for an interface that is not there.
-  Sinks(const Cell& cell, const SessionOptions& options, std::int64_t unix_offset_ns);
+  Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_offset_ns);
 
   [[nodiscard]] CanSink* can() noexcept { return can_.get(); }
   [[nodiscard]] DdsSink* dds() noexcept { return dds_.get(); }
@@ -26,7 +26,7 @@ class Sinks {
   [[nodiscard]] FileSink* files() noexcept { return files_.get(); }
 
   // After the last offer: everything is written, and what became of it stands in the result.
-  void close(SessionResult& result);
+  void close(SinkOutcome& result);
 
  private:
   std::string out_;

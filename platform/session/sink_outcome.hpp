@@ -1,0 +1,34 @@
+// Where a run's files go, and what became of everything it sent.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "platform/can/can_sink.hpp"
+#include "platform/dds/dds_sink.hpp"
+#include "platform/dds/reader_result.hpp"
+#include "platform/record/recording.hpp"
+
+namespace glint {
+
+struct SinkOptions {
+  std::string out = "out";  // folder of all files that the cell names relatively
+  bool with_reader = true;  // a DDS reader process of its own counts what arrives
+};
+
+struct SinkOutcome {
+  CanSinkCounts can;
+  double can_bus_load = 0;  // computed, of the bus that the cell declares
+  DdsCounts dds;
+  ReaderResult dds_reader;
+  bool dds_was_read = false;
+  std::uint64_t files_dropped = 0;  // samples that TUM and CSV files lack
+  RecordingOutcome recording;
+  std::string recording_file;
+  std::string output_sha256;
+  std::vector<std::string> refused;  // real-time rights that the system did not grant
+  std::vector<std::string> files;    // everything written
+};
+
+}  // namespace glint
