@@ -9,7 +9,7 @@
 
 namespace glint::sim {
 
-inline constexpr int k_clutter_max = 64;
+inline constexpr int k_clutter_max = 256;
 inline constexpr int k_reflectors_max = k_tools_max * k_markers_per_tool_max + k_clutter_max;
 inline constexpr int k_capsules_max = 128;
 
