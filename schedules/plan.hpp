@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "schedules/bus_load.hpp"
+
 namespace glint {
 
 // One node's place. On a core, the nodes of one group run in the order of `start_ns`.
@@ -29,8 +31,14 @@ struct Plan {
   std::string board;            // name of the board file
   std::string board_sha256;     // of the costs that the bounds come from
   int cores = 1;
+  CanTraffic traffic;  // what the plan was made to send, and the bus that it was made for
+  CanBitRates bus;
   std::vector<PlannedGroup> groups;
   std::vector<PlannedNode> nodes;
 };
+
+// The nodes of one group that each core runs, in its order: indices into the group's nodes, which
+// are the graph's numbers in its order of execution. As many lists as the plan has cores.
+[[nodiscard]] std::vector<std::vector<int>> core_orders(const Plan& plan, int group);
 
 }  // namespace glint

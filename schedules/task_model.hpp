@@ -26,6 +26,7 @@ struct TaskGroup {
   std::int64_t jitter_ns = 0;         // how late a release may come after its nominal time
   std::int64_t deadline_ns = 0;       // from the nominal release, at most min_gap_ns
   std::int64_t longest_slice_ns = 0;  // background: the longest run that is not given up; else 0
+  int can_writes = 0;                 // CAN frames that an activation writes after its nodes
   std::vector<TaskNode> nodes;        // in an order that respects `after`
 };
 

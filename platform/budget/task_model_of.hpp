@@ -1,0 +1,25 @@
+// The task model of a cell: the groups that `glint run` runs, what releases them and when they have
+// to be done. Node and group indices are those of the graphs' orders of execution.
+#pragma once
+
+#include <string>
+
+#include "platform/cells/cell.hpp"
+#include "schedules/bus_load.hpp"
+#include "schedules/task_model.hpp"
+
+namespace glint {
+
+inline constexpr int k_frame_group_index = 0;  // in TaskModel::groups
+inline constexpr int k_tick_group_index = 1;
+
+// Groups, nodes and edges, rates and deadlines; every bound is 0 until a board gives it.
+[[nodiscard]] TaskModel task_structure_of(const Cell& cell);
+
+// Of the graphs in that model, "0x..+0x..": what plans and boards are made for.
+[[nodiscard]] std::string graphs_signature();
+
+[[nodiscard]] CanTraffic traffic_of(const Cell& cell);
+[[nodiscard]] CanBitRates bit_rates_of(const Cell& cell);
+
+}  // namespace glint

@@ -1,0 +1,105 @@
+// How long work of one priority may take when more urgent work takes the processor away from it.
+//
+// What:     preemptive fixed priorities, any phasing, release jitter, blocking, and deadlines that
+//           may exceed the gap between releases. The q-th activation of a busy period ends at
+//             w_q = B + (q + 1) C + sum over more urgent j of ceil((w_q + J_j) / T_j) C_j
+//           after the busy period's begin, and R = max over q of J + w_q - q T.
+// Cost:     every step of the fixed point raises w by at least one more urgent activation; at most
+//           k_response_steps_max steps in all, then the answer is "unbounded". constexpr.
+// Worst:    a load close to one.
+// Accuracy: exact for independent sporadic work on one core where all are released together.
+// Source:   Joseph and Pandya 1986 and Audsley, Burns, Richardson, Tindell, Wellings 1993, eq. (1)
+//           (the recurrence); Tindell, Burns, Wellings 1994, eqs. (2) and (3) (busy period,
+//           jitter).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace glint {
+
+// Work that preempts: `cost_ns` at each release, releases at least `gap_ns` apart, give or take
+// `jitter_ns`.
+struct Interference {
+  std::int64_t cost_ns = 0;
+  std::int64_t gap_ns = 0;
+  std::int64_t jitter_ns = 0;
+};
+
+// Steps of all fixed points of one analysis, and the longest busy period that is looked at.
+inline constexpr int k_response_steps_max = 100'000;
+inline constexpr std::int64_t k_busy_period_max_ns = 100'000'000'000;  // 100 s
+
+struct WorkUnderAnalysis {
+  std::int64_t cost_ns = 0;
+  std::int64_t gap_ns = 0;
+  std::int64_t jitter_ns = 0;
+  std::int64_t blocking_ns = 0;  // the longest run of less urgent work that cannot be preempted
+};
+
+struct ResponseTime {
+  std::int64_t response_ns = 0;   // from the nominal release, jitter included
+  std::int64_t preempted_ns = 0;  // of it, taken by more urgent work
+  int activations = 0;            // of the busy period that was looked at
+};
+
+namespace detail {
+
+[[nodiscard]] constexpr std::int64_t ceil_of_quotient(std::int64_t a, std::int64_t b) {
+  return a / b + (a % b > 0 ? 1 : 0);
+}
+
+[[nodiscard]] constexpr std::int64_t demand_ns(std::span<const Interference> urgent,
+                                               std::int64_t window_ns) {
+  std::int64_t sum = 0;
+  for (const Interference& i : urgent) {
+    if (i.cost_ns <= 0) continue;
+    // A gap that nobody declared means: as often as can be. It never hides its cost.
+    const std::int64_t gap = i.gap_ns > 0 ? i.gap_ns : 1;
+    sum += ceil_of_quotient(window_ns + i.jitter_ns, gap) * i.cost_ns;
+  }
+  return sum;
+}
+
+}  // namespace detail
+
+// The least window that holds `base_ns` and all that preempts within it. `from_ns` is a lower bound
+// to start at. Nothing where it is longer than `limit_ns` or the steps are used up.
+[[nodiscard]] constexpr std::optional<std::int64_t> busy_window(
+    std::int64_t base_ns, std::span<const Interference> urgent, std::int64_t limit_ns,
+    std::int64_t from_ns, int& steps_left) {
+  std::int64_t window = from_ns > base_ns ? from_ns : base_ns;
+  while (steps_left-- > 0) {
+    const std::int64_t needed = base_ns + detail::demand_ns(urgent, window);
+    if (needed > limit_ns) return std::nullopt;
+    if (needed <= window) return window;
+    window = needed;
+  }
+  return std::nullopt;
+}
+
+// Nothing where no bound was found: the load is too high, or the maxima above were reached.
+[[nodiscard]] constexpr std::optional<ResponseTime> response_time(
+    const WorkUnderAnalysis& work, std::span<const Interference> urgent) {
+  int steps_left = k_response_steps_max;
+  ResponseTime worst;
+  std::int64_t window = 0;
+  for (std::int64_t q = 0; steps_left > 0; ++q) {
+    const std::int64_t base = work.blocking_ns + (q + 1) * work.cost_ns;
+    const auto end = busy_window(base, urgent, k_busy_period_max_ns, window, steps_left);
+    if (!end) return std::nullopt;
+    window = *end;
+    ++worst.activations;
+    const std::int64_t response = work.jitter_ns + window - q * work.gap_ns;
+    if (response > worst.response_ns) {
+      worst.response_ns = response;
+      worst.preempted_ns = window - base;
+    }
+    // The next activation comes after this one has ended: the busy period is over.
+    if (work.gap_ns <= 0 || window + work.jitter_ns <= (q + 1) * work.gap_ns) return worst;
+  }
+  return std::nullopt;
+}
+
+}  // namespace glint
