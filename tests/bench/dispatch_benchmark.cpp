@@ -1,126 +1,105 @@
 // What a call through the graph costs: four trivial nodes, listed in the wrong order, beside the
-// same four called by hand and beside the same four behind virtual functions.
+// same four called by hand and beside oneTBB's flow graph. Exit 1: a bar is missed.
 //
-//   build/bench_dispatch --benchmark_repetitions=9 --benchmark_report_aggregates_only=true
-#include <benchmark/benchmark.h>
-
+//   build/bench_dispatch [ROUNDS]
 #include <array>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
 #include <memory>
 
-#include "graph/graph.hpp"
+#include "dispatch_nodes.hpp"
+#include "dispatch_rows.hpp"
+#include "dispatch_tbb.hpp"
+#include "dispatch_trace.hpp"
 
+namespace glint::bench {
 namespace {
 
-using namespace glint::graph;
+constexpr int k_rounds = 20'000;
+// Long enough that two readings of the clock hardly count: 16 us of the cheapest row.
+constexpr int k_untimed_activations = 4096;
+constexpr int k_traced_activations = 64;
+constexpr int k_tbb_activations = 16;
 
-struct A {
-  int value = 0;
-};
-struct B {
-  int value = 0;
-};
-struct C {
-  int value = 0;
-};
-struct D {
-  int value = 0;
-};
-struct E {
-  int value = 0;
-};
+constexpr double k_untimed_most_ns = 2;
+constexpr double k_traced_most_ns = 60;
+constexpr double k_below_tbb_least = 30;
 
-struct MakeB {
-  void operator()(const A& a, B& b) const noexcept { b.value = a.value + 1; }
-};
-struct MakeC {
-  void operator()(const B& b, C& c) const noexcept { c.value = b.value ^ 2; }
-};
-struct MakeD {
-  void operator()(const B& b, const C& c, D& d) const noexcept { d.value = b.value + c.value; }
-};
-struct MakeE {
-  void operator()(const D& d, const Previous<E>& last, E& e) const noexcept {
-    e.value = last.value().value + d.value;
-  }
-};
-using FourNodes = Graph<Inputs<A>, Outputs<E>, MakeE, MakeC, MakeD, MakeB>;
-static_assert(valid<FourNodes>);
-
-void graph_of_four_nodes(benchmark::State& state) {
-  static FourNodes graph;
-  for (auto _ : state) {
-    ++graph.input<A>().value;
-    graph.activate();
-    benchmark::DoNotOptimize(graph);
-    benchmark::ClobberMemory();
-  }
+// The compiler must believe that somebody reads and writes the object between two activations.
+template <class T>
+void seen(T& object) {
+  asm volatile("" : : "r"(&object) : "memory");
 }
 
-void four_calls_by_hand(benchmark::State& state) {
-  struct Tokens {
-    A a;
-    B b;
-    C c;
-    D d;
-    std::array<E, 2> e;
-    int now = 0;
-  };
-  static Tokens t;
-  for (auto _ : state) {
-    ++t.a.value;
-    t.now ^= 1;
-    MakeB{}(t.a, t.b);
-    MakeC{}(t.b, t.c);
-    MakeD{}(t.b, t.c, t.d);
-    MakeE{}(t.d, Previous<E>(t.e[static_cast<std::size_t>(t.now ^ 1)]),
-            t.e[static_cast<std::size_t>(t.now)]);
-    benchmark::DoNotOptimize(t);
-    benchmark::ClobberMemory();
-  }
+template <class Chain>
+DispatchRow chain_row(const char* name) {
+  return {name, k_untimed_activations * k_dispatch_nodes, [chain = std::make_shared<Chain>()] {
+            for (int i = 0; i < k_untimed_activations; ++i) {
+              ++chain->a.value;
+              chain->activate();
+              seen(*chain);
+            }
+          }};
 }
 
-struct Tokens {
-  A a;
-  B b;
-  C c;
-  D d;
-  E e;
-};
-struct Step {
-  virtual ~Step() = default;
-  virtual void run(Tokens& t) const = 0;
-};
-struct StepB : Step {
-  void run(Tokens& t) const override { MakeB{}(t.a, t.b); }
-};
-struct StepC : Step {
-  void run(Tokens& t) const override { MakeC{}(t.b, t.c); }
-};
-struct StepD : Step {
-  void run(Tokens& t) const override { MakeD{}(t.b, t.c, t.d); }
-};
-struct StepE : Step {
-  void run(Tokens& t) const override { MakeE{}(t.d, Previous<E>(t.e), t.e); }
-};
-
-void four_virtual_calls(benchmark::State& state) {
-  std::array<std::unique_ptr<Step>, 4> steps = {
-      std::make_unique<StepB>(), std::make_unique<StepC>(), std::make_unique<StepD>(),
-      std::make_unique<StepE>()};
-  benchmark::DoNotOptimize(steps);
-  static Tokens t;
-  for (auto _ : state) {
-    ++t.a.value;
-    for (const auto& step : steps) step->run(t);
-    benchmark::DoNotOptimize(t);
-    benchmark::ClobberMemory();
-  }
+template <class G, class Trace>
+DispatchRow graph_row(const char* name, int activations, std::shared_ptr<Trace> trace) {
+  return {name, activations * k_dispatch_nodes,
+          [graph = std::make_shared<G>(), trace, activations] {
+            for (int i = 0; i < activations; ++i) {
+              ++graph->template input<A>().value;
+              graph->activate(*trace);
+              seen(*graph);
+            }
+          }};
 }
 
-BENCHMARK(graph_of_four_nodes);
-BENCHMARK(four_calls_by_hand);
-BENCHMARK(four_virtual_calls);
+DispatchRow tbb_row(const char* name, TbbPolicy policy) {
+  return {name, k_tbb_activations * k_dispatch_nodes, [flow = std::make_shared<TbbFlow>(policy)] {
+            const int result = flow->run(k_tbb_activations);
+            seen(result);
+          }};
+}
+
+bool run(int rounds) {
+  const auto untimed = std::make_shared<graph::NoTrace>();
+  std::vector<DispatchRow> rows;
+  rows.push_back(chain_row<InlinedChain>("chain by hand, inlined"));
+  rows.push_back(graph_row<InlinedGraph>("graph, inlined", k_untimed_activations, untimed));
+  rows.push_back(chain_row<CalledChain>("chain by hand, called"));
+  rows.push_back(graph_row<CalledGraph>("graph, called", k_untimed_activations, untimed));
+  rows.push_back(graph_row<CalledGraph>("graph, called, timed", k_traced_activations,
+                                        std::make_shared<TimeOnly>()));
+  rows.push_back(graph_row<CalledGraph>("graph, called, timed and traced", k_traced_activations,
+                                        std::make_shared<TimeAndTrace>()));
+  rows.push_back(tbb_row("oneTBB flow graph", TbbPolicy::spawned));
+  rows.push_back(tbb_row("oneTBB flow graph, lightweight policy", TbbPolicy::lightweight));
+  measure_in_turn(rows, rounds);
+
+  print_machine();
+  print_rows(rows);
+  const double called = rows[3].p50(), traced = rows[5].p50(), tbb = rows[6].p50();
+  bool met = print_bar("untimed node, called", called, "ns", k_untimed_most_ns, true);
+  met &= print_bar("timed and traced node, called", traced, "ns", k_traced_most_ns, true);
+  met &= print_bar("oneTBB / untimed node", tbb / called, "x", k_below_tbb_least, false);
+  return met;
+}
 
 }  // namespace
+}  // namespace glint::bench
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  int rounds = glint::bench::k_rounds;
+  if (argc > 2) return std::fprintf(stderr, "bench_dispatch: expected at most ROUNDS\n"), 2;
+  if (argc == 2) {
+    const char* const end = argv[1] + std::strlen(argv[1]);
+    const auto [last, error] = std::from_chars(argv[1], end, rounds);
+    if (error != std::errc{} || last != end || rounds < 1000) {
+      std::fprintf(stderr, "bench_dispatch: found ROUNDS %s, expected a number from 1000\n",
+                   argv[1]);
+      return 2;
+    }
+  }
+  return glint::bench::run(rounds) ? 0 : 1;
+}
