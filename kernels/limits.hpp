@@ -11,7 +11,11 @@ inline constexpr int k_markers_per_tool_max = 8;
 inline constexpr int k_blobs_max = 256;
 inline constexpr int k_row_bands = 2;  // how often the frame is split; never the worker count
 inline constexpr int k_runs_per_band_max = 8192;
-inline constexpr int k_labelings_max = 8;  // kept for each tool, best first
+inline constexpr int k_labelings_max = 8;              // kept for each tool, best first
+inline constexpr int k_lens_steps_max = 40;            // of a search in a lens table, a projection
+inline constexpr int k_pair_tests_max = 16'384;        // of a distance against a tool's, a tool
+inline constexpr int k_search_steps_max = 4'096;       // of the correspondence search, a tool
+inline constexpr int k_background_steps_max = 50'000;  // of one background slice
 
 // The problem that one cell takes on: at most the constants above. Nodes stop at these, and what a
 // chain may need at worst is computed from them; a smaller cell has a smaller bound.
@@ -22,6 +26,10 @@ struct Limits {
   int markers_per_tool = k_markers_per_tool_max;
   int blobs = k_blobs_max;
   int runs_per_band = k_runs_per_band_max;
+  int lens_steps = k_lens_steps_max;  // 0 for a lens without a table
+  int pair_tests = k_pair_tests_max;
+  int search_steps = k_search_steps_max;
+  int background_steps = k_background_steps_max;
 };
 
 }  // namespace glint
