@@ -8,6 +8,7 @@
 // Cost: an activation is one direct call a node; feedback tokens swap two buffers by an index.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 #include <type_traits>
@@ -22,6 +23,7 @@
 #include "graph/ring.hpp"
 #include "graph/storage.hpp"
 #include "graph/type_name.hpp"
+#include "graph/watch.hpp"
 #include "graph/wiring.hpp"
 #include "graph/workers.hpp"
 
@@ -117,8 +119,32 @@ class Graph {
   template <class Executor>
   requires(!Trace<Executor>) void activate(Executor& executor) noexcept { executor.execute(*this); }
 
+  // Runs the nodes in order until the boundary ends the activation; the number of the last node
+  // that ran. Nodes left out: feedback stays as it was before.
+  template <Trace T, Boundary B>
+  int activate_until(T& trace, B& boundary) noexcept {
+    begin_activation();
+    for (int number = 0; number + 1 < node_count; ++number) {
+      call_number(number, trace);
+      if (boundary.go_on(number)) continue;
+      abandon_activation();
+      return number;
+    }
+    call_number(node_count - 1, trace);
+    (void)boundary.go_on(node_count - 1);
+    return node_count - 1;
+  }
+
   // For executors: what is now becomes what was before. Once an activation, ahead of all nodes.
   void begin_activation() noexcept { tokens_.begin_activation(); }
+  // For executors: undoes begin_activation() where nodes were left out, so that the next activation
+  // reads the feedback that this one read.
+  void abandon_activation() noexcept { tokens_.abandon_activation(); }
+  // For executors: a node by its number in the order of execution; its writers must have run.
+  template <Trace T>
+  void call_number(int number, T& trace) noexcept {
+    (this->*calls_by_number<T>[static_cast<std::size_t>(number)])(trace);
+  }
   // For executors: one copy of one listed node, whose writers must have run.
   template <int unit, int copy, class Trace>
   void call(Trace& trace) noexcept {
@@ -132,6 +158,20 @@ class Graph {
   }
 
  private:
+  template <class T>
+  using Call = void (Graph::*)(T&) noexcept;
+  template <class T>
+  static constexpr auto calls_by_number = [] {
+    std::array<Call<T>, static_cast<std::size_t>(node_count)> calls{};
+    for_each_index<unit_count>([&]<int unit>() {
+      for_each_index<Wires::copies[unit]>([&]<int copy>() {
+        calls[static_cast<std::size_t>(Wires::first_node[unit] + copy)] =
+            &Graph::template call<unit, copy, T>;
+      });
+    });
+    return calls;
+  }();
+
   template <class Node>
   [[nodiscard]] auto& slot_of() noexcept {
     return static_cast<detail::NodeSlot<typename detail::EntryOf<Node, Nodes...>::Type>&>(nodes_);

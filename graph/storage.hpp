@@ -15,6 +15,7 @@ template <class Token, bool fed_back>
 class TokenSlot {
  public:
   void begin_activation() noexcept {}
+  void abandon_activation() noexcept {}
   [[nodiscard]] Token& now() noexcept { return value_; }
   [[nodiscard]] const Token& now() const noexcept { return value_; }
 
@@ -26,6 +27,7 @@ template <class Token>
 class TokenSlot<Token, true> {
  public:
   void begin_activation() noexcept { current_ ^= 1; }
+  void abandon_activation() noexcept { current_ ^= 1; }
   [[nodiscard]] Token& now() noexcept { return values_[current_]; }
   [[nodiscard]] const Token& now() const noexcept { return values_[current_]; }
   [[nodiscard]] const Token& before() const noexcept { return values_[current_ ^ 1]; }
@@ -55,6 +57,7 @@ struct TokenStore<Wires, TypeList<Token...>>
     return static_cast<const NamedSlot<T, Wires::template fed_back<T>>&>(*this).slot;
   }
   void begin_activation() noexcept { (slot<Token>().begin_activation(), ...); }
+  void abandon_activation() noexcept { (slot<Token>().abandon_activation(), ...); }
 };
 
 // A node, or the copies of one; each on cache lines of its own, since workers write their states.

@@ -1,0 +1,176 @@
+#include "graph/planned.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "wide_graph.hpp"
+
+namespace glint::test {
+namespace {
+
+struct Yield {
+  void operator()() const noexcept { std::this_thread::yield(); }
+};
+
+using Tables = PlanTables<WideGraph>;
+
+// Any order that the data allows, each node on any worker but the first, which leads.
+Tables random_plan(int workers, std::mt19937& random) {
+  Tables tables;
+  tables.workers = workers;
+  NodeSet run = 0;
+  while (std::popcount(run) < WideGraph::node_count) {
+    std::vector<int> ready;
+    for (int node = 0; node < WideGraph::node_count; ++node) {
+      const NodeSet needed = needs<WideGraph>[static_cast<std::size_t>(node)];
+      if ((run >> node & 1u) == 0 && (needed & ~run) == 0) ready.push_back(node);
+    }
+    const int node = ready[random() % ready.size()];
+    EXPECT_TRUE(tables.add(node, run == 0 ? 0 : static_cast<int>(random()) & (workers - 1)));
+    run |= NodeSet{1} << node;
+  }
+  return tables;
+}
+
+template <class B>
+int run_once(WideGraph& graph, Planned<WideGraph, Yield>& planned, B& boundary) {
+  NoTrace trace;
+  planned.begin(graph);
+  std::vector<std::thread> others;
+  for (int w = 1; w < planned.workers(); ++w) {
+    others.emplace_back([&, w] { planned.help(graph, w, trace); });
+  }
+  const int last = planned.lead(graph, trace, boundary);
+  planned.settle();
+  for (std::thread& other : others) other.join();
+  return last;
+}
+
+std::vector<double> serial_sums(int activations) {
+  auto graph = std::make_unique<WideGraph>();
+  std::vector<double> sums;
+  for (int i = 0; i < activations; ++i) {
+    graph->activate();
+    sums.push_back(graph->output<Result>().sum);
+  }
+  return sums;
+}
+
+TEST(Planned, GivesTheSameBytesAsTheSerialExecutorByAnyValidPlan) {
+  const std::vector<double> sums = serial_sums(10);
+  EXPECT_NE(sums[9], sums[8]);
+  std::mt19937 random(7);
+  for (const int workers : {1, 2, 4}) {
+    for (int plan = 0; plan < 20; ++plan) {
+      const Tables tables = random_plan(workers, random);
+      ASSERT_FALSE(plan_fault(tables).found());
+      auto graph = std::make_unique<WideGraph>();
+      Planned<WideGraph, Yield> planned(tables, 1'000'000);
+      NoBoundary always;
+      for (const double sum : sums) {
+        EXPECT_EQ(run_once(*graph, planned, always), WideGraph::node_count - 1);
+        EXPECT_EQ(graph->output<Result>().sum, sum);
+      }
+    }
+  }
+}
+
+TEST(Planned, FollowsTheRuleOfTheReferenceExecutorWithoutAPlan) {
+  constexpr Tables tables = plan_by_rule<WideGraph>(2);
+  static_assert(!plan_fault(tables).found());
+  const std::array<std::uint8_t, 10> expected = {0, 0, 1, 0, 1, 0, 0, 1, 0, 0};
+  EXPECT_EQ(tables.worker, expected);
+}
+
+TEST(Planned, RefusesAnOrderThatIsNoPermutation) {
+  Tables tables = plan_by_rule<WideGraph>(2);
+  tables.order[0][2] = tables.order[0][1];
+  EXPECT_EQ(plan_fault(tables).error, PlanError::ran_twice);
+  tables = plan_by_rule<WideGraph>(2);
+  --tables.count[1];
+  EXPECT_EQ(plan_fault(tables).error, PlanError::left_out);
+  EXPECT_EQ(plan_fault(tables).node, 7);
+  tables = plan_by_rule<WideGraph>(2);
+  tables.order[1][0] = 77;
+  EXPECT_EQ(plan_fault(tables).error, PlanError::unknown_node);
+  tables.workers = 5;
+  EXPECT_EQ(plan_fault(tables).error, PlanError::workers);
+}
+
+TEST(Planned, RefusesAnOrderInWhichANodeWaitsForEver) {
+  Tables tables = plan_by_rule<WideGraph>(1);
+  std::swap(tables.order[0][9], tables.order[0][8]);  // Merge ahead of a sum that it reads
+  EXPECT_EQ(plan_fault(tables).error, PlanError::waits);
+  EXPECT_EQ(plan_fault(tables).node, 9);
+  std::swap(tables.order[0][9], tables.order[0][8]);
+  std::swap(tables.order[0][0], tables.order[0][1]);
+  EXPECT_EQ(plan_fault(tables).error, PlanError::first_node);
+}
+
+struct StopAfter {
+  int node;
+  bool go_on(int at) const noexcept { return at != node; }
+};
+
+TEST(Planned, LeavesNoTraceOfAnAbandonedActivationInWhatIsFedBack) {
+  // Make counts its calls, so the sums would differ if it were not run; Previous<Result> must not
+  // move with an activation that was not finished.
+  for (const int workers : {1, 2, 4}) {
+    auto expected = std::make_unique<WideGraph>();
+    auto graph = std::make_unique<WideGraph>();
+    Planned<WideGraph, Yield> planned(plan_by_rule<WideGraph>(workers), 1'000'000);
+    NoTrace trace;
+    for (int i = 0; i < 12; ++i) {
+      NoBoundary always;
+      StopAfter stop{0};
+      if (i % 3 == 1) {
+        EXPECT_EQ(run_once(*graph, planned, stop), 0);
+        EXPECT_EQ(expected->activate_until(trace, stop), 0);
+      } else {
+        (void)run_once(*graph, planned, always);
+        EXPECT_EQ(expected->activate_until(trace, always), WideGraph::node_count - 1);
+      }
+      EXPECT_EQ(graph->output<Result>().sum, expected->output<Result>().sum);
+    }
+  }
+}
+
+TEST(Planned, KeepsTheFeedbackOfAnActivationThatWasLateOnlyAfterItsLastNode) {
+  auto graph = std::make_unique<WideGraph>();
+  Planned<WideGraph, Yield> planned(plan_by_rule<WideGraph>(1), 1'000);
+  for (const double sum : serial_sums(4)) {
+    StopAfter stop{WideGraph::node_count - 1};
+    EXPECT_EQ(run_once(*graph, planned, stop), WideGraph::node_count - 1);
+    EXPECT_EQ(graph->output<Result>().sum, sum);
+  }
+}
+
+// Goes on for a number of looks and then never again: a deadline that passes while worker 0 waits.
+struct Patience {
+  int looks;
+  bool go_on(int) noexcept { return looks-- > 0; }
+};
+
+TEST(Planned, EndsAtItsDeadlineWhileAnotherWorkerIsLateAndWaitsForItOnlyAfterwards) {
+  auto graph = std::make_unique<WideGraph>();
+  Planned<WideGraph, Yield> planned(plan_by_rule<WideGraph>(2), 10);
+  NoTrace trace;
+  Patience patience{20};
+  planned.begin(*graph);
+  const int last = planned.lead(*graph, trace, patience);  // worker 1 was never released
+  EXPECT_EQ(last, 1) << "Make and the first Spread ran, the second is worker 1's";
+  EXPECT_EQ(planned.overruns(), 1u);
+  std::thread late([&] { planned.help(*graph, 1, trace); });
+  planned.settle();
+  late.join();
+  EXPECT_EQ(graph->output<Result>().sum, Result{}.sum) << "nothing was fed back";
+  NoBoundary always;
+  EXPECT_EQ(run_once(*graph, planned, always), WideGraph::node_count - 1);
+}
+
+}  // namespace
+}  // namespace glint::test
