@@ -63,26 +63,28 @@ class Planned {
     const int count = tables_.count[0];
     for (int step = 0; step < count; ++step) {
       const int node = tables_.order[0][static_cast<std::size_t>(step)];
-      if (!await(node, 0, goes_on)) return abandon(graph);
+      if (!await(node, 0, goes_on)) return abandon();
       run_node(graph, node, trace);
       last = node;
       // After the group's last node nothing is left to be saved by stopping.
-      if (!boundary.go_on(node) && !(step + 1 == count && others_have_run())) return abandon(graph);
+      if (!boundary.go_on(node) && !(step + 1 == count && others_have_run())) return abandon();
     }
     for (int worker = 1; worker < tables_.workers; ++worker) {
       const Mark& mark = finished_[static_cast<std::size_t>(worker)];
-      if (!spin(0, goes_on, [&] { return is_now(mark); })) return abandon(graph);
+      if (!spin(0, goes_on, [&] { return is_now(mark); })) return abandon();
     }
     return G::node_count - 1;
   }
 
-  // Worker 0: returns when no other worker is inside the graph. Bounded by the longest node that
-  // one of them is in; the output of this activation has left before.
-  void settle() noexcept {
+  // Worker 0, once after each lead(): returns when no other worker is inside the graph, and only
+  // then takes back what an abandoned activation would have fed back. The wait is bounded by the
+  // longest node that one of them is in; what leaves for this activation has left before.
+  void settle(G& graph) noexcept {
     for (int worker = 1; worker < tables_.workers; ++worker) {
       const Mark& mark = finished_[static_cast<std::size_t>(worker)];
       while (!is_now(mark)) pause_();
     }
+    if (is_now(abandoned_)) graph.abandon_activation();
   }
 
   // Waits that took more than spins_max spins, of all workers since the start.
@@ -145,10 +147,9 @@ class Planned {
     return true;
   }
 
-  // What the others have done by now does not count as all: this activation's feedback is undone.
-  int abandon(G& graph) noexcept {
+  // What the others may have done by now does not count as all: the feedback will be undone.
+  int abandon() noexcept {
     abandoned_.at.store(activation_, std::memory_order_release);
-    graph.abandon_activation();
     int last = 0;
     while (last + 2 < G::node_count && has_run(last + 1)) ++last;
     return last;

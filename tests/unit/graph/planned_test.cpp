@@ -45,7 +45,7 @@ int run_once(WideGraph& graph, Planned<WideGraph, Yield>& planned, B& boundary) 
     others.emplace_back([&, w] { planned.help(graph, w, trace); });
   }
   const int last = planned.lead(graph, trace, boundary);
-  planned.settle();
+  planned.settle(graph);
   for (std::thread& other : others) other.join();
   return last;
 }
@@ -165,7 +165,7 @@ TEST(Planned, EndsAtItsDeadlineWhileAnotherWorkerIsLateAndWaitsForItOnlyAfterwar
   EXPECT_EQ(last, 1) << "Make and the first Spread ran, the second is worker 1's";
   EXPECT_EQ(planned.overruns(), 1u);
   std::thread late([&] { planned.help(*graph, 1, trace); });
-  planned.settle();
+  planned.settle(*graph);
   late.join();
   EXPECT_EQ(graph->output<Result>().sum, Result{}.sum) << "nothing was fed back";
   NoBoundary always;
