@@ -5,7 +5,12 @@
 // k_resync_frames refused frames whose own stamps advance, their clock is believed instead.
 #pragma once
 
+#include <array>
+#include <string_view>
+
+#include "graph/loops.hpp"
 #include "kernels/image/frame.hpp"
+#include "kernels/limits.hpp"
 #include "nodes/tokens.hpp"
 
 namespace glint {
@@ -14,6 +19,10 @@ inline constexpr int k_resync_frames = 8;  // 0.2 s at 45 Hz: below lost_after, 
 
 // Takes the stamp off a frame and checks its size against the camera's.
 struct StampFrame {
+  static constexpr std::array<std::string_view, 1> k_loops = {"call"};
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits&) noexcept { return {{1}}; }
+  [[nodiscard]] graph::LoopCounts counts() const noexcept { return {{1}}; }
+
   int width = 0;
   int height = 0;
   int reflectivity_bits = 16;
@@ -33,6 +42,10 @@ struct StampFrame {
 };
 
 struct CheckFrame {
+  static constexpr std::array<std::string_view, 1> k_loops = {"call"};
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits&) noexcept { return {{1}}; }
+  [[nodiscard]] graph::LoopCounts counts() const noexcept { return {{1}}; }
+
   void operator()(const FrameStamp& stamp, FrameVerdict& verdict) noexcept;
 
  private:
@@ -42,5 +55,7 @@ struct CheckFrame {
   int refused_in_row_ = 0;
   FrameVerdict counts_;
 };
+
+static_assert(graph::Budgeted<StampFrame, Limits> && graph::Budgeted<CheckFrame, Limits>);
 
 }  // namespace glint

@@ -18,9 +18,12 @@ Roi unite(const Roi& a, const Roi& b) {
   return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
 }
 
-// Adds `box`, first merged with every one that it meets, so that the rest stay disjoint.
-void add_disjoint(Roi box, Rois& rois) {
+// Adds `box`, first merged with every one that it meets, so that the rest stay disjoint. Returns
+// the number of comparisons.
+int add_disjoint(Roi box, Rois& rois) {
+  int comparisons = 0;
   for (int i = 0; i < rois.count;) {
+    ++comparisons;
     if (!overlap(rois.items[i], box)) {
       ++i;
       continue;
@@ -30,16 +33,19 @@ void add_disjoint(Roi box, Rois& rois) {
     i = 0;  // the grown box may meet one passed before; each merge removes one, so this ends
   }
   rois.items[rois.count++] = box;
+  return comparisons;
 }
 
-// The box of the tool's markers with its reach about each; nothing where a marker cannot be
-// projected.
-bool box_of(const CameraModel& camera, const Tool& tool, const Prediction& prediction, Roi& box) {
+// The box of the tool's first `markers` markers with its reach about each; nothing where one of
+// them cannot be projected.
+bool box_of(const CameraModel& camera, const Tool& tool, const Prediction& prediction, int markers,
+            int& lens_steps, Roi& box) {
   double x0 = 1e9, y0 = 1e9, x1 = -1e9, y1 = -1e9;
-  for (int m = 0; m < tool.marker_count; ++m) {
+  bool in_view = true;
+  for (int m = 0; m < markers; ++m) {
     const Vector3 point = prediction.T_camera_tool * tool.markers_m[m];
-    const Result<Vector2> pixel = project(camera, point);
-    if (!pixel) return false;
+    const Result<Vector2> pixel = project(camera, point, lens_steps);
+    in_view = in_view && pixel.reason == Reason::none;
     const double radius_px =
         camera.fx * (prediction.reach_m + 2 * tool.marker_radius_m) / std::max(point.z(), 0.05);
     x0 = std::min(x0, pixel.value.x() - radius_px);
@@ -47,6 +53,7 @@ bool box_of(const CameraModel& camera, const Tool& tool, const Prediction& predi
     x1 = std::max(x1, pixel.value.x() + radius_px);
     y1 = std::max(y1, pixel.value.y() + radius_px);
   }
+  if (!in_view) return false;
   box = {
       clamp_to_int(std::floor(x0), 0, camera.width), clamp_to_int(std::floor(y0), 0, camera.height),
       clamp_to_int(std::ceil(x1), 0, camera.width), clamp_to_int(std::ceil(y1), 0, camera.height)};
@@ -58,23 +65,28 @@ bool box_of(const CameraModel& camera, const Tool& tool, const Prediction& predi
 void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head,
                                const graph::Latest<ToolSet>& tools,
                                const graph::Previous<Estimates>& last,
-                               Predictions& predictions) const noexcept {
+                               Predictions& predictions) noexcept {
   predictions.marker_count = 0;
+  counts_ = {{1}};
+  int lens_steps = 0;
   const ToolSet& set = tools.value();
+  const int count = tools_within(set, limits);
   for (int t = 0; t < k_tools_max; ++t) {
     Prediction& prediction = predictions.tools[t];
     prediction = Prediction{};
-    if (t >= set.count || !verdict.usable() || verdict.resynchronised) continue;
+    if (t >= count || !verdict.usable() || verdict.resynchronised) continue;
     const Track& track = last.value().tracks[t];
     if (!track.alive) continue;
     const Duration gap = verdict.stamp.mid_exposure - track.newest.time;
     if (gap > settings.lost_after) continue;
 
+    ++counts_[1];
     const bool in_world = track.base == ReferenceFrame::world && head.valid;
     Pose predicted = track.newest.pose;
     const bool moves = track.has_previous && gap <= settings.horizon &&
                        (in_world || track.base == ReferenceFrame::camera);
     if (moves) {
+      ++counts_[2];
       predicted =
           extrapolate(track.previous, track.newest, verdict.stamp.mid_exposure, settings.horizon);
     }
@@ -91,29 +103,38 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
     const double drift_m = moves ? 0.0 : 1.0 * seconds;
     prediction.reach_m =
         settings.margin_m + drift_m + 0.5 * settings.acceleration_max_m_s2 * seconds * seconds;
-    for (int m = 0; m < set.items[t].marker_count; ++m) {
-      const Result<Vector2> pixel = project(camera, predicted * set.items[t].markers_m[m]);
+    const int markers = markers_within(set.items[t], limits);
+    counts_[3] += markers;
+    for (int m = 0; m < markers; ++m) {
+      const Vector3 point = predicted * set.items[t].markers_m[m];
+      const Result<Vector2> pixel = project(camera, point, lens_steps);
       if (pixel) predictions.markers_px[predictions.marker_count++] = pixel.value;
     }
   }
+  counts_[4] = lens_steps;
 }
 
 void LocateRois::operator()(const FrameVerdict& verdict, const graph::Latest<ToolSet>& tools,
-                            const Predictions& predictions, Rois& rois) const noexcept {
+                            const Predictions& predictions, Rois& rois) noexcept {
   rois.count = 0;
+  counts_ = {{1}};
   if (!verdict.usable()) return;
   const ToolSet& set = tools.value();
+  int lens_steps = 0;
   bool whole_frame = false;
-  for (int t = 0; t < set.count && !whole_frame; ++t) {
+  const int count = tools_within(set, limits);
+  for (int t = 0; t < count && !whole_frame; ++t) {
     const Prediction& prediction = predictions.tools[t];
+    whole_frame = !prediction.has_prior || prediction.missed_last;
+    if (whole_frame) break;
+    const int markers = markers_within(set.items[t], limits);
+    ++counts_[1];
+    counts_[2] += markers;
     Roi box;
-    if (prediction.has_prior && !prediction.missed_last &&
-        box_of(camera, set.items[t], prediction, box)) {
-      add_disjoint(box, rois);
-    } else {
-      whole_frame = true;
-    }
+    whole_frame = !box_of(camera, set.items[t], prediction, markers, lens_steps, box);
+    if (!whole_frame) counts_[4] += add_disjoint(box, rois);
   }
+  counts_[3] = lens_steps;
   if (whole_frame) {
     rois.count = 1;
     rois.items[0] = {0, 0, camera.width, camera.height};

@@ -1,5 +1,7 @@
 #include "nodes/pack_can.hpp"
 
+#include <algorithm>
+
 namespace glint {
 
 // True once a period; a tick that skipped several makes up for none of them.
@@ -13,20 +15,24 @@ void PackCan::operator()(const Now& now, const PoseSamples& samples, CanFrames& 
   frames.count = 0;
   frames.dropped = 0;
   const CanPacking packing{settings.format, settings.base_identifier, now.unix_offset_ns};
-  for (int t = 0; t < samples.count; ++t) {
+  const int count = std::min(samples.count, limits.tools);
+  counts_ = {{1, count}};
+  for (int t = 0; t < count; ++t) {
     add_pose_frames(samples.items[static_cast<std::size_t>(t)], packing, frames);
   }
 
   if (due(now.tick, settings.heartbeat_period, next_heartbeat_)) {
     frames.add(heartbeat_frame(settings.node, CanNodeState::operational));
+    ++counts_[3];
   }
-  for (int t = 0; t < samples.count; ++t) {
+  for (int t = 0; t < count; ++t) {
     const PoseSample& sample = samples.items[static_cast<std::size_t>(t)];
     TrackState& last = last_state_[static_cast<std::size_t>(t)];
     const bool lost_now = sample.state == TrackState::lost && last != TrackState::lost;
     const bool found_again = sample.has_pose() && last == TrackState::lost;
     if (lost_now || found_again) {
       frames.add(emergency_frame(settings.node, sample));
+      ++counts_[2];
     }
     last = sample.state;
   }
@@ -38,6 +44,7 @@ void PackCan::operator()(const Now& now, const PoseSamples& samples, CanFrames& 
     if (begin && follow_up) {
       frames.add(begin.value);
       frames.add(follow_up.value);
+      counts_[3] += 2;
     }
     time_sync_counter_ = static_cast<std::uint8_t>((time_sync_counter_ + 1) % 16);
   }

@@ -6,7 +6,10 @@
 #pragma once
 
 #include <array>
+#include <string_view>
 
+#include "graph/loops.hpp"
+#include "kernels/limits.hpp"
 #include "kernels/wire/can_frames.hpp"
 #include "kernels/wire/node_frames.hpp"
 #include "nodes/tokens.hpp"
@@ -21,8 +24,18 @@ struct PackCanSettings {
   Duration time_sync_period = milliseconds(1000);
 };
 
+// Worst input: every tool is found again, with a pose, in the tick in which heartbeat and time are
+// due.
 struct PackCan {
+  static constexpr std::array<std::string_view, 4> k_loops = {"call", "poses", "emergencies",
+                                                              "node_frames"};
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
+    return {{1, limits.tools, limits.tools, 3}};  // heartbeat, SYNC and follow-up
+  }
+  [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
+
   PackCanSettings settings;
+  Limits limits;
   void operator()(const Now& now, const PoseSamples& samples, CanFrames& frames) noexcept;
 
  private:
@@ -32,6 +45,9 @@ struct PackCan {
   Time next_time_sync_;
   std::uint8_t time_sync_counter_ = 0;
   std::array<TrackState, k_tools_max> last_state_{};
+  graph::LoopCounts counts_;
 };
+
+static_assert(graph::Budgeted<PackCan, Limits>);
 
 }  // namespace glint

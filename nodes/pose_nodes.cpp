@@ -17,9 +17,10 @@ struct PointPairs {
   std::uint8_t mask = 0;
 };
 
-PointPairs pairs_of(const Tool& tool, const Markers& markers, const Labeling& labeling) {
+PointPairs pairs_of(const Tool& tool, int marker_count, const Markers& markers,
+                    const Labeling& labeling) {
   PointPairs pairs;
-  for (int i = 0; i < tool.marker_count; ++i) {
+  for (int i = 0; i < marker_count; ++i) {
     const int seen = labeling.marker[static_cast<std::size_t>(i)];
     if (seen < 0) continue;
     const Marker& marker = markers.items[static_cast<std::size_t>(seen)];
@@ -67,14 +68,17 @@ void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
 void AssignMarkers::operator()(const FrameVerdict& verdict, const graph::Latest<ToolSet>& tools,
                                const graph::Parts<ToolLabelings, k_tool_slices>& labelings,
                                Assignment& assignment) noexcept {
-  const int count = tools.value().count;
+  const int count = tools_within(tools.value(), limits);
+  counts_ = {{1}};
   assignment.reason.fill(verdict.reason);
   if (!verdict.usable()) return;
   for (int t = 0; t < count; ++t) {
     const auto i = static_cast<std::size_t>(t);
     per_tool_[i] = labelings[t % k_tool_slices].tools[i];
   }
-  assign_markers(first(per_tool_, count), first(chosen_, count), first(assignment.reason, count));
+  const AssignWork work = assign_markers(first(per_tool_, count), first(chosen_, count),
+                                         first(assignment.reason, count));
+  counts_ = {{1, count, work.rounds, work.tests}};
   for (int t = 0; t < count; ++t) {
     const auto i = static_cast<std::size_t>(t);
     if (chosen_[i] < 0) continue;
@@ -84,16 +88,22 @@ void AssignMarkers::operator()(const FrameVerdict& verdict, const graph::Latest<
 
 void FitRigid::operator()(const FrameVerdict& verdict, const Markers& markers,
                           const graph::Latest<ToolSet>& tools, const Assignment& assignment,
-                          graph::Slice slice, FittedTools& fitted) const noexcept {
+                          graph::Slice slice, FittedTools& fitted) noexcept {
+  counts_ = {{1}};
   const ToolSet& set = tools.value();
-  for (int t = slice.index; t < set.count; t += slice.count) {
+  const int count = tools_within(set, limits);
+  for (int t = slice.index; t < count; t += slice.count) {
+    ++counts_[1];
     const auto i = static_cast<std::size_t>(t);
     FittedTool& out = fitted.tools[i];
     out = FittedTool{};
     out.reason = verdict.usable() ? assignment.reason[i] : verdict.reason;
     if (out.reason != Reason::none) continue;
 
-    const PointPairs pairs = pairs_of(set.items[i], markers, assignment.labeling[i]);
+    const PointPairs pairs = pairs_of(set.items[i], markers_within(set.items[i], limits), markers,
+                                      assignment.labeling[i]);
+    ++counts_[2];
+    counts_[3] += static_cast<std::int64_t>(pairs.count);
     const std::span model(pairs.model.data(), pairs.count);
     const std::span measured(pairs.measured.data(), pairs.count);
     const RigidFit fit = fit_rigid(model, measured);

@@ -2,6 +2,9 @@
 // leaves i when divided by n, so that the split is a constant of the graph.
 #pragma once
 
+#include <array>
+#include <string_view>
+
 #include "graph/graph.hpp"
 #include "kernels/pose/assign.hpp"
 #include "kernels/pose/correspond.hpp"
@@ -9,11 +12,10 @@
 #include "kernels/pose/marker.hpp"
 #include "kernels/pose/rigid_fit.hpp"
 #include "kernels/pose/tool.hpp"
+#include "nodes/node_limits.hpp"
 #include "nodes/tokens.hpp"
 
 namespace glint {
-
-inline constexpr int k_tool_slices = 2;
 
 // The labelings that each tool of this slice could have.
 struct Correspond {
@@ -25,6 +27,14 @@ struct Correspond {
 
 // Gives each marker to at most one tool, in one fixed order.
 struct AssignMarkers {
+  static constexpr std::array<std::string_view, 4> k_loops = {"call", "tools", "rounds", "tests"};
+  // Each round gives one tool its markers (assign.hpp counts the tests).
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
+    return {{1, limits.tools, limits.tools, assign_tests_worst(limits.tools)}};
+  }
+  [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
+
+  Limits limits;
   void operator()(const FrameVerdict& verdict, const graph::Latest<ToolSet>& tools,
                   const graph::Parts<ToolLabelings, k_tool_slices>& labelings,
                   Assignment& assignment) noexcept;
@@ -32,6 +42,7 @@ struct AssignMarkers {
  private:
   std::array<Labelings, k_tools_max> per_tool_;  // the slices' answers, by tool
   std::array<int, k_tools_max> chosen_{};
+  graph::LoopCounts counts_;
 };
 
 // The declared noise of one marker: 1 sigma along its ray and, from the pixel's, across it.
@@ -43,10 +54,23 @@ struct MarkerNoise {
 
 // The rigid fit over the markers assigned, with the first-order covariance of the tip.
 struct FitRigid {
+  static constexpr std::array<std::string_view, 4> k_loops = {"call", "tools", "fits", "markers"};
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
+    const std::int64_t tools = tools_per_slice(limits);
+    return {{1, tools, tools, tools * limits.markers_per_tool}};
+  }
+  [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
+
   MarkerNoise noise;
+  Limits limits;
   void operator()(const FrameVerdict& verdict, const Markers& markers,
                   const graph::Latest<ToolSet>& tools, const Assignment& assignment,
-                  graph::Slice slice, FittedTools& fitted) const noexcept;
+                  graph::Slice slice, FittedTools& fitted) noexcept;
+
+ private:
+  graph::LoopCounts counts_;
 };
+
+static_assert(graph::Budgeted<AssignMarkers, Limits> && graph::Budgeted<FitRigid, Limits>);
 
 }  // namespace glint

@@ -1,5 +1,6 @@
 #include "nodes/predict_tools.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace glint {
@@ -51,10 +52,11 @@ double growth(const Track& track, Time when) {
 
 void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& estimates,
                               const graph::Latest<RobotFrame>& robot,
-                              PoseSamples& samples) const noexcept {
+                              PoseSamples& samples) noexcept {
   const Estimates& known = estimates.value();
-  samples.count = known.tool_count;
-  for (int t = 0; t < known.tool_count; ++t) {
+  samples.count = std::min(known.tool_count, limits.tools);
+  counts_ = {{1, samples.count}};
+  for (int t = 0; t < samples.count; ++t) {
     const Track& track = known.tracks[t];
     PoseSample& sample = samples.items[t];
     sample = PoseSample{};
@@ -76,11 +78,13 @@ void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& es
       if (sample.reason == Reason::none) sample.reason = Reason::too_old;
       continue;
     }
-    const bool fresh = 2 * age.nanoseconds <= 3 * settings.nominal_gap.nanoseconds;
+    const bool fresh = !is_overrun(track.reason) && 2 * age.nanoseconds <= 3 * settings.nominal_gap.nanoseconds;
     sample.state = fresh ? TrackState::measured : TrackState::predicted;
     sample.marker_mask = track.marker_mask;
 
     const Time when = now.tick + settings.actuation_delay;
+    ++counts_[2];
+    if (track.has_previous) ++counts_[3];
     Aged aged = at(track, when, settings.lost_after);
     Matrix6 covariance = track.covariance * growth(track, when);
     sample.frame = track.base;

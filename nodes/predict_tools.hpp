@@ -4,10 +4,16 @@
 //           from the last two measured poses; then world -> robot; then the tip.
 // States:   measured while the newest accepted pose is at most 1.5 nominal frame gaps old,
 //           predicted until lost_after, then lost: DESIGN contract, so no tuning.
-// Cost:     one pass over k_tools_max tools. Worst input: all predicted.
+// Cost:     one pass over the tools; those with a pose cost, the others hardly.
+// Worst:    all moving, predicted and expressed in the robot's frame.
 #pragma once
 
+#include <array>
+#include <string_view>
+
 #include "graph/graph.hpp"
+#include "graph/loops.hpp"
+#include "kernels/limits.hpp"
 #include "nodes/tokens.hpp"
 
 namespace glint {
@@ -19,9 +25,21 @@ struct PredictSettings {
 };
 
 struct PredictTools {
+  static constexpr std::array<std::string_view, 4> k_loops = {"call", "tools", "poses", "moving"};
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
+    return {{1, limits.tools, limits.tools, limits.tools}};
+  }
+  [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
+
   PredictSettings settings;
+  Limits limits;
   void operator()(const Now& now, const graph::Latest<Estimates>& estimates,
-                  const graph::Latest<RobotFrame>& robot, PoseSamples& samples) const noexcept;
+                  const graph::Latest<RobotFrame>& robot, PoseSamples& samples) noexcept;
+
+ private:
+  graph::LoopCounts counts_;
 };
+
+static_assert(graph::Budgeted<PredictTools, Limits>);
 
 }  // namespace glint

@@ -35,15 +35,16 @@ void accept(const FittedTool& found, const FrameStamp& stamp, const HeadPose& he
 
 void TrackTools::operator()(const FrameVerdict& verdict, const HeadPose& head,
                             const graph::Latest<ToolSet>& tools,
-                            const graph::Parts<FittedTools, 2>& fitted,
-                            const graph::Previous<Estimates>& last,
-                            Estimates& estimates) const noexcept {
+                            const graph::Parts<FittedTools, k_tool_slices>& fitted,
+                            const graph::Previous<Estimates>& last, Estimates& estimates) noexcept {
   const ToolSet& set = tools.value();
+  const int count = tools_within(set, limits);
+  counts_ = {{1, count}};
   estimates.verdict = verdict;
-  estimates.tool_count = set.count;
+  estimates.tool_count = count;
   for (int t = 0; t < k_tools_max; ++t) {
     Track& track = estimates.tracks[t];
-    if (t >= set.count) {
+    if (t >= count) {
       track = Track{};
       estimates.tip_m[t] = Vector3::Zero();
       continue;
@@ -55,6 +56,7 @@ void TrackTools::operator()(const FrameVerdict& verdict, const HeadPose& head,
 
     const FittedTool& found = fitted[t % fitted.size()].tools[t];
     if (found.reason == Reason::none) {
+      ++counts_[2];
       accept(found, verdict.stamp, head, settings.velocity_gap_max, track);
       continue;
     }

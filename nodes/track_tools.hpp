@@ -1,12 +1,16 @@
 // Keeps what is known of each tool between frames: its newest pose, the one before, and until when
 // either may be used. The poses are kept in the world where the headset knew its own pose, because
 // there the head's motion does not disturb the pen's; otherwise in the camera's frame.
-// Cost: one pass over k_tools_max tools. Worst input: all found.
+// Cost: one pass over the tools. Worst input: all found, and the head's pose known.
 #pragma once
+
+#include <array>
+#include <string_view>
 
 #include "graph/graph.hpp"
 #include "kernels/pose/head_pose.hpp"
 #include "kernels/pose/tool.hpp"
+#include "nodes/node_limits.hpp"
 #include "nodes/tokens.hpp"
 
 namespace glint {
@@ -18,10 +22,23 @@ struct TrackSettings {
 };
 
 struct TrackTools {
+  static constexpr std::array<std::string_view, 3> k_loops = {"call", "tools", "found"};
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
+    return {{1, limits.tools, limits.tools}};
+  }
+  [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
+
   TrackSettings settings;
+  Limits limits;
   void operator()(const FrameVerdict& verdict, const HeadPose& head,
-                  const graph::Latest<ToolSet>& tools, const graph::Parts<FittedTools, 2>& fitted,
-                  const graph::Previous<Estimates>& last, Estimates& estimates) const noexcept;
+                  const graph::Latest<ToolSet>& tools,
+                  const graph::Parts<FittedTools, k_tool_slices>& fitted,
+                  const graph::Previous<Estimates>& last, Estimates& estimates) noexcept;
+
+ private:
+  graph::LoopCounts counts_;
 };
+
+static_assert(graph::Budgeted<TrackTools, Limits>);
 
 }  // namespace glint

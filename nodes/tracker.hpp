@@ -1,8 +1,8 @@
 // The frame group: from a camera frame to what is known of every tool.
 //
-//   Frame ─► StampFrame ─► CheckFrame ─► PredictTracks ─► LocateRois ─► RoiThreshold x2 ─►
+//   Frame ─► StampFrame ─► CheckFrame ─► PredictTracks ─► LocateRois ─► RoiThreshold x4 ─►
 //   FindBlobs
-//     ─► BackProject ─► Correspond x2 ─► AssignMarkers ─► FitRigid x2 ─► TrackTools ─► Estimates
+//     ─► BackProject ─► Correspond x4 ─► AssignMarkers ─► FitRigid x4 ─► TrackTools ─► Estimates
 //                           ▲ PredictTracks and TrackTools read Previous<Estimates>
 //
 // MarkerTracker is the same from BackProject's output on: recordings without images feed it.

@@ -1,6 +1,7 @@
 #include "kernels/pose/assign.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bitset>
 
 namespace glint {
@@ -8,19 +9,25 @@ namespace {
 
 using MarkerSet = std::bitset<k_blobs_max>;
 
+// All markers are looked at, so that every test costs the same.
 bool is_free(const Labeling& labeling, const MarkerSet& taken) {
-  return std::none_of(labeling.marker.begin(), labeling.marker.end(), [&](std::int16_t marker) {
-    return marker >= 0 && taken.test(static_cast<std::size_t>(marker));
-  });
+  unsigned hits = 0;
+  for (const std::int16_t marker : labeling.marker) {
+    const unsigned known = marker >= 0 ? 1 : 0;
+    hits |= known & static_cast<unsigned>(taken[static_cast<std::size_t>(marker) % k_blobs_max]);
+  }
+  return hits == 0;
 }
 
-// The tool's best labeling that is still free, or -1.
-int best_free(const Labelings& labelings, const MarkerSet& taken) {
+// Moves `at` to the tool's best labeling that is still free, or to the end. Returns the tests.
+int seek_free(const Labelings& labelings, const MarkerSet& taken, int& at) {
   const int count = std::min(labelings.count, k_labelings_max);
-  for (int i = 0; i < count; ++i) {
-    if (is_free(labelings.items[static_cast<std::size_t>(i)], taken)) return i;
+  int tests = 0;
+  for (; at < count; ++at) {
+    ++tests;
+    if (is_free(labelings.items[static_cast<std::size_t>(at)], taken)) break;
   }
-  return -1;
+  return tests;
 }
 
 bool is_better(const Labeling& a, const Labeling& b) {
@@ -30,8 +37,9 @@ bool is_better(const Labeling& a, const Labeling& b) {
 
 }  // namespace
 
-void assign_markers(std::span<const Labelings> per_tool, std::span<int> chosen,
-                    std::span<Reason> reasons) noexcept {
+AssignWork assign_markers(std::span<const Labelings> per_tool, std::span<int> chosen,
+                          std::span<Reason> reasons) noexcept {
+  AssignWork work;
   const std::size_t tools = std::min(
       {per_tool.size(), chosen.size(), reasons.size(), static_cast<std::size_t>(k_tools_max)});
   for (std::size_t t = 0; t < tools; ++t) {
@@ -41,28 +49,29 @@ void assign_markers(std::span<const Labelings> per_tool, std::span<int> chosen,
                                                       : per_tool[t].reason;
   }
   MarkerSet taken;
+  std::array<int, k_tools_max> at{};  // each tool's first labeling that was free when last tested
   for (std::size_t round = 0; round < tools; ++round) {
     const Labeling* best = nullptr;
     std::size_t best_tool = 0;
-    int best_index = -1;
     for (std::size_t t = 0; t < tools; ++t) {
       if (chosen[t] >= 0) continue;
-      const int i = best_free(per_tool[t], taken);
-      if (i < 0) continue;
-      const Labeling& labeling = per_tool[t].items[static_cast<std::size_t>(i)];
+      work.tests += seek_free(per_tool[t], taken, at[t]);
+      if (at[t] >= std::min(per_tool[t].count, k_labelings_max)) continue;
+      const Labeling& labeling = per_tool[t].items[static_cast<std::size_t>(at[t])];
       if (best == nullptr || is_better(labeling, *best)) {
         best = &labeling;
         best_tool = t;
-        best_index = i;
       }
     }
-    if (best == nullptr) return;
-    chosen[best_tool] = best_index;
+    if (best == nullptr) return work;
+    ++work.rounds;
+    chosen[best_tool] = at[best_tool];
     reasons[best_tool] = Reason::none;
     for (const std::int16_t marker : best->marker) {
       if (marker >= 0) taken.set(static_cast<std::size_t>(marker));
     }
   }
+  return work;
 }
 
 }  // namespace glint

@@ -3,9 +3,12 @@
 // What:     in every round the best free labeling of all tools without one is taken: more markers
 //           before fewer, then the smaller rms, then the lower tool index. A labeling is free while
 //           none of its markers is taken.
-// Cost:     tools^2 * k_labelings_max * k_markers_per_tool_max steps: 16 tools at most 16,384.
-// Worst:    16 tools that all claim the same markers.
-// Accuracy: exact; it is greedy, so the sum over all tools need not be the best possible.
+// Cost:     a test of k_markers_per_tool_max markers for each labeling looked at. What is taken
+// stays
+//           taken, so a labeling found taken is never looked at again: each round looks once more
+//           only at each waiting tool's first one that was free.
+// Worst:    all but the last labeling of every tool hold the marker that the first round gives
+// away. Accuracy: exact; it is greedy, so the sum over all tools need not be the best possible.
 #pragma once
 
 #include <span>
@@ -14,10 +17,21 @@
 
 namespace glint {
 
+struct AssignWork {
+  int rounds = 0;
+  int tests = 0;  // labelings looked at
+};
+
+// Tool r is served in round r: it is looked at once in each of r + 1 rounds, and, but for the
+// first, k_labelings_max - 1 times more for labelings that were taken.
+[[nodiscard]] constexpr int assign_tests_worst(int tools) {
+  return tools * (tools + 1) / 2 + (tools - 1) * (k_labelings_max - 1);
+}
+
 // All three spans have one element a tool (k_tools_max at most; the shortest counts). chosen[t]
 // becomes the index into per_tool[t].items or -1; reasons[t] none, the labelings' own reason where
 // there are none, or taken_by_other.
-void assign_markers(std::span<const Labelings> per_tool, std::span<int> chosen,
-                    std::span<Reason> reasons) noexcept;
+AssignWork assign_markers(std::span<const Labelings> per_tool, std::span<int> chosen,
+                          std::span<Reason> reasons) noexcept;
 
 }  // namespace glint

@@ -83,6 +83,11 @@ Result<Vector3> unproject(const CameraModel& camera, const Vector2& pixel) noexc
 }
 
 Result<Vector2> project(const CameraModel& camera, const Vector3& point) noexcept {
+  int lens_steps = 0;
+  return project(camera, point, lens_steps);
+}
+
+Result<Vector2> project(const CameraModel& camera, const Vector3& point, int& lens_steps) noexcept {
   if (!(point.z() > 0)) return {Vector2::Zero(), Reason::out_of_range};
   Vector2 p{point.x() / point.z(), point.y() / point.z()};
   if (!(p.squaredNorm() < 1e6)) return {Vector2::Zero(), Reason::out_of_range};
@@ -94,7 +99,9 @@ Result<Vector2> project(const CameraModel& camera, const Vector3& point) noexcep
     p = d.position;
   }
   const Vector2 pixel{p.x() * camera.fx + camera.cx, p.y() * camera.fy + camera.cy};
-  if (camera.lens == Lens::lut) return project(camera.table, point, pixel, {camera.cx, camera.cy});
+  if (camera.lens == Lens::lut) {
+    return project(camera.table, point, pixel, {camera.cx, camera.cy}, lens_steps);
+  }
   return {pixel};
 }
 

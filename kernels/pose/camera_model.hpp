@@ -14,6 +14,7 @@
 #include <cstdint>
 
 #include "kernels/geometry.hpp"
+#include "kernels/limits.hpp"
 #include "kernels/result.hpp"
 
 namespace glint {
@@ -39,12 +40,15 @@ struct CameraModel {
 };
 
 inline constexpr int k_undistort_iterations_max = 20;
-inline constexpr int k_lut_search_iterations_max = 40;
+inline constexpr int k_lut_search_iterations_max = k_lens_steps_max;
 
 // Reason::out_of_range: outside the table, or the lens has no ray there.
 [[nodiscard]] Result<Vector3> unproject(const CameraModel& camera, const Vector2& pixel) noexcept;
 
 // Reason::out_of_range: behind the camera or outside the lens; the pixel may lie outside the frame.
 [[nodiscard]] Result<Vector2> project(const CameraModel& camera, const Vector3& point) noexcept;
+// The same, and adds the look-ups that a lens table took to `lens_steps`.
+[[nodiscard]] Result<Vector2> project(const CameraModel& camera, const Vector3& point,
+                                      int& lens_steps) noexcept;
 
 }  // namespace glint

@@ -53,7 +53,7 @@ Result<Vector3> unproject(const RayTable& table, const Vector2& pixel) noexcept 
 }
 
 Result<Vector2> project(const RayTable& table, const Vector3& point, const Vector2& start,
-                        const Vector2& middle) noexcept {
+                        const Vector2& middle, int& steps) noexcept {
   const Result<Vector2> none{Vector2::Zero(), Reason::out_of_range};
   if (!(point.z() > 0) || !inside(table, middle)) return none;
   const double tx = point.x() / point.z(), ty = point.y() / point.z();
@@ -62,6 +62,7 @@ Result<Vector2> project(const RayTable& table, const Vector3& point, const Vecto
                 std::clamp(start.y(), 0.0, static_cast<double>(table.height))};
   if (!inside(table, pixel)) pixel = middle;  // a start that is not a number
   for (int i = 0; i < k_lut_search_iterations_max; ++i) {
+    ++steps;
     const Sample sample = look_up(table, pixel);
     if (!sample.valid) {
       pixel = 0.5 * (pixel + last_valid);

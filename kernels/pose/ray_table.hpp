@@ -19,8 +19,9 @@ namespace glint {
 [[nodiscard]] Result<Vector3> unproject(const RayTable& table, const Vector2& pixel) noexcept;
 
 // start: where to begin, e.g. the pixel by a fitted lens; middle: a pixel that surely has a ray.
-// Reason::out_of_range: no pixel of the table has this ray.
+// Reason::out_of_range: no pixel of the table has this ray. Adds its look-ups to `steps`.
 [[nodiscard]] Result<Vector2> project(const RayTable& table, const Vector3& point,
-                                      const Vector2& start, const Vector2& middle) noexcept;
+                                      const Vector2& start, const Vector2& middle,
+                                      int& steps) noexcept;
 
 }  // namespace glint
