@@ -1,0 +1,191 @@
+#include "schedules/can_response.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "schedules/response_time.hpp"
+
+namespace glint {
+namespace {
+
+std::int64_t frame_ns_of(const CanMessage& message, const CanBitRates& rates) {
+  if (message.frame_ns > 0) return message.frame_ns;
+  return static_cast<std::int64_t>(std::ceil(worst_case_seconds(message.shape, rates) * 1e9));
+}
+
+class Bus {
+ public:
+  Bus(const std::vector<CanMessage>& messages, const CanBitRates& rates)
+      : messages_(messages),
+        bit_ns_(static_cast<std::int64_t>(std::ceil(1e9 / rates.nominal))),
+        results_(messages.size()) {
+    for (std::size_t m = 0; m < messages.size(); ++m) {
+      results_[m].frame_ns = frame_ns_of(messages[m], rates);
+      urgency_.push_back(urgency_of(messages[m]));
+    }
+  }
+
+  std::vector<CanResponse> run() {
+    for (int round = 0; round < k_can_rounds_max; ++round) {
+      bool grew = false;
+      for (std::size_t m = 0; m < messages_.size(); ++m) {
+        const std::int64_t queued_before = results_[m].queued_ns;
+        if (messages_[m].fifo) {
+          queued(m);
+        } else {
+          by_priority(m);
+        }
+        if (!results_[m].response_ns) return unbounded();
+        grew = grew || results_[m].queued_ns > queued_before;
+      }
+      if (!grew) return results_;
+    }
+    return unbounded();
+  }
+
+ private:
+  // Nobody has a bound on a bus on which one has none: its wait is jitter to the others.
+  std::vector<CanResponse> unbounded() {
+    for (CanResponse& result : results_) result.response_ns.reset();
+    return results_;
+  }
+
+  [[nodiscard]] bool same_queue(std::size_t a, std::size_t b) const {
+    return messages_[a].fifo && messages_[b].fifo && messages_[a].node == messages_[b].node;
+  }
+
+  // Frames that win against `level`; `but_not` and its queue are left out.
+  [[nodiscard]] std::vector<Interference> urgent_than(std::uint64_t level, std::size_t but_not,
+                                                      std::int64_t early_ns) const {
+    std::vector<Interference> urgent;
+    for (std::size_t k = 0; k < messages_.size(); ++k) {
+      if (k == but_not || urgency_[k] <= level || same_queue(k, but_not)) continue;
+      urgent.push_back({results_[k].frame_ns, messages_[k].period_ns,
+                        messages_[k].jitter_ns + results_[k].queued_ns + early_ns});
+    }
+    return urgent;
+  }
+
+  [[nodiscard]] std::int64_t blocking(std::uint64_t level, std::size_t of) const {
+    std::int64_t longest = 0;
+    for (std::size_t k = 0; k < messages_.size(); ++k) {
+      if (k == of || urgency_[k] >= level || same_queue(k, of)) continue;
+      longest = std::max(longest, results_[k].frame_ns);
+    }
+    return longest;
+  }
+
+  void by_priority(std::size_t m) {
+    const CanMessage& own = messages_[m];
+    CanResponse& result = results_[m];
+    const std::int64_t frame = result.frame_ns;
+    const std::int64_t block = blocking(urgency_[m], m);
+    // Eq. (10), the level-m busy period.
+    std::vector<Interference> all = urgent_than(urgency_[m], m, 0);
+    all.push_back({frame, own.period_ns, own.jitter_ns});
+    const auto busy = busy_window(block, all, k_busy_period_max_ns, frame, steps_left_);
+    if (!busy) return result.response_ns.reset();
+    const std::int64_t last = detail::ceil_of_quotient(*busy + own.jitter_ns, own.period_ns);
+    // Eq. (11): a frame that is queued up to one bit after the bus went idle still takes part.
+    const std::vector<Interference> urgent = urgent_than(urgency_[m], m, bit_ns_);
+    std::int64_t window = 0, worst = 0;
+    for (std::int64_t q = 0; q < last; ++q) {
+      const auto begin =
+          busy_window(block + q * frame, urgent, k_busy_period_max_ns, window, steps_left_);
+      if (!begin) return result.response_ns.reset();
+      window = *begin;
+      worst = std::max(worst, own.jitter_ns + window - q * own.period_ns + frame);
+    }
+    result.response_ns = worst;
+  }
+
+  void queued(std::size_t m) {
+    CanResponse& result = results_[m];
+    std::uint64_t level = urgency_[m];
+    std::vector<std::size_t> queue;
+    for (std::size_t k = 0; k < messages_.size(); ++k) {
+      if (!same_queue(k, m)) continue;
+      queue.push_back(k);
+      level = std::min(level, urgency_[k]);
+    }
+    const std::int64_t block = blocking(level, m);
+    const std::vector<Interference> urgent = urgent_than(level, m, bit_ns_);
+    std::vector<Interference> all = urgent_than(level, m, 0);
+    for (const std::size_t k : queue) {
+      all.push_back({results_[k].frame_ns, messages_[k].period_ns, messages_[k].jitter_ns});
+    }
+    const auto busy = busy_window(block, all, k_busy_period_max_ns, result.frame_ns, steps_left_);
+    if (!busy) return result.response_ns.reset();
+
+    std::int64_t worst = 0, waited = 0;
+    for (const std::int64_t arrival : arrivals(queue, *busy)) {
+      std::int64_t ahead = 0;
+      for (const std::size_t k : queue) {
+        const std::int64_t came = (arrival + messages_[k].jitter_ns) / messages_[k].period_ns + 1;
+        ahead += came * results_[k].frame_ns;
+      }
+      const auto begin = busy_window(block + ahead - result.frame_ns, urgent, k_busy_period_max_ns,
+                                     0, steps_left_);
+      if (!begin) return result.response_ns.reset();
+      waited = std::max(waited, *begin - arrival);
+      worst = std::max(worst, messages_[m].jitter_ns + *begin - arrival + result.frame_ns);
+    }
+    result.response_ns = worst;
+    result.queued_ns = std::max(result.queued_ns, waited);
+  }
+
+  // The moments in a busy period at which the queue may grow: between them a later frame only waits
+  // for less.
+  [[nodiscard]] std::set<std::int64_t> arrivals(const std::vector<std::size_t>& queue,
+                                                std::int64_t busy) const {
+    std::set<std::int64_t> moments{0};
+    for (const std::size_t k : queue) {
+      const CanMessage& message = messages_[k];
+      for (std::int64_t n = 1;; ++n) {
+        const std::int64_t moment = n * message.period_ns - message.jitter_ns;
+        if (moment >= busy) break;
+        if (moment > 0) moments.insert(moment);
+      }
+    }
+    return moments;
+  }
+
+  const std::vector<CanMessage>& messages_;
+  std::int64_t bit_ns_;
+  std::vector<CanResponse> results_;
+  std::vector<std::uint64_t> urgency_;
+  int steps_left_ = k_can_steps_max;
+};
+
+}  // namespace
+
+std::uint64_t urgency_of(const CanMessage& message) {
+  constexpr std::uint32_t k_low_bits = 18;
+  const bool extended = message.shape.extended;
+  const std::uint64_t base = extended ? message.identifier >> k_low_bits : message.identifier;
+  const std::uint64_t rest = extended ? message.identifier & ((1U << k_low_bits) - 1) : 0;
+  return ~(base << (k_low_bits + 1) | std::uint64_t{extended} << k_low_bits | rest);
+}
+
+double load_of(const std::vector<CanMessage>& messages, const CanBitRates& rates) {
+  double load = 0;
+  for (const CanMessage& message : messages) {
+    load += static_cast<double>(frame_ns_of(message, rates)) / double(message.period_ns);
+  }
+  return load;
+}
+
+std::vector<CanResponse> can_responses(const std::vector<CanMessage>& messages,
+                                       const CanBitRates& rates) {
+  // Above full load every fixed point runs to its limit, and there is nothing to be found there.
+  if (load_of(messages, rates) > 1) {
+    std::vector<CanResponse> none(messages.size());
+    for (std::size_t m = 0; m < none.size(); ++m)
+      none[m].frame_ns = frame_ns_of(messages[m], rates);
+    return none;
+  }
+  return Bus(messages, rates).run();
+}
+
+}  // namespace glint

@@ -1,0 +1,43 @@
+// The shortest makespan of a group on a number of cores: branch and bound.
+//
+// What:     nodes are appended to cores in the order of their starts; every schedule without
+//           needless waiting is such a sequence, and an optimal one is among them. Cut away are:
+//           sequences no better than the best found (bounds below); all but the first of
+//           interchangeable copies; all but the first of the untouched cores.
+// Bounds:   paths; total work over all cores; and between a node u and a later node v, the work S
+//           that lies between them on j of the m cores: all but one core lose two hand-overs h, so
+//             start_v - end_u >= min over j <= m of (S + 2 h (j - 1)) / j.
+// Cost:     exponential in principle; at most k_search_nodes_max sequences, then the best found
+//           stands with its distance to the lower bound. Glint's tracker needs some hundreds.
+// Worst:    many different independent nodes.
+// Accuracy: `optimal` is proven: the search was exhausted, or the lower bound was met.
+// Source:   Kohler and Steiglitz 1974 (branch and bound over semi-active sequences); the bound
+//           above extends Fernandez and Bussell 1973 by hand-overs.
+#pragma once
+
+#include <cstdint>
+
+#include "schedules/list_schedule.hpp"
+#include "schedules/task_model.hpp"
+
+namespace glint {
+
+inline constexpr std::int64_t k_search_nodes_max = 2'000'000;
+
+struct ExactSchedule {
+  CoreOrders orders;
+  std::int64_t makespan_ns = 0;
+  std::int64_t least_possible_ns = 0;  // no schedule is shorter than this
+  bool optimal = false;
+  std::int64_t searched = 0;
+};
+
+[[nodiscard]] ExactSchedule exact_schedule(const TaskGroup& group, int cores,
+                                           std::int64_t handover_ns,
+                                           std::int64_t search_nodes_max = k_search_nodes_max);
+
+// A bound from below on any schedule's makespan.
+[[nodiscard]] std::int64_t least_makespan(const TaskGroup& group, int cores,
+                                          std::int64_t handover_ns);
+
+}  // namespace glint

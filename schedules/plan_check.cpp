@@ -1,0 +1,151 @@
+#include "schedules/plan_check.hpp"
+
+#include <algorithm>
+
+#include "schedules/group_response.hpp"
+
+namespace glint {
+namespace {
+
+std::string ns(std::int64_t value) { return std::to_string(value) + " ns"; }
+
+class Checker {
+ public:
+  Checker(const Plan& plan, const TaskModel& model) : plan_(plan), model_(model) {}
+
+  std::vector<std::string> run() {
+    if (plan_.groups.size() != model_.groups.size()) {
+      add("plan: " + std::to_string(plan_.groups.size()) + " groups; expected " +
+          std::to_string(model_.groups.size()));
+      return faults_;
+    }
+    check_priorities();
+    for (std::size_t g = 0; g < model_.groups.size(); ++g) {
+      if (!check_places(g)) continue;
+      check_precedence(g);
+      check_overlap(g);
+    }
+    if (faults_.empty()) check_capacity();
+    if (const auto complaint = check_bus_load(plan_.traffic, plan_.bus)) add(*complaint);
+    return faults_;
+  }
+
+ private:
+  void add(std::string fault) { faults_.push_back(std::move(fault)); }
+
+  [[nodiscard]] std::string name(std::size_t g, std::size_t n) const {
+    const TaskNode& node = model_.groups[g].nodes[n];
+    return model_.groups[g].name + ": " + node.name +
+           (node.copies > 1 ? "#" + std::to_string(node.copy) : "");
+  }
+
+  void check_priorities() {
+    for (std::size_t g = 0; g < plan_.groups.size(); ++g) {
+      const int priority = plan_.groups[g].priority;
+      if (priority < 1 || priority > 99) {
+        add(plan_.groups[g].name + ": priority " + std::to_string(priority) + "; expected 1 to 99");
+      }
+      for (std::size_t other = 0; other < g; ++other) {
+        if (plan_.groups[other].priority != priority) continue;
+        add(plan_.groups[other].name + " and " + plan_.groups[g].name + ": both have priority " +
+            std::to_string(priority) + "; expected one each");
+      }
+    }
+  }
+
+  // Every node once, on a core that there is, with the time that it may need.
+  bool check_places(std::size_t g) {
+    place_.assign(model_.groups[g].nodes.size(), nullptr);
+    const std::size_t faults_before = faults_.size();
+    for (const PlannedNode& node : plan_.nodes) {
+      if (node.group != static_cast<int>(g)) continue;
+      if (node.node < 0 || node.node >= static_cast<int>(place_.size())) {
+        add(model_.groups[g].name + ": node " + std::to_string(node.node) + "; expected 0 to " +
+            std::to_string(place_.size() - 1));
+        continue;
+      }
+      const auto n = static_cast<std::size_t>(node.node);
+      if (place_[n] != nullptr) add(name(g, n) + " stands twice; expected once");
+      place_[n] = &node;
+      if (node.core < 0 || node.core >= plan_.cores) {
+        add(name(g, n) + ": core " + std::to_string(node.core) + "; expected 0 to " +
+            std::to_string(plan_.cores - 1));
+      }
+      const std::int64_t given = node.end_ns - node.start_ns;
+      if (node.start_ns < 0 || given < model_.groups[g].nodes[n].bound_ns) {
+        add(name(g, n) + ": is given " + ns(given) + "; expected at least its bound, " +
+            ns(model_.groups[g].nodes[n].bound_ns));
+      }
+    }
+    for (std::size_t n = 0; n < place_.size(); ++n) {
+      if (place_[n] == nullptr) add(name(g, n) + " is missing; expected every node once");
+    }
+    return faults_.size() == faults_before;
+  }
+
+  void check_precedence(std::size_t g) {
+    for (std::size_t n = 0; n < place_.size(); ++n) {
+      for (const int before : model_.groups[g].nodes[n].after) {
+        const PlannedNode& from = *place_[static_cast<std::size_t>(before)];
+        const std::int64_t there =
+            from.end_ns + (from.core == place_[n]->core ? 0 : model_.system.core_handover_ns);
+        if (place_[n]->start_ns >= there) continue;
+        add(name(g, n) + ": starts at " + ns(place_[n]->start_ns) + "; expected at least " +
+            ns(there) + ", when the data of " +
+            model_.groups[g].nodes[static_cast<std::size_t>(before)].name + " is there");
+      }
+    }
+  }
+
+  void check_overlap(std::size_t g) {
+    for (std::size_t a = 0; a < place_.size(); ++a) {
+      for (std::size_t b = a + 1; b < place_.size(); ++b) {
+        if (place_[a]->core != place_[b]->core) continue;
+        if (place_[a]->start_ns >= place_[b]->end_ns || place_[b]->start_ns >= place_[a]->end_ns) {
+          continue;
+        }
+        add(name(g, a) + " and " + name(g, b) + " overlap on core " +
+            std::to_string(place_[a]->core) + "; expected one after the other");
+      }
+    }
+  }
+
+  // Where an activation may outlast the gap to the next one, edges would need a second buffer.
+  void check_capacity() {
+    for (int core = 0; core < plan_.cores; ++core) {
+      double load = 0;
+      for (const PlannedNode& node : plan_.nodes) {
+        if (node.core != core) continue;
+        const TaskGroup& group = model_.groups[static_cast<std::size_t>(node.group)];
+        load += double(node.end_ns - node.start_ns) /
+                double(std::max<std::int64_t>(group.min_gap_ns, 1));
+      }
+      if (load <= 1) continue;
+      add("core " + std::to_string(core) + ": needed " + std::to_string(int(100 * load)) +
+          " % of the time; expected at most 100 %");
+    }
+    if (!faults_.empty()) return;
+    const std::vector<GroupResponse> responses = group_responses(model_, plan_);
+    for (std::size_t g = 0; g < responses.size(); ++g) {
+      const std::int64_t gap = model_.groups[g].min_gap_ns;
+      const auto& response = responses[g].response_ns;
+      if (response && *response <= gap) continue;
+      add(responses[g].name + ": an activation may take " +
+          (response ? ns(*response) : "without bound") + " and the next may come after " + ns(gap) +
+          "; every edge has one buffer: expected at most " + ns(gap));
+    }
+  }
+
+  const Plan& plan_;
+  const TaskModel& model_;
+  std::vector<const PlannedNode*> place_;
+  std::vector<std::string> faults_;
+};
+
+}  // namespace
+
+std::vector<std::string> check_plan(const Plan& plan, const TaskModel& model) {
+  return Checker(plan, model).run();
+}
+
+}  // namespace glint

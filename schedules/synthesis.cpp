@@ -1,0 +1,150 @@
+#include "schedules/synthesis.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "schedules/group_response.hpp"
+#include "schedules/static_order.hpp"
+
+namespace glint {
+namespace {
+
+using Placement = std::vector<CoreOrders>;  // by group
+
+// The group's first node on core 0: the worker that is released runs there.
+CoreOrders first_node_first(CoreOrders orders) {
+  for (CoreOrders::iterator core = orders.begin(); core != orders.end(); ++core) {
+    if (std::find(core->begin(), core->end(), 0) != core->end()) {
+      std::iter_swap(orders.begin(), core);
+      break;
+    }
+  }
+  return orders;
+}
+
+bool on_one_core(const CoreOrders& orders) {
+  return std::count_if(orders.begin(), orders.end(), [](const auto& o) { return !o.empty(); }) <= 1;
+}
+
+Plan plan_of(const TaskModel& model, const Placement& placement) {
+  Plan plan;
+  plan.cores = model.cores;
+  for (std::size_t g = 0; g < model.groups.size(); ++g) {
+    const TaskGroup& group = model.groups[g];
+    const auto times = times_of(group, placement[g], model.system.core_handover_ns);
+    plan.groups.push_back({group.name, group.priority, times->makespan_ns, 0, false});
+    for (std::size_t core = 0; core < placement[g].size(); ++core) {
+      for (const int node : placement[g][core]) {
+        const auto n = static_cast<std::size_t>(node);
+        plan.nodes.push_back({static_cast<int>(g), node, static_cast<int>(core), times->start_ns[n],
+                              times->end_ns[n]});
+      }
+    }
+  }
+  return plan;
+}
+
+void assign_priorities(const TaskModel& model, Plan& plan) {
+  const std::size_t count = plan.groups.size();
+  std::vector<std::size_t> open;
+  for (std::size_t g = 0; g < count; ++g) open.push_back(g);
+  std::stable_sort(open.begin(), open.end(), [&](std::size_t a, std::size_t b) {
+    return model.groups[a].deadline_ns < model.groups[b].deadline_ns;
+  });
+  // Until a level is given away, deadline monotonic.
+  const auto number = [&] {
+    for (std::size_t rank = 0; rank < open.size(); ++rank) {
+      plan.groups[open[rank]].priority =
+          k_most_urgent_priority - k_priority_step * static_cast<int>(rank);
+    }
+  };
+  while (!open.empty()) {
+    number();
+    const std::vector<std::size_t> by_deadline = open;
+    const int lowest = plan.groups[open.back()].priority;
+    std::size_t chosen = open.size() - 1;
+    for (std::size_t candidate = open.size(); candidate-- > 0;) {
+      open = by_deadline;
+      std::rotate(open.begin() + static_cast<std::ptrdiff_t>(candidate),
+                  open.begin() + static_cast<std::ptrdiff_t>(candidate) + 1, open.end());
+      number();
+      if (!group_responses(model, plan)[open.back()].in_time()) continue;
+      chosen = candidate;
+      break;
+    }
+    open = by_deadline;
+    plan.groups[open[chosen]].priority = lowest;
+    open.erase(open.begin() + static_cast<std::ptrdiff_t>(chosen));
+  }
+}
+
+// The largest response over deadline; what no bound exists for is worst.
+double tightness(const TaskModel& model, const Plan& plan) {
+  double worst = 0;
+  for (const GroupResponse& group : group_responses(model, plan)) {
+    if (!group.response_ns) return std::numeric_limits<double>::max();
+    worst = std::max(
+        worst, double(*group.response_ns) / double(std::max<std::int64_t>(group.deadline_ns, 1)));
+  }
+  return worst;
+}
+
+}  // namespace
+
+Plan synthesize(const TaskModel& model, std::int64_t search_nodes_max) {
+  Placement shortest;
+  std::vector<ExactSchedule> found;
+  std::vector<std::size_t> movable;
+  for (std::size_t g = 0; g < model.groups.size(); ++g) {
+    found.push_back(exact_schedule(model.groups[g], model.cores, model.system.core_handover_ns,
+                                   search_nodes_max));
+    shortest.push_back(first_node_first(found.back().orders));
+    if (g > 0 && on_one_core(shortest.back())) movable.push_back(g);
+  }
+
+  std::size_t placements = 1;
+  for (std::size_t i = 0; i < movable.size(); ++i) {
+    placements *= static_cast<std::size_t>(model.cores);
+  }
+  Plan best;
+  double best_tightness = 0;
+  for (std::size_t choice = 0; choice < placements; ++choice) {
+    Placement placement = shortest;
+    std::size_t rest = choice;
+    for (const std::size_t g : movable) {
+      // The last core first: it is tried as the best while nothing is better.
+      const std::size_t core =
+          static_cast<std::size_t>(model.cores) - 1 - rest % static_cast<std::size_t>(model.cores);
+      std::swap(placement[g][0], placement[g][core]);
+      rest /= static_cast<std::size_t>(model.cores);
+    }
+    Plan plan = plan_of(model, placement);
+    assign_priorities(model, plan);
+    const double tight = tightness(model, plan);
+    if (choice > 0 && tight >= best_tightness) continue;
+    best = std::move(plan);
+    best_tightness = tight;
+  }
+  for (std::size_t g = 0; g < found.size(); ++g) {
+    best.groups[g].least_possible_ns = found[g].least_possible_ns;
+    best.groups[g].optimal = found[g].optimal;
+  }
+  return best;
+}
+
+Plan retimed(const Plan& plan, const TaskModel& model) {
+  Plan result = plan;
+  for (std::size_t g = 0; g < model.groups.size(); ++g) {
+    const auto times = times_of(model.groups[g], core_orders(plan, static_cast<int>(g)),
+                                model.system.core_handover_ns);
+    result.groups[g].makespan_ns = times->makespan_ns;
+    for (PlannedNode& node : result.nodes) {
+      if (node.group != static_cast<int>(g)) continue;
+      node.start_ns = times->start_ns[static_cast<std::size_t>(node.node)];
+      node.end_ns = times->end_ns[static_cast<std::size_t>(node.node)];
+    }
+  }
+  return result;
+}
+
+}  // namespace glint
