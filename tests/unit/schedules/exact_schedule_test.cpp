@@ -1,0 +1,116 @@
+#include "schedules/exact_schedule.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "random_groups.hpp"
+#include "schedules/makespan_bound.hpp"
+#include "schedules/static_order.hpp"
+
+namespace glint {
+namespace {
+
+// Every assignment to cores and every order on each, by hand and without any bound.
+std::int64_t brute_force(const TaskGroup& group, int cores, std::int64_t handover) {
+  std::int64_t best = INT64_MAX;
+  std::vector<int> sequence(group.nodes.size());
+  for (std::size_t n = 0; n < sequence.size(); ++n) sequence[n] = static_cast<int>(n);
+  std::size_t assignments = 1;
+  for (std::size_t n = 0; n < sequence.size(); ++n) assignments *= static_cast<std::size_t>(cores);
+  do {
+    for (std::size_t a = 0; a < assignments; ++a) {
+      CoreOrders orders(static_cast<std::size_t>(cores));
+      std::size_t rest = a;
+      for (const int node : sequence) {
+        orders[rest % static_cast<std::size_t>(cores)].push_back(node);
+        rest /= static_cast<std::size_t>(cores);
+      }
+      if (const auto times = times_of(group, orders, handover)) {
+        best = std::min(best, times->makespan_ns);
+      }
+    }
+  } while (std::next_permutation(sequence.begin(), sequence.end()));
+  return best;
+}
+
+TEST(ExactSchedule, AgreesWithBruteForceOnSmallGraphs) {
+  std::mt19937_64 random(1974);
+  for (int i = 0; i < 150; ++i) {
+    const TaskGroup group = random_group(random, 3 + i % 3, 15 + 15 * (i % 4));
+    const std::int64_t handover = i % 3 * 3;
+    const int cores = 2 + i % 2;
+    const ExactSchedule found = exact_schedule(group, cores, handover);
+    EXPECT_TRUE(found.optimal);
+    EXPECT_EQ(found.makespan_ns, brute_force(group, cores, handover)) << i;
+    EXPECT_EQ(found.makespan_ns, times_of(group, found.orders, handover)->makespan_ns);
+    EXPECT_LE(least_makespan(group, cores, handover), found.makespan_ns);
+  }
+}
+
+TEST(ExactSchedule, IsNeverLongerThanTheList) {
+  std::mt19937_64 random(1969);
+  int shorter = 0;
+  for (int i = 0; i < 300; ++i) {
+    const TaskGroup group = random_group(random, 8 + i % 8, 10 + 10 * (i % 5));
+    const std::int64_t handover = i % 4;
+    const int cores = 2 + i % 3;
+    const ExactSchedule found = exact_schedule(group, cores, handover, 20'000);
+    const std::int64_t list =
+        times_of(group, list_schedule(group, cores, handover), handover)->makespan_ns;
+    EXPECT_LE(found.makespan_ns, list);
+    EXPECT_LE(found.least_possible_ns, found.makespan_ns);
+    shorter += found.makespan_ns < list ? 1 : 0;
+  }
+  EXPECT_GT(shorter, 0);  // otherwise the search would be of no use
+  std::printf("shorter than the list in %d of 300\n", shorter);
+}
+
+TEST(ExactSchedule, ProvesTheOptimumForAGraphLikeTheTracker) {
+  const TaskGroup group = like_the_tracker();
+  std::int64_t before = INT64_MAX;
+  for (const int cores : {1, 2, 4}) {
+    for (const std::int64_t handover : {0, 400, 3000, 30'000}) {
+      const ExactSchedule found = exact_schedule(group, cores, handover);
+      EXPECT_TRUE(found.optimal) << cores << " cores, hand-over " << handover;
+      EXPECT_EQ(found.makespan_ns, found.least_possible_ns);
+      std::printf("%d cores, hand-over %lld: %lld ns, %lld sequences\n", cores,
+                  static_cast<long long>(handover), static_cast<long long>(found.makespan_ns),
+                  static_cast<long long>(found.searched));
+      if (handover == 400) {
+        EXPECT_LT(found.makespan_ns, before);
+        before = found.makespan_ns;
+      }
+    }
+  }
+}
+
+TEST(ExactSchedule, SaysHowFarFromTheOptimumItMayBeWhereTheSearchIsCut) {
+  std::mt19937_64 random(3);
+  const TaskGroup group = random_group(random, 20, 5);
+  const ExactSchedule cut = exact_schedule(group, 3, 2, 5);
+  EXPECT_LE(cut.searched, 5);
+  EXPECT_TRUE(cut.optimal || cut.least_possible_ns < cut.makespan_ns);
+}
+
+TEST(ExactSchedule, KeepsToOneCoreWhereHandingOverCostsMoreThanItGains) {
+  const TaskGroup group = staged_group({{"A", 1, 10}, {"B", 2, 10}, {"C", 1, 10}});
+  const ExactSchedule found = exact_schedule(group, 2, 100);
+  EXPECT_EQ(found.makespan_ns, 40);
+  EXPECT_TRUE(found.optimal);
+}
+
+TEST(MakespanBound, NoOptimumIsBelowIt) {
+  // One node, three copies on two cores, one node: the copies need two rounds, or three with none
+  // handed over.
+  const TaskGroup group = staged_group({{"A", 1, 10}, {"B", 3, 10}, {"C", 1, 10}});
+  EXPECT_EQ(least_between(30, 2, 0), 15);
+  EXPECT_EQ(least_between(30, 2, 5), 20);
+  EXPECT_EQ(least_between(30, 2, 50), 30);
+  EXPECT_LE(least_makespan(group, 2, 0), 40);
+  EXPECT_GE(least_makespan(group, 2, 0), 35);
+}
+
+}  // namespace
+}  // namespace glint
