@@ -22,20 +22,32 @@ enum class Reason : std::uint8_t {
   head_pose_missing = 11,  // the pose holds in the camera's frame only
   too_old = 12,            // the newest measurement is older than the limit
   runs_full = 13,          // more runs of bright pixels than the budget; the rest were counted
-  blobs_full = 14,         // more blobs than the budget; the best were kept
+  blobs_full = 14,         // more blobs, or pixels of theirs, than the budget; the best were kept
   search_full = 15,        // the hypothesis budget ended the search; the best so far was kept
   not_prepared = 16,       // the node or table it needs was never prepared
   out_of_range = 17,       // a value does not fit its field and is sent as invalid
   no_reference = 18,       // the robot's frame is not known yet
+  // An activation was, or would have been, later than its deadline; by the chain's policy:
+  overrun_skipped = 19,    // nothing left for it
+  overrun_held = 20,       // what left last leaves again
+  overrun_predicted = 21,  // the last known motion goes on
+  overrun_stopped = 22,    // everything is declared lost
 };
+inline constexpr Reason k_last_reason = Reason::overrun_stopped;
+
+// Whether it stands for a measurement that was not in time.
+[[nodiscard]] constexpr bool is_overrun(Reason reason) {
+  return reason >= Reason::overrun_skipped && reason <= Reason::overrun_stopped;
+}
 
 // The name as it stands in this list; "unknown" for a value that is not in it.
 [[nodiscard]] constexpr std::string_view name_of(Reason reason) {
   constexpr std::string_view names[] = {
-      "none",          "no_frame_yet",      "too_few_markers", "no_labeling", "taken_by_other",
-      "degenerate",    "collinear",         "bad_fit",         "frame_late",  "frame_doubled",
-      "frame_invalid", "head_pose_missing", "too_old",         "runs_full",   "blobs_full",
-      "search_full",   "not_prepared",      "out_of_range",    "no_reference"};
+      "none",          "no_frame_yet",      "too_few_markers", "no_labeling",  "taken_by_other",
+      "degenerate",    "collinear",         "bad_fit",         "frame_late",   "frame_doubled",
+      "frame_invalid", "head_pose_missing", "too_old",         "runs_full",    "blobs_full",
+      "search_full",   "not_prepared",      "out_of_range",    "no_reference", "overrun_skipped",
+      "overrun_held",  "overrun_predicted", "overrun_stopped"};
   const auto i = static_cast<std::size_t>(reason);
   return i < sizeof names / sizeof names[0] ? names[i] : "unknown";
 }

@@ -58,6 +58,20 @@ CanFrame emergency_frame(unsigned node, const PoseSample& sample) noexcept {
   return frame;
 }
 
+CanFrame overrun_frame(unsigned node, const OverrunEmergency& overrun) noexcept {
+  CanFrame frame;
+  frame.identifier = k_emergency + (node & k_node_mask);
+  frame.length = 8;
+  const auto reason = static_cast<std::uint8_t>(overrun.reason);
+  put_little_endian(std::span(frame.data).first(2), k_device_specific + reason);
+  frame.data[2] = k_generic_and_manufacturer;
+  frame.data[3] = overrun.group;
+  frame.data[4] = overrun.kind;
+  frame.data[5] = reason;
+  frame.data[7] = overrun.after_node;
+  return frame;
+}
+
 Result<CanFrame> time_sync_frame(const TimeSync& sync, std::uint8_t counter,
                                  std::int64_t unix_ns) noexcept {
   if (unix_ns < 0 || unix_ns / k_second_ns > k_seconds_max) return {{}, Reason::out_of_range};

@@ -32,6 +32,17 @@ enum class CanNodeState : std::uint8_t {
 // (generic, manufacturer's), then tool, track state, reason, registration state, 0.
 [[nodiscard]] CanFrame emergency_frame(unsigned node, const PoseSample& sample) noexcept;
 
+// An activation that was not in time. Identifier and error code as above; then in the place of the
+// tool the rate group (0 frame, 1 tick), of the state the kind (1 noticed ahead, 2 missed), the
+// reason, 0, and the last node that ran.
+struct OverrunEmergency {
+  std::uint8_t group = 0;
+  std::uint8_t kind = 0;
+  Reason reason = Reason::overrun_skipped;
+  std::uint8_t after_node = 0;
+};
+[[nodiscard]] CanFrame overrun_frame(unsigned node, const OverrunEmergency& overrun) noexcept;
+
 // Offsets from the base identifier of tool 0.
 inline constexpr std::uint32_t k_can_time_sync = 0xE;
 inline constexpr std::uint32_t k_can_time_follow_up = 0xF;

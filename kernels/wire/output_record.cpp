@@ -9,8 +9,6 @@
 namespace glint {
 namespace {
 
-constexpr auto k_last_reason = static_cast<std::uint8_t>(Reason::no_reference);
-
 // Walks the record in the order of its table: one order for both directions.
 class Writer {
  public:
@@ -95,7 +93,7 @@ Result<PoseSample> decode(std::span<const std::uint8_t, k_output_record_bytes> r
       in.choice(static_cast<std::uint8_t>(RegistrationState::refused)));
   s.frame =
       static_cast<ReferenceFrame>(in.choice(static_cast<std::uint8_t>(ReferenceFrame::robot)));
-  s.reason = static_cast<Reason>(in.choice(k_last_reason));
+  s.reason = static_cast<Reason>(in.choice(static_cast<std::uint8_t>(k_last_reason)));
   in.good = in.integer(1) == k_output_record_layout && in.good;
   for (int i = 0; i < 3; ++i) s.pose.translation[i] = in.real();
   for (int i = 0; i < 4; ++i) s.pose.rotation.coeffs()[i] = in.real();

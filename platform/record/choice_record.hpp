@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "graph/overrun.hpp"
 #include "kernels/units.hpp"
 
 namespace glint {
@@ -16,7 +17,7 @@ struct ChoiceRecord {
   Time nominal;                  // the release as planned, never as it came
   std::array<std::uint64_t, k_recorded_versions> versions{};  // read of each Latest<>, in order
   std::uint8_t version_count = 0;                             // how many of them mean something
-  std::uint8_t overrun = 0;         // what was decided about an overrun; 0: there was none
+  graph::OverrunDecision overrun;                             // {}: there was none
   std::int64_t unix_offset_ns = 0;  // clock model at this release: + Time = ns since 1970 (UTC)
 
   bool operator==(const ChoiceRecord&) const = default;

@@ -18,6 +18,10 @@ enum class PixelPlace : std::uint8_t {
   in_images,   // in the two sensor_msgs/Image before it: whole frames, for every viewer
 };
 
+// A choice's overrun in one byte: kind + k_overrun_kinds * policy. Version 1 wrote 0 there always,
+// and no node at the message's end.
+inline constexpr unsigned k_overrun_kinds = 4;
+
 void write_message(CdrWriter& to, const FramePatch& patch, PixelPlace place, Duration unix_offset);
 void write_message(CdrWriter& to, const HeadPose& pose, Duration unix_offset);
 void write_message(CdrWriter& to, const MarkerFrame& frame, Duration unix_offset);

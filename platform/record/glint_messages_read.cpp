@@ -157,13 +157,22 @@ std::optional<ChoiceRecord> read_choice(MessageBytes bytes) {
   choice.nominal.nanoseconds = from.get<std::int64_t>();
   choice.activation = from.get<std::uint64_t>();
   choice.group = from.get<std::uint8_t>();
-  choice.overrun = from.get<std::uint8_t>();
+  const auto overrun = from.get<std::uint8_t>();
   choice.unix_offset_ns = from.get<std::int64_t>();
   const auto count = from.get<std::uint32_t>();
   if (from.failed() || count > k_recorded_versions) return std::nullopt;
   choice.version_count = static_cast<std::uint8_t>(count);
   for (std::uint32_t i = 0; i < count; ++i) choice.versions[i] = from.get<std::uint64_t>();
   if (from.failed()) return std::nullopt;
+  if (overrun == 0) return choice;  // older recordings end here
+  const unsigned kind = overrun % k_overrun_kinds;
+  const unsigned policy = overrun / k_overrun_kinds;
+  choice.overrun = {static_cast<graph::OverrunKind>(kind),
+                    static_cast<graph::OverrunPolicy>(policy), from.get<std::uint8_t>()};
+  if (from.failed() || kind < 1 || kind > static_cast<unsigned>(graph::OverrunKind::missed) ||
+      policy > static_cast<unsigned>(graph::OverrunPolicy::stop_safe)) {
+    return std::nullopt;
+  }
   return choice;
 }
 

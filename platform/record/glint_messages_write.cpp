@@ -72,10 +72,13 @@ void write_message(CdrWriter& to, const ChoiceRecord& choice, Duration unix_offs
   to.put(choice.nominal.nanoseconds);
   to.put(choice.activation);
   to.put(choice.group);
-  to.put(choice.overrun);
+  const graph::OverrunDecision& overrun = choice.overrun;
+  to.put(static_cast<std::uint8_t>(static_cast<unsigned>(overrun.kind) +
+                                   k_overrun_kinds * static_cast<unsigned>(overrun.policy)));
   to.put(choice.unix_offset_ns);
   to.put_length(choice.version_count);
   for (std::size_t i = 0; i < choice.version_count; ++i) to.put(choice.versions[i]);
+  to.put(overrun.after_node);
 }
 
 void write_message(CdrWriter& to, const DroppedInput& input, Duration unix_offset) {

@@ -62,8 +62,10 @@ constexpr std::array k_definitions{
                "glint_msgs/Marker[] markers\n"},
     Definition{"glint_msgs/Choice",
                "std_msgs/Header header\nint64 nominal_ns\nuint64 activation\nuint8 group\n"
-               "uint8 overrun\nint64 unix_offset_ns\n"
-               "uint64[] versions  # read of each Latest<> at this release\n"},
+               "uint8 overrun  # 0: none; else 1 noticed ahead, 2 missed; plus 4 times the policy\n"
+               "int64 unix_offset_ns\n"
+               "uint64[] versions  # read of each Latest<> at this release\n"
+               "uint8 overrun_after_node  # the last node that ran\n"},
     Definition{"glint_msgs/Output",
                "uint8 STATE_NONE=0\nuint8 STATE_PREDICTED=1\nuint8 STATE_MEASURED=2\n"
                "uint8 STATE_LOST=3\n"

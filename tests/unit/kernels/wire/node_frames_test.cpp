@@ -36,6 +36,12 @@ bool check(const CanFrame& frame, const TimeSync& sync) {
   return frame.data[1] == crc8_h2f(covered);
 }
 
+TEST(Overrun, NamesItsReasonItsGroupAndTheLastNodeThatRan) {
+  const CanFrame frame = overrun_frame(32, {1, 2, Reason::overrun_predicted, 7});
+  EXPECT_EQ(frame.identifier, 0xA0u);
+  EXPECT_EQ(hex_of(frame.bytes()), "15FF810102150007");
+}
+
 TEST(NodeFrames, CarryTheTimeInTwoFrames) {
   TimeSync sync;
   sync.domain = 3;

@@ -122,7 +122,8 @@ void add_inputs(Sample& sample) {
                  {"nominal_ns", number(choice.nominal.nanoseconds)},
                  {"activation", std::to_string(choice.activation)},
                  {"group", choice.group},
-                 {"overrun", choice.overrun},
+                 {"overrun", 2 + 4 * 2},
+                 {"overrun_after_node", 5},
                  {"unix_offset_ns", number(choice.unix_offset_ns)},
                  {"versions", json::array({"3", "3"})}});
   const HeadPose head = sample_head_pose(4);

@@ -86,7 +86,7 @@ inline ChoiceRecord sample_choice(std::uint64_t activation) {
           {static_cast<std::int64_t>(activation) * 4'000'000},
           {activation / 2, 3, 0, 0},
           2,
-          0,
+          {graph::OverrunKind::missed, graph::OverrunPolicy::predict, 5},
           1'700'000'000'000'000'456};
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "platform/input_error.hpp"
+#include "platform/record/glint_messages.hpp"
 #include "platform/record/recording_writer.hpp"
 #include "platform/record/sha256.hpp"
 #include "tests/unit/platform/record/recording_samples.hpp"
@@ -68,6 +69,28 @@ TEST(Recording, GivesBackAllThatItsLevelKeepsInOrder) {
   EXPECT_EQ(output.tick, sample_output(5).tick);
   const auto record = record_of(sample_output(5));
   EXPECT_EQ(output.record, std::vector<std::uint8_t>(record.begin(), record.end()));
+}
+
+TEST(Recording, ReadsAChoiceOfARecordingMadeBeforeOverrunsWereWritten) {
+  ChoiceRecord old = sample_choice(3);
+  old.overrun = {};
+  CdrWriter writer;
+  write_message(writer, old, {});
+  const auto read = read_choice(writer.bytes().first(writer.bytes().size() - 1));
+  ASSERT_TRUE(read.has_value());
+  EXPECT_EQ(*read, old);
+}
+
+TEST(Recording, RefusesAnOverrunThatIsNoneOfItsKinds) {
+  CdrWriter writer;
+  write_message(writer, sample_choice(3), {});
+  EXPECT_TRUE(read_choice(writer.bytes()).has_value());
+  EXPECT_FALSE(read_choice(writer.bytes().first(writer.bytes().size() - 1)).has_value());
+  ChoiceRecord foreign = sample_choice(3);
+  foreign.overrun.kind = static_cast<graph::OverrunKind>(3);
+  CdrWriter other;
+  write_message(other, foreign, {});
+  EXPECT_FALSE(read_choice(other.bytes()).has_value());
 }
 
 TEST(Recording, GivesBackEveryPixelOfAWholeFrame) {

@@ -1,0 +1,97 @@
+#include "nodes/overrun_effects.hpp"
+
+#include "kernels/motion/interpolate.hpp"
+
+namespace glint {
+namespace {
+
+using graph::OverrunPolicy;
+
+// A sample without a pose: what is known of the tick and of the robot stays.
+PoseSample without_pose(const PoseSample& sample, TrackState state) {
+  PoseSample bare;
+  bare.tick = sample.tick;
+  bare.tick_number = sample.tick_number;
+  bare.tool = sample.tool;
+  bare.measurement = sample.measurement;
+  bare.frame_sequence = sample.frame_sequence;
+  bare.registration = sample.registration;
+  bare.registration_rms_m = sample.registration_rms_m;
+  bare.state = state;
+  bare.reason = sample.reason;
+  return bare;
+}
+
+void move_on(Duration lead, PoseSample& sample) {
+  const double seconds = lead.seconds();
+  sample.pose.translation += sample.velocity_m_s * seconds;
+  sample.pose.rotation =
+      (from_rotation_vector(sample.angular_velocity_rad_s * seconds) * sample.pose.rotation)
+          .normalized();
+}
+
+}  // namespace
+
+bool substitute(OverrunPolicy policy, const OverrunFrame& frame, const Estimates& in_time,
+                Estimates& out) noexcept {
+  if (policy == OverrunPolicy::skip_output) return false;
+  const Reason reason = reason_of(policy);
+  out = in_time;
+  out.verdict.stamp = frame.stamp;
+  out.verdict.reason = reason;
+  for (int t = 0; t < out.tool_count; ++t) {
+    Track& track = out.tracks[static_cast<std::size_t>(t)];
+    track.seen_now = false;
+    if (policy == OverrunPolicy::stop_safe) {
+      track = Track{};
+      track.reason = reason;
+      continue;
+    }
+    if (!track.alive) continue;
+    track.reason = reason;
+    if (policy == OverrunPolicy::hold_last) {
+      track.has_previous = false;  // without a velocity the tick group lets it stand still
+    } else if (track.has_previous) {
+      const Pose T_base_tool =
+          extrapolate(track.previous, track.newest, frame.stamp.mid_exposure, frame.lost_after);
+      if (track.base == ReferenceFrame::camera) {
+        track.T_camera_tool = T_base_tool;
+      } else if (frame.head.valid) {
+        track.T_camera_tool = frame.head.T_world_camera.inverse() * T_base_tool;
+      }
+    }
+  }
+  return true;
+}
+
+bool substitute(OverrunPolicy policy, const Now& now, Duration lost_after,
+                const PoseSamples& in_time, PoseSamples& out) noexcept {
+  if (policy == OverrunPolicy::skip_output) return false;
+  const Reason reason = reason_of(policy);
+  out.count = in_time.count;
+  for (int t = 0; t < in_time.count; ++t) {
+    const auto i = static_cast<std::size_t>(t);
+    PoseSample& sample = out.items[i];
+    sample = in_time.items[i];
+    const Duration lead = now.tick - sample.tick;
+    sample.tick = now.tick;
+    sample.tick_number = now.number;
+    if (policy == OverrunPolicy::stop_safe) {
+      sample.reason = reason;
+      sample = without_pose(sample, TrackState::lost);
+      continue;
+    }
+    if (!sample.has_pose()) continue;
+    if (sample.age() > lost_after) {
+      sample.reason = Reason::too_old;
+      sample = without_pose(sample, TrackState::lost);
+      continue;
+    }
+    sample.reason = reason;
+    sample.state = TrackState::predicted;
+    if (policy == OverrunPolicy::predict) move_on(lead, sample);
+  }
+  return true;
+}
+
+}  // namespace glint

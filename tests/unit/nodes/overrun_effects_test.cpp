@@ -1,0 +1,148 @@
+#include "nodes/overrun_effects.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "nodes/predict_tools.hpp"
+
+namespace glint {
+namespace {
+
+using graph::OverrunPolicy;
+
+constexpr Duration k_lost_after = milliseconds(250);
+
+// One tool that moves by 1 m/s along x, seen at 980 and 1000 ms, where x = 0.
+std::unique_ptr<Estimates> moving() {
+  auto estimates = std::make_unique<Estimates>();
+  estimates->tool_count = 2;
+  Track& track = estimates->tracks[0];
+  track.alive = true;
+  track.seen_now = true;
+  track.has_previous = true;
+  track.reason = Reason::none;
+  track.base = ReferenceFrame::world;
+  track.newest = {Time{} + milliseconds(1000), {}};
+  track.previous = {Time{} + milliseconds(980), {}};
+  track.previous.pose.translation.x() = -0.020;
+  return estimates;
+}
+
+OverrunFrame frame_at(std::int64_t ms) {
+  OverrunFrame frame;
+  frame.stamp.mid_exposure = Time{} + milliseconds(ms);
+  frame.stamp.sequence = 77;
+  frame.head.valid = true;
+  frame.lost_after = k_lost_after;
+  return frame;
+}
+
+PoseSample sample_of(const Estimates& estimates, std::int64_t tick_ms) {
+  graph::Latest<Estimates> latest;
+  latest.set(estimates, 1, 0);
+  graph::Latest<RobotFrame> robot;
+  robot.set({RegistrationState::given, {}, 0}, 1, 0);
+  auto samples = std::make_unique<PoseSamples>();
+  PredictTools{}(Now{Time{} + milliseconds(tick_ms), 5, 0}, latest, robot, *samples);
+  return samples->items[0];
+}
+
+TEST(FrameOverrun, PublishesNothingWhenItSkips) {
+  Estimates out;
+  EXPECT_FALSE(substitute(OverrunPolicy::skip_output, frame_at(1020), *moving(), out));
+}
+
+TEST(FrameOverrun, LetsAHeldToolStandStillAndNoLongerCallsItMeasured) {
+  auto out = std::make_unique<Estimates>();
+  ASSERT_TRUE(substitute(OverrunPolicy::hold_last, frame_at(1020), *moving(), *out));
+  EXPECT_EQ(out->verdict.reason, Reason::overrun_held);
+  EXPECT_EQ(out->verdict.stamp.sequence, 77u);
+  const PoseSample sample = sample_of(*out, 1024);
+  EXPECT_EQ(sample.state, TrackState::predicted);
+  EXPECT_EQ(sample.reason, Reason::overrun_held);
+  EXPECT_EQ(sample.pose.translation.x(), 0);
+  EXPECT_EQ(sample.measurement, Time{} + milliseconds(1000)) << "its age goes on growing";
+  EXPECT_EQ(sample_of(*moving(), 1024).state, TrackState::measured);
+}
+
+TEST(FrameOverrun, MovesAPredictedToolOnAtItsLastVelocity) {
+  auto out = std::make_unique<Estimates>();
+  ASSERT_TRUE(substitute(OverrunPolicy::predict, frame_at(1020), *moving(), *out));
+  EXPECT_NEAR(out->tracks[0].T_camera_tool.translation.x(), 0.020, 1e-12);
+  EXPECT_FALSE(out->tracks[0].seen_now);
+  const PoseSample sample = sample_of(*out, 1024);
+  EXPECT_EQ(sample.state, TrackState::predicted);
+  EXPECT_EQ(sample.reason, Reason::overrun_predicted);
+  EXPECT_NEAR(sample.pose.translation.x(), 0.024, 1e-12);
+  EXPECT_EQ(sample.measurement, Time{} + milliseconds(1000));
+}
+
+TEST(FrameOverrun, DeclaresEveryToolLostWhenItStops) {
+  auto out = std::make_unique<Estimates>();
+  ASSERT_TRUE(substitute(OverrunPolicy::stop_safe, frame_at(1020), *moving(), *out));
+  EXPECT_EQ(sample_of(*out, 1024).state, TrackState::lost);
+  EXPECT_EQ(sample_of(*out, 1024).reason, Reason::overrun_stopped);
+  EXPECT_EQ(out->tracks[1].reason, Reason::overrun_stopped);
+}
+
+// What left at tick 1000 ms, from a measurement 10 ms older, at 2 m/s along y.
+std::unique_ptr<PoseSamples> left() {
+  auto samples = std::make_unique<PoseSamples>();
+  samples->count = 1;
+  PoseSample& sample = samples->items[0];
+  sample.tick = Time{} + milliseconds(1000);
+  sample.tick_number = 250;
+  sample.measurement = Time{} + milliseconds(990);
+  sample.state = TrackState::measured;
+  sample.reason = Reason::none;
+  sample.velocity_m_s.y() = 2;
+  sample.angular_velocity_rad_s.z() = 1;
+  return samples;
+}
+
+PoseSample after(OverrunPolicy policy, std::int64_t tick_ms) {
+  auto out = std::make_unique<PoseSamples>();
+  const Now now{Time{} + milliseconds(tick_ms), static_cast<std::uint32_t>(tick_ms / 4), 0};
+  EXPECT_TRUE(substitute(policy, now, k_lost_after, *left(), *out));
+  EXPECT_EQ(out->count, 1);
+  return out->items[0];
+}
+
+TEST(TickOverrun, LetsNothingLeaveWhenItSkips) {
+  PoseSamples out;
+  EXPECT_FALSE(substitute(OverrunPolicy::skip_output, Now{}, k_lost_after, *left(), out));
+}
+
+TEST(TickOverrun, SendsTheLastSamplesAgainOlder) {
+  const PoseSample sample = after(OverrunPolicy::hold_last, 1008);
+  EXPECT_EQ(sample.state, TrackState::predicted);
+  EXPECT_EQ(sample.reason, Reason::overrun_held);
+  EXPECT_EQ(sample.tick_number, 252u);
+  EXPECT_EQ(sample.age(), milliseconds(18));
+  EXPECT_TRUE(sample.pose.translation.isZero());
+}
+
+TEST(TickOverrun, MovesTheLastSamplesOnByTheirVelocities) {
+  const PoseSample sample = after(OverrunPolicy::predict, 1008);
+  EXPECT_EQ(sample.reason, Reason::overrun_predicted);
+  EXPECT_NEAR(sample.pose.translation.y(), 0.016, 1e-12);
+  EXPECT_NEAR(rotation_vector(sample.pose.rotation).z(), 0.008, 1e-12);
+}
+
+TEST(TickOverrun, DeclaresTheToolLostWhenItStops) {
+  const PoseSample sample = after(OverrunPolicy::stop_safe, 1008);
+  EXPECT_EQ(sample.state, TrackState::lost);
+  EXPECT_EQ(sample.reason, Reason::overrun_stopped);
+  EXPECT_TRUE(sample.velocity_m_s.isZero());
+}
+
+TEST(TickOverrun, LosesAToolThatIsHeldForTooLong) {
+  EXPECT_EQ(after(OverrunPolicy::hold_last, 1240).state, TrackState::predicted);
+  const PoseSample sample = after(OverrunPolicy::hold_last, 1244);
+  EXPECT_EQ(sample.state, TrackState::lost);
+  EXPECT_EQ(sample.reason, Reason::too_old);
+}
+
+}  // namespace
+}  // namespace glint
