@@ -1,0 +1,71 @@
+// What each node of a graph may need at worst on a board, under given limits.
+//
+// What:     bound_ns of the node's declared loop maxima, for every copy of every node.
+// Cost:     k_loops_max products a node; constexpr, so that a build can be refused by it.
+// Accuracy: that of the table. A node that the table does not know has no bound: it is named by
+//           missing_cost, and asking for its bound all the same gives k_no_bound.
+// Source:   Li and Malik 1995, eq. (1), as in cost_table.hpp.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "schedules/cost_table.hpp"
+#include "schedules/kernel_list.hpp"
+
+namespace glint {
+
+inline constexpr std::int64_t k_no_bound = -1;
+
+// Whether the costs are of these loops, in this order: a table of an older kernel is not.
+[[nodiscard]] constexpr bool costs_of(const KernelCost& cost, const KernelLoops& kernel) {
+  for (std::size_t loop = 0; loop < graph::k_loops_max; ++loop) {
+    const std::string_view expected =
+        loop < kernel.loops.size() ? kernel.loops[loop] : std::string_view();
+    if (cost.loops[loop] != expected) return false;
+  }
+  return true;
+}
+
+// The first node whose loops the table does not price; empty: it prices all.
+template <class... G>
+[[nodiscard]] constexpr std::string_view missing_cost(const CostTable& table) {
+  for (const KernelLoops& kernel : kernels_of<G...>) {
+    const KernelCost* cost = table.find(kernel.kernel);
+    if (cost == nullptr || !costs_of(*cost, kernel)) return kernel.kernel;
+  }
+  return {};
+}
+
+// One node (of a split: each copy) in nanoseconds.
+template <class Node>
+[[nodiscard]] constexpr std::int64_t node_bound(const CostTable& table, const Limits& limits) {
+  if constexpr (graph::Budgeted<Node, Limits>) {
+    const KernelLoops kernel{graph::type_name<Node>(), Node::k_loops};
+    const KernelCost* cost = table.find(kernel.kernel);
+    if (cost == nullptr || !costs_of(*cost, kernel)) return k_no_bound;
+    return bound_ns(*cost, Node::worst(limits));
+  } else {
+    return k_no_bound;
+  }
+}
+
+// By node number: the order of execution, each copy of a split by itself, as in
+// graph::Description<G>::nodes.
+template <class G>
+[[nodiscard]] constexpr std::array<std::int64_t, static_cast<std::size_t>(G::node_count)>
+node_bounds(const CostTable& table, const Limits& limits) {
+  using Wires = typename G::Wires;
+  std::array<std::int64_t, static_cast<std::size_t>(G::node_count)> bounds{};
+  graph::for_each_index<G::unit_count>([&]<int unit>() {
+    using Node = typename graph::Unit<graph::At<unit, typename Wires::Listed>>::Node;
+    const std::int64_t bound = node_bound<Node>(table, limits);
+    for (int copy = 0; copy < Wires::copies[unit]; ++copy) {
+      bounds[static_cast<std::size_t>(Wires::first_node[unit] + copy)] = bound;
+    }
+  });
+  return bounds;
+}
+
+}  // namespace glint

@@ -1,0 +1,160 @@
+#include "platform/budget/board_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include "platform/budget/expected_board.hpp"
+#include "platform/input_error.hpp"
+#include "tests/unit/platform/budget/toy_graph.hpp"
+
+namespace glint {
+namespace {
+
+BoardExpectation toy_expectation() {
+  BoardExpectation expected;
+  expected.build = "x86_64 GNU 12.2.0 -O3";
+  expected.graphs = {{"Chain", "0x0000000000000001"}};
+  for (const KernelLoops& kernel : kernels_of<toy::Chain>) expected.kernels.push_back(kernel);
+  return expected;
+}
+
+const std::string k_toy = R"(name = "toy"
+build = "x86_64 GNU 12.2.0 -O3"
+counter = "instructions"
+ns_per_instruction = 2
+[graphs]
+Chain = "0x0000000000000001"
+[provenance]
+machine = "a bench"
+inputs = 10000
+margin_percent = 5
+[system]
+wake_up_ns = 40000
+[kernels.FindSpots]
+call = 10.5
+pixels = 0.25
+[kernels.FitSpots]
+call = 20
+tools = 1.1
+blobs = 3
+)";
+
+Board parsed(const std::string& text, BoardUse use = BoardUse::run_here) {
+  return parse_board(text, "toy.toml", toy_expectation(), use);
+}
+
+std::string with(std::string text, const std::string& old, const std::string& now) {
+  const std::size_t at = text.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  return text.replace(at, old.size(), now);
+}
+
+std::string complaint_of(const std::string& text, BoardUse use = BoardUse::run_here) {
+  try {
+    (void)parsed(text, use);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(BoardFile, PricesEachLoopInPicosecondsRoundedUp) {
+  const Board board = parsed(k_toy);
+  const CostTable table = board.table();
+  EXPECT_EQ(table.board, "toy");
+  ASSERT_NE(table.find("FitSpots"), nullptr);
+  EXPECT_EQ(table.find("FitSpots")->loops[1], "tools");
+  EXPECT_EQ(table.find("FindSpots")->cost_ps[0], 21'000);
+  EXPECT_EQ(table.find("FindSpots")->cost_ps[1], 500);
+  EXPECT_EQ(table.find("FitSpots")->cost_ps[1], 2'200);
+  EXPECT_EQ(board.system.wake_up_ns, 40'000);
+  EXPECT_EQ(board.sha256.size(), 64u);
+}
+
+TEST(BoardFile, IsNamedByEveryByteOfItsText) {
+  EXPECT_NE(parsed(k_toy).sha256, parsed(k_toy + "# a remark\n").sha256);
+}
+
+TEST(BoardFile, ReadsBackWhatItWrites) {
+  Board board = parsed(k_toy);
+  board.provenance.machine = "a \"bench\" \\ desk";
+  const Board again = parsed(board_text(board));
+  EXPECT_EQ(again.provenance.machine, board.provenance.machine);
+  EXPECT_EQ(again.provenance.inputs, 10000);
+  EXPECT_EQ(again.system.wake_up_ns, 40'000);
+  ASSERT_EQ(again.costs.size(), board.costs.size());
+  for (std::size_t i = 0; i < board.costs.size(); ++i) {
+    EXPECT_EQ(again.costs[i].cost_ps, board.costs[i].cost_ps);
+  }
+  EXPECT_EQ(board_text(again), board_text(board));
+}
+
+TEST(BoardFile, OfAnotherArchitectureServesForAnalysisOnly) {
+  const std::string arm = with(k_toy, "x86_64 GNU", "aarch64 GNU");
+  EXPECT_EQ(complaint_of(arm, BoardUse::analyse), "accepted");
+  EXPECT_NE(complaint_of(arm, BoardUse::run_here).find("toy.toml:2: build is \"aarch64"),
+            std::string::npos);
+}
+
+struct BadBoard {
+  const char* old;
+  const char* now;
+  const char* expected;
+};
+
+TEST(BoardFile, RefusesWhatItCannotVouchForByLineFindingAndExpectation) {
+  const BadBoard cases[] = {
+      {"name = \"toy\"", "", "toy.toml:1: name is missing; expected a text"},
+      {"GNU 12.2.0", "Clang 14.0.6", "toy.toml:2: build is \"x86_64 Clang 14.0.6 -O3\"; expected"},
+      {"12.2.0 -O3", "12.2.0 -O1", "toy.toml:2: build is \"x86_64 GNU 12.2.0 -O1\"; expected"},
+      {"\"instructions\"", "\"cycles\"", "toy.toml:3: counter is \"cycles\"; expected one of"},
+      {"ns_per_instruction = 2", "ns_per_instruction = -2", "toy.toml:4: ns_per_instruction is -2"},
+      {"0x0000000000000001", "0x0000000000000002",
+       "toy.toml:6: graphs.Chain is \"0x0000000000000002\"; expected \"0x0000000000000001\""},
+      {"Chain = \"0x0000000000000001\"", "", "graphs.Chain is missing"},
+      {"Chain =", "Other =", "graphs.Chain is missing"},
+      {"wake_up_ns = 40000", "wake_up_ns = -1", "toy.toml:12: system.wake_up_ns is -1; expected"},
+      {"wake_up_ns", "wakeup_ns", "toy.toml:12: unknown key system.wakeup_ns; expected one of"},
+      {"call = 10.5", "call = -10.5",
+       "toy.toml:14: kernels.FindSpots.call is -10.5; expected a number from 0"},
+      {"call = 10.5", "call = nan", "toy.toml:14: kernels.FindSpots.call is nan; expected"},
+      {"call = 10.5", "call = \"ten\"", "toy.toml:14: kernels.FindSpots.call is \"ten\""},
+      {"pixels = 0.25", "",
+       "toy.toml:13: kernels.FindSpots.pixels is missing; expected costs of "
+       "call, pixels"},
+      {"pixels = 0.25", "pixels = 0.25\nruns = 1",
+       "toy.toml:16: unknown key kernels.FindSpots.runs; expected one of call, pixels"},
+      {"[kernels.FitSpots]", "[kernels.FitSpot]",
+       "kernels.FitSpots is missing; expected its costs of call, tools, blobs"},
+      {"[system]", "[kernels.Gone]\ncall = 1\n[system]",
+       "toy.toml:11: unknown key kernels.Gone; expected one of FindSpots, FitSpots"},
+      {"machine = \"a bench\"", "", "provenance.machine is missing"},
+      {"[graphs]", "[graphs", "toy.toml:5: "},
+  };
+  for (const BadBoard& bad : cases) {
+    const std::string found = complaint_of(with(k_toy, bad.old, bad.now));
+    EXPECT_NE(found.find(bad.expected), std::string::npos) << found << "\n  for " << bad.now;
+    EXPECT_EQ(found.find('\n'), std::string::npos) << found;
+  }
+}
+
+TEST(BoardFile, AnUnknownNameIsAnsweredWithTheKnownOnes) {
+  try {
+    (void)load_board("no-such-board", toy_expectation(), BoardUse::analyse);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("\"no-such-board\" is not known; expected a file"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(BoardFile, ExpectsEveryNodeOfBothGroupsAndThisBuild) {
+  const BoardExpectation expected = expected_board();
+  EXPECT_EQ(expected.graphs.size(), 2u);
+  EXPECT_GE(expected.kernels.size(), 13u);
+  EXPECT_NE(expected.build.find("-ffp-contract=off"), std::string::npos) << expected.build;
+  EXPECT_NE(expected.build.find("-DEIGEN_DONT_VECTORIZE"), std::string::npos) << expected.build;
+}
+
+}  // namespace
+}  // namespace glint
