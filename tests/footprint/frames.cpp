@@ -1,0 +1,75 @@
+#include "tests/footprint/frames.hpp"
+
+#include <functional>
+
+#include "kernels/limits.hpp"
+#include "platform/sim/crowded.hpp"
+#include "platform/sim/simulator.hpp"
+
+namespace glint::footprint {
+namespace {
+
+constexpr int k_crowd_frames = 24;
+constexpr int k_strays = 40;
+constexpr std::uint32_t k_worst_every = 128;
+constexpr std::uint16_t k_bright = 4000;
+constexpr std::uint16_t k_half_a_metre = 500;  // depth in millimetres
+
+PlayedFrame painted(const std::function<bool(int x, int y)>& bright) {
+  PlayedFrame frame;
+  FrameBuffer& pixels = frame.pixels;
+  pixels.width = k_width_max;
+  pixels.height = k_height_max;
+  for (int y = 0; y < k_height_max; ++y) {
+    for (int x = 0; x < k_width_max; ++x) {
+      pixels.reflectivity_16.push_back(bright(x, y) ? k_bright : 0);
+      pixels.depth.push_back(k_half_a_metre);
+    }
+  }
+  frame.head.valid = true;
+  return frame;
+}
+
+Play make_play() {
+  Play play;
+  const ToolSet tools = sim::crowd_of_tools(k_tools_max, 1);
+  const sim::Scenario scenario = sim::crowded_run(tools, k_strays, 1);
+  const sim::Simulator simulator(scenario);
+  play.cell = default_cell();
+  play.cell.camera = scenario.camera;
+  play.cell.tools = tools;
+  sim::SimFrame rendered;
+  for (int i = 0; i < k_crowd_frames; ++i) {
+    simulator.render(i, rendered);
+    play.crowd.push_back({rendered.pixels, rendered.head});
+  }
+  // One run every second pixel; all of it bright; nothing; discs enough to fill every blob.
+  play.worst.push_back(painted([](int x, int y) { return (x + y) % 2 == 0; }));
+  play.worst.push_back(painted([](int, int) { return true; }));
+  play.worst.push_back(painted([](int, int) { return false; }));
+  play.worst.push_back(painted([](int x, int y) {
+    const int dx = x % 24 - 12, dy = y % 24 - 12;
+    return dx * dx + dy * dy <= 36;
+  }));
+  return play;
+}
+
+}  // namespace
+
+const Play& play() {
+  static const Play made = make_play();
+  return made;
+}
+
+const PlayedFrame& shown_in(std::uint32_t cycle) {
+  const Play& frames = play();
+  if (cycle % k_worst_every == k_worst_every - 1) {
+    return frames.worst[cycle / k_worst_every % frames.worst.size()];
+  }
+  // To and fro, so that no tool ever jumps.
+  const auto count = static_cast<std::uint32_t>(frames.crowd.size());
+  const std::uint32_t at = cycle % (2 * count);
+  return frames.crowd[at < count ? at : 2 * count - 1 - at];
+}
+
+}  // namespace glint::footprint
