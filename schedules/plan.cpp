@@ -4,6 +4,12 @@
 
 namespace glint {
 
+std::string node_name(const TaskNode& node) {
+  std::string name = node.name;
+  if (node.copies > 1) name.append(1, '#').append(std::to_string(node.copy));
+  return name;
+}
+
 std::vector<std::vector<int>> core_orders(const Plan& plan, int group) {
   std::vector<PlannedNode> nodes;
   for (const PlannedNode& node : plan.nodes) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "schedules/bus_load.hpp"
+#include "schedules/task_model.hpp"
 
 namespace glint {
 
@@ -36,6 +37,9 @@ struct Plan {
   std::vector<PlannedGroup> groups;
   std::vector<PlannedNode> nodes;
 };
+
+// "FindBlobs", or "RoiThreshold#1" for a copy of a split.
+[[nodiscard]] std::string node_name(const TaskNode& node);
 
 // The nodes of one group that each core runs, in its order: indices into the group's nodes, which
 // are the graph's numbers in its order of execution. As many lists as the plan has cores.

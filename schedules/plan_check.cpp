@@ -34,9 +34,7 @@ class Checker {
   void add(std::string fault) { faults_.push_back(std::move(fault)); }
 
   [[nodiscard]] std::string name(std::size_t g, std::size_t n) const {
-    const TaskNode& node = model_.groups[g].nodes[n];
-    return model_.groups[g].name + ": " + node.name +
-           (node.copies > 1 ? "#" + std::to_string(node.copy) : "");
+    return model_.groups[g].name + ": " + node_name(model_.groups[g].nodes[n]);
   }
 
   void check_priorities() {

@@ -19,6 +19,9 @@ inline constexpr int k_tick_group_index = 1;
 // Of the graphs in that model, "0x..+0x..": what plans and boards are made for.
 [[nodiscard]] std::string graphs_signature();
 
+// What one tick may write at most: poses, and all that comes beside them at once.
+[[nodiscard]] int can_frames_per_tick_max(const Cell& cell);
+
 [[nodiscard]] CanTraffic traffic_of(const Cell& cell);
 [[nodiscard]] CanBitRates bit_rates_of(const Cell& cell);
 

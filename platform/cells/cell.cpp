@@ -47,6 +47,8 @@ struct CellParser {
   void read_tools(TomlReader& root);
 };
 
+Duration from_ms(double ms) { return {static_cast<std::int64_t>(ms * 1e6 + 0.5)}; }
+
 Quaternion from_fixed_axes(const std::vector<double>& degrees) {
   const auto about = [&](int axis) {
     const SineCosine half =
@@ -68,6 +70,7 @@ void CellParser::read_camera(const toml::table* table) {
   const int top = cell.camera.reflectivity_bits == 8 ? 255 : 65535;
   cell.camera.threshold =
       static_cast<std::uint16_t>(reader.integer("threshold", cell.camera.threshold, 1, top - 1));
+  cell.arrival_jitter = from_ms(reader.real("arrival_jitter_ms", 0.4, 0, 10));
   reader.done();
   if (cell.ray_table.empty()) return;
   if (carried == nullptr) {
@@ -113,6 +116,21 @@ void read_rates(const toml::table* table, Cell& cell) {
   cell.lost_after = milliseconds(reader.integer("lost_after_ms", 250, 1, 400));
   cell.actuation_delay = {
       static_cast<std::int64_t>(reader.real("actuation_delay_ms", 0, 0, 100) * 1e6)};
+  reader.done();
+}
+
+// A deadline beyond the next release would need a second buffer of everything.
+void read_deadlines(const toml::table* table, Cell& cell) {
+  static const toml::table k_empty;
+  TomlReader reader(table != nullptr ? *table : k_empty, cell.file, "deadlines.");
+  const double frame_ms = cell.camera.period.seconds() * 1e3, tick_ms = 1e3 / cell.tick_hz;
+  const auto read = [&](const char* key, double otherwise, double high) {
+    return from_ms(reader.real(key, otherwise, 0.001, high));
+  };
+  cell.deadlines.frame = read("frame_ms", frame_ms, frame_ms);
+  cell.deadlines.tick = read("tick_ms", tick_ms, tick_ms);
+  cell.deadlines.frame_to_can = read(
+      "frame_to_can_ms", (cell.deadlines.frame + cell.deadlines.tick * 2).seconds() * 1e3, 10'000);
   reader.done();
 }
 
@@ -205,6 +223,7 @@ Cell cell_from_text(const std::string& text, const std::string& file, const Cell
   parser.read_tools(root);
   parser.read_simulator(root.table("simulator"));
   read_rates(root.table("rates"), cell);
+  read_deadlines(root.table("deadlines"), cell);
   read_sinks(root, cell);
   read_robot(root.table("robot"), cell);
   root.done();

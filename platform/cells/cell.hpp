@@ -56,6 +56,14 @@ struct SimulatorSettings {
   std::string background_layout = "adi";
 };
 
+// From a group's release until it has to be done, and of a whole chain. What the file leaves out
+// follows from the rates.
+struct DeadlineSettings {
+  Duration frame;         // at most the camera's shortest gap, which is the default
+  Duration tick;          // at most the tick's period, which is the default
+  Duration frame_to_can;  // last byte in memory -> first CAN frame written; frame + 2 tick
+};
+
 struct Cell {
   std::string file;  // where it was read, for messages
   std::string text;  // as read: goes into every recording
@@ -69,6 +77,8 @@ struct Cell {
   Duration lost_after = milliseconds(250);
   Duration actuation_delay;
   int workers = 2;
+  Duration arrival_jitter = microseconds(400);  // of a frame's transport beyond the camera's
+  DeadlineSettings deadlines;
   CanSettings can;
   DdsCellSettings dds;
   RecordSettings record;

@@ -159,6 +159,19 @@ const toml::table* TomlReader::table(const char* key) {
   return node->as_table();
 }
 
+std::vector<const toml::table*> TomlReader::tables(const char* key) {
+  std::vector<const toml::table*> values;
+  const toml::node* node = find(key);
+  if (node == nullptr) return values;
+  const toml::array* array = node->as_array();
+  if (array == nullptr) complain(*node, key, "a list of tables");
+  for (const toml::node& item : *array) {
+    if (!item.is_table()) complain(item, key, "a table in { }");
+    values.push_back(item.as_table());
+  }
+  return values;
+}
+
 void TomlReader::done() const {
   for (const auto& [key, node] : table_) {
     const std::string name(key.str());

@@ -37,6 +37,8 @@ class TomlReader {
   // Pairs of numbers: [[from, to], ..].
   [[nodiscard]] std::vector<std::pair<double, double>> intervals(const char* key);
   [[nodiscard]] const toml::table* table(const char* key);
+  // [[key]], or a list of { }; nothing where the key is absent.
+  [[nodiscard]] std::vector<const toml::table*> tables(const char* key);
 
   // Refuses any key that was not read above.
   void done() const;

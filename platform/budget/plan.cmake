@@ -1,0 +1,3 @@
+# Plans as files, and the task model of a cell.
+add_library(glint_plan STATIC plan_file.cpp plan_text.cpp task_model_of.cpp)
+target_link_libraries(glint_plan PUBLIC glint_schedules glint_cells glint_nodes glint_toml)
