@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <string_view>
 
 #include "graph/graph.hpp"
+#include "graph/loops.hpp"
 #include "kernels/image/blobs.hpp"
 #include "kernels/image/roi_threshold.hpp"
 #include "kernels/pose/back_project.hpp"
@@ -14,27 +16,54 @@ namespace glint {
 // One band of rows; the graph has k_row_bands of them.
 struct RoiThreshold {
   std::uint16_t threshold = 0;
-  void operator()(const Frame& frame, const Rois& rois, graph::Slice band,
-                  Runs& runs) const noexcept {
-    threshold_runs(frame, rois, threshold, RowBand{band.index, band.count}, runs);
+  Limits limits;
+  void operator()(const Frame& frame, const Rois& rois, graph::Slice band, Runs& runs) noexcept {
+    work_ = threshold_runs(frame, rois, threshold, {band.index, band.count}, runs, limits);
   }
+
+  static constexpr std::array<std::string_view, 5> k_loops = {"call", "stretches", "blocks",
+                                                              "masks", "runs"};
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
+    return counts_of(threshold_work_max(limits, k_row_bands));
+  }
+  [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_of(work_); }
+
+ private:
+  static constexpr graph::LoopCounts counts_of(const ThresholdWork& work) noexcept {
+    return {{1, work.stretches, work.blocks, work.masks, work.runs}};
+  }
+  ThresholdWork work_;
 };
+static_assert(graph::Budgeted<RoiThreshold, Limits>);
 
 // Joins the bands' runs in band order.
 struct FindBlobs {
   BlobSettings settings;
+  Limits limits;
   void operator()(const Frame& frame, const graph::Parts<Runs, k_row_bands>& bands,
                   const Predictions& predictions, Blobs& blobs) noexcept {
     std::array<const Runs*, k_row_bands> in_order;
     for (int i = 0; i < k_row_bands; ++i) in_order[static_cast<std::size_t>(i)] = &bands[i];
     const std::span predicted(predictions.markers_px.data(),
                               static_cast<std::size_t>(predictions.marker_count));
-    find_blobs(frame, in_order, settings, predicted, scratch_, blobs);
+    work_ = find_blobs(frame, in_order, settings, predicted, scratch_, blobs, limits);
   }
 
+  static constexpr std::array<std::string_view, 5> k_loops = {"call", "runs", "distances", "blobs",
+                                                              "pixels"};
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
+    return counts_of(blob_work_max(limits));
+  }
+  [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_of(work_); }
+
  private:
+  static constexpr graph::LoopCounts counts_of(const BlobWork& work) noexcept {
+    return {{1, work.runs, work.distances, work.blobs, work.pixels}};
+  }
   BlobScratch scratch_;
+  BlobWork work_;
 };
+static_assert(graph::Budgeted<FindBlobs, Limits>);
 
 // Each blob's ray and range. Blobs without depth are kept: they are reported, never labelled.
 struct BackProject {

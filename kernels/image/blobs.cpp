@@ -1,67 +1,69 @@
 #include "kernels/image/blobs.hpp"
 
-#include <algorithm>
+#include <array>
 
 #include "kernels/image/centroid.hpp"
 #include "kernels/image/components.hpp"
+#include "kernels/merge_sort.hpp"
 
 namespace glint {
 namespace {
 
 using Index = std::uint16_t;
 
-// The predictions in half pixels. As small whole numbers they stay exact in float, which every
-// vector unit multiplies; far outside the frame the order among them is of no interest.
-struct Predictions {
-  std::array<float, k_predictions_max> x{}, y{};
-  int count = 0;
+// The components inside the size gate; gives their number.
+int gather_candidates(const BlobSettings& settings, BlobScratch& scratch) {
+  int candidates = 0;
+  for (int i = 0; i < scratch.component_count; ++i) {
+    const std::uint32_t area = scratch.components[static_cast<std::size_t>(i)].area_px;
+    scratch.candidate[static_cast<std::size_t>(candidates)] = static_cast<Index>(i);
+    candidates += area >= settings.min_area_px && area <= settings.max_area_px ? 1 : 0;
+  }
+  return candidates;
+}
+
+// Sorts the candidates by rows: top first, then left first, then by their first run. A key has its
+// box's corner above its place in the list.
+void sort_by_rows(BlobScratch& scratch, int candidates) {
+  static_assert(k_width_max <= 1 << 9 && k_height_max <= 1 << 9 && k_blobs_max <= 1 << 14);
+  std::array<std::uint32_t, k_blobs_max> keys, spare;
+  std::array<Index, k_blobs_max> unsorted;
+  for (int i = 0; i < candidates; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const Component& component = scratch.components[scratch.candidate[at]];
+    keys[at] = static_cast<std::uint32_t>(component.y0) << 23 |
+               static_cast<std::uint32_t>(component.x0) << 14 | static_cast<std::uint32_t>(i);
+    unsorted[at] = scratch.candidate[at];
+  }
+  merge_sort(keys, spare, candidates);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(candidates); ++i) {
+    scratch.candidate[i] = unsorted[keys[i] & ((1u << 14) - 1)];
+  }
+}
+
+// The pixels that all blobs' boxes share. Each may have its share; more, if it is left over when
+// those that come after have theirs.
+class PixelBudget {
+ public:
+  PixelBudget(const Limits& limits, int blobs)
+      : left_(limits.centroid_pixels),
+        share_(limits.centroid_pixels / std::max(limits.blobs, 1)),
+        blobs_left_(blobs) {}
+
+  [[nodiscard]] bool take(int pixels) {
+    --blobs_left_;
+    if (pixels > left_ - share_ * blobs_left_) return false;
+    left_ -= pixels;
+    return true;
+  }
+  [[nodiscard]] int left() const { return left_; }
+
+ private:
+  int left_, share_, blobs_left_;
 };
 
-Predictions in_half_pixels(std::span<const Vector2> predicted_px) {
-  Predictions out;
-  for (const Vector2& pixel : predicted_px) {
-    if (out.count == k_predictions_max) break;
-    if (!(pixel.squaredNorm() < 1e12)) continue;
-    const auto at = static_cast<std::size_t>(out.count++);
-    out.x[at] = static_cast<float>(std::clamp(static_cast<int>(2 * pixel.x()), -512, 1536));
-    out.y[at] = static_cast<float>(std::clamp(static_cast<int>(2 * pixel.y()), -512, 1536));
-  }
-  return out;
-}
-
-// Squared, in half pixels, from the middle of the component's box; 0 where nothing is predicted.
-std::uint32_t nearest(const Component& component, const Predictions& predictions) {
-  if (predictions.count == 0) return 0;
-  const auto x = static_cast<float>(component.x0 + component.x1);
-  const auto y = static_cast<float>(component.y0 + component.y1);
-  float least = 1e9f;
-  for (int i = 0; i < predictions.count; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const float dx = x - predictions.x[at], dy = y - predictions.y[at];
-    least = std::min(least, dx * dx + dy * dy);
-  }
-  return static_cast<std::uint32_t>(least);
-}
-
-// Keeps the best k_blobs_max candidates, in the components' order.
-void keep_best(std::span<const Vector2> predicted_px, BlobScratch& scratch, int& candidates) {
-  const Predictions predictions = in_half_pixels(predicted_px);
-  for (int i = 0; i < candidates; ++i) {
-    const Index index = scratch.candidate[static_cast<std::size_t>(i)];
-    scratch.distance[index] = nearest(scratch.components[index], predictions);
-  }
-  const auto first = scratch.candidate.begin();
-  std::partial_sort(first, first + k_blobs_max, first + candidates, [&](Index a, Index b) {
-    const std::uint32_t da = scratch.distance[a], db = scratch.distance[b];
-    return da != db ? da < db : a < b;
-  });
-  candidates = k_blobs_max;
-  std::sort(first, first + candidates);
-}
-
-Blob blob_of(const Frame& frame, const BlobScratch& scratch, const Component& component,
-             const BlobSettings& settings) {
-  const Centroid centroid = grown_centroid(frame, scratch, component, settings.threshold);
+Blob blob_of(const Frame& frame, const Component& component, const Centroid& centroid,
+             std::uint16_t saturated_from) {
   Blob blob;
   blob.centroid_px = centroid.position_px;
   blob.area_px = component.area_px;
@@ -73,47 +75,50 @@ Blob blob_of(const Frame& frame, const BlobScratch& scratch, const Component& co
   const bool cut =
       blob.x0 == 0 || blob.y0 == 0 || blob.x1 >= frame.width() || blob.y1 >= frame.height();
   if (cut) blob.flags |= k_blob_touches_edge;
-  if (blob.peak >= settings.saturated_from) blob.flags |= k_blob_saturated;
+  if (blob.peak >= saturated_from) blob.flags |= k_blob_saturated;
   return blob;
-}
-
-bool before(const Blob& a, const Blob& b) {
-  if (a.y0 != b.y0) return a.y0 < b.y0;
-  if (a.x0 != b.x0) return a.x0 < b.x0;
-  if (a.centroid_px.x() != b.centroid_px.x()) return a.centroid_px.x() < b.centroid_px.x();
-  return a.centroid_px.y() < b.centroid_px.y();
 }
 
 }  // namespace
 
-void find_blobs(const Frame& frame, std::span<const Runs* const> bands,
-                const BlobSettings& settings, std::span<const Vector2> predicted_px,
-                BlobScratch& scratch, Blobs& out) noexcept {
+BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
+                    const BlobSettings& settings, std::span<const Vector2> predicted_px,
+                    BlobScratch& scratch, Blobs& out, const Limits& limits) noexcept {
   out.count = 0;
   out.dropped = 0;
   out.reason = Reason::none;
   for (const Runs* band : bands) {
     if (band->reason != Reason::none) out.reason = band->reason;
   }
-  find_components(bands, scratch);
-  int candidates = 0;
-  for (int i = 0; i < scratch.component_count; ++i) {
-    const std::uint32_t area = scratch.components[static_cast<std::size_t>(i)].area_px;
-    if (area < settings.min_area_px || area > settings.max_area_px) continue;
-    scratch.candidate[static_cast<std::size_t>(candidates++)] = static_cast<Index>(i);
+  BlobWork work;
+  find_components(bands, scratch, limits.runs_per_band);
+  work.runs = scratch.run_count;
+  int candidates = gather_candidates(settings, scratch);
+  const int most = std::clamp(limits.blobs, 0, k_blobs_max);
+  if (candidates > most) {
+    out.reason = Reason::blobs_full;
+    const auto markers = static_cast<std::size_t>(limits.tools * limits.markers_per_tool);
+    work.distances = keep_nearest(predicted_px.first(std::min(predicted_px.size(), markers)),
+                                  scratch, candidates, most);
+    candidates = most;
   }
   out.dropped = static_cast<std::uint32_t>(scratch.component_count - candidates);
-  if (candidates > k_blobs_max) {
-    out.dropped += static_cast<std::uint32_t>(candidates - k_blobs_max);
-    out.reason = Reason::blobs_full;
-    keep_best(predicted_px, scratch, candidates);
-  }
+  sort_by_rows(scratch, candidates);
+  PixelBudget budget(limits, candidates);
   for (int i = 0; i < candidates; ++i) {
-    const Index index = scratch.candidate[static_cast<std::size_t>(i)];
+    const Component& component = scratch.components[scratch.candidate[static_cast<std::size_t>(i)]];
+    const bool small = fits_grown_box(component);
+    const bool paid = budget.take(small ? 4 * grown_box(frame, component).fours() : 0);
+    if (!paid) out.reason = Reason::blobs_full;
+    const Centroid centroid = small && paid
+                                  ? grown_centroid(frame, scratch, component, settings.threshold)
+                                  : binary_centroid(frame, scratch, component);
     out.items[static_cast<std::size_t>(out.count++)] =
-        blob_of(frame, scratch, scratch.components[index], settings);
+        blob_of(frame, component, centroid, settings.saturated_from);
   }
-  std::sort(out.items.begin(), out.items.begin() + out.count, before);
+  work.blobs = out.count;
+  work.pixels = limits.centroid_pixels - budget.left();
+  return work;
 }
 
 }  // namespace glint

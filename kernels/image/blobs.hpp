@@ -1,32 +1,52 @@
 // Runs to blobs: what may be a marker, where its middle is, and what else it was.
 //
 // What:     connected components inside the size gate, each with a sub-pixel centroid. More than
-//           k_blobs_max: those nearest a predicted marker stay, then the topmost, then the
-//           leftmost.
-// Cost:     linear in runs; distances only when full (components x predictions); centroids of the
-//           blobs kept.
-// Worst:    16,384 single runs inside the gate and 128 predictions.
+//           limits.blobs: those nearest a predicted marker stay, then the topmost, then the
+//           leftmost. A blob whose grown box holds no more than its share of
+//           limits.centroid_pixels has the centroid of that box, a larger one if the others leave
+//           enough, by rows from the top; else the plain mean.
+// Cost:     linear in runs; distances only when full (components x predictions); linear in the
+//           grown boxes' pixels.
+// Worst:    as many single runs inside the gate as fit, as many predictions as tools have markers,
+//           and wide boxes among those that stay.
 // Accuracy: see centroid.hpp. Integers up to one division a coordinate.
 // Source:   the seed, section III, finds blobs in the binary picture; here from its runs.
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "kernels/image/blob.hpp"
 #include "kernels/image/blob_scratch.hpp"
 #include "kernels/image/blob_settings.hpp"
 #include "kernels/image/frame.hpp"
+#include "kernels/image/nearest_kept.hpp"
 
 namespace glint {
 
-inline constexpr int k_predictions_max = k_tools_max * k_markers_per_tool_max;
+// How often its loops ran.
+struct BlobWork {
+  std::int32_t runs = 0;
+  std::int32_t distances = 0;  // of a component to four predictions
+  std::int32_t blobs = 0;
+  std::int32_t pixels = 0;  // of grown boxes, columns rounded up to four
+};
 
 // bands: the runs of this frame from top to bottom, at most k_row_bands. predicted_px: where
-// markers are expected, pixels; beyond k_predictions_max they are ignored. out.dropped counts what
-// lies outside the gate or beyond the buffer; out.reason is blobs_full, else runs_full if a band's
-// was.
-void find_blobs(const Frame& frame, std::span<const Runs* const> bands,
-                const BlobSettings& settings, std::span<const Vector2> predicted_px,
-                BlobScratch& scratch, Blobs& out) noexcept;
+// markers are expected, pixels; more than tools have markers are ignored. out.dropped counts what
+// lies outside the gate or beyond the budget; out.reason is blobs_full where blobs or their pixels
+// are beyond it, else runs_full if a band's was.
+BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
+                    const BlobSettings& settings, std::span<const Vector2> predicted_px,
+                    BlobScratch& scratch, Blobs& out, const Limits& limits = {}) noexcept;
+
+// What find_blobs may do at most.
+[[nodiscard]] constexpr BlobWork blob_work_max(const Limits& limits) {
+  const int band_rows = (limits.height + k_row_bands - 1) / k_row_bands;
+  const int runs =
+      k_row_bands * std::min(limits.runs_per_band, band_rows * ((limits.width + 1) / 2));
+  const int fours = (limits.tools * limits.markers_per_tool + 3) / 4;
+  return {runs, runs * fours, std::min(limits.blobs, runs), limits.centroid_pixels / 4 * 4};
+}
 
 }  // namespace glint

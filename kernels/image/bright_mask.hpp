@@ -1,12 +1,15 @@
-// Which pixels of a stretch are brighter than a threshold, 16 bytes at a time.
+// Which pixels of a row are brighter than a threshold, 64 bytes at a time.
 //
-// What:     any_above: is there one at all; bright_mask: bit i tells of pixel i; for_each_bit_run:
-//           the runs of set bits.
-// Cost:     any_above one pass; bright_mask 64 bytes of pixels.
+// What:     any_above: is there one in these blocks at all; bright_mask: bit i tells of pixel i.
+// Cost:     the same for every block, wherever in the row it lies. Both may look at pixels beyond
+//           the stretch that is asked for, never beyond the row.
+// Worst:    none is worse than another.
 // Accuracy: exact. g++'s and clang's vector types compare lanes on any machine that has lanes, and
 //           by words on one that has none.
+// Source:   gathering bits by a product: Warren, "Hacker's Delight", 2nd ed., section 7-6.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -57,60 +60,57 @@ std::uint64_t gathered(std::uint64_t lanes) {
   }
 }
 
+// A block's pixels: those at x, or further left where the row ends sooner. A row narrower than a
+// block is copied and padded with zeros, which are above no threshold.
+template <class Pixel>
+struct Block {
+  Pixel padded[k_mask_pixels<Pixel>];
+  const Pixel* pixels;
+  int known = 0;  // pixels of the block that lie before x
+
+  Block(const Pixel* row, int width, int x) : pixels(row) {
+    const int last = width - k_mask_pixels<Pixel>;
+    if (last >= 0) {
+      const int from = std::min(x, last);
+      pixels += from;
+      known = x - from;
+    } else {
+      std::memset(padded, 0, sizeof padded);
+      std::memcpy(padded, row + x, static_cast<std::size_t>(width - x) * sizeof(Pixel));
+      pixels = padded;
+    }
+  }
+};
+
 }  // namespace detail
 
-// count >= 0.
+// Whether the blocks of the stretch x0 <= x < x1 hold a bright pixel.
 template <class Pixel>
-bool any_above(const Pixel* pixels, int count, Pixel threshold) {
+bool any_above(const Pixel* row, int width, int x0, int x1, Pixel threshold) {
   constexpr int block = k_mask_pixels<Pixel>;
   constexpr int lanes = block / 4;
   typename detail::LanesOf<Pixel>::Type found[4] = {};  // four, so that none waits for the other
-  const auto look = [&](int x) {
-    for (int i = 0; i < 4; ++i) found[i] |= detail::above(pixels + x + i * lanes, threshold);
-  };
-  int x = 0;
-  for (; x + block <= count; x += block) look(x);
-  bool any = false;
-  if (x < count && count >= block) {
-    look(count - block);  // the last block overlaps the one before
-  } else {
-    for (; x < count; ++x) any |= pixels[x] > threshold;
+  for (int x = x0; x < x1; x += block) {
+    const detail::Block<Pixel> at(row, width, x);
+    for (int i = 0; i < 4; ++i) found[i] |= detail::above(at.pixels + i * lanes, threshold);
   }
-  return any || detail::any_set(found[0] | found[1] | found[2] | found[3]);
+  return detail::any_set(found[0] | found[1] | found[2] | found[3]);
 }
 
-// count <= k_mask_pixels; the bits from count on are zero.
+// Bit i is pixel x + i, of the stretch up to x1.
 template <class Pixel>
-std::uint64_t bright_mask(const Pixel* pixels, int count, Pixel threshold) {
-  Pixel padded[k_mask_pixels<Pixel>];
-  if (count < k_mask_pixels<Pixel>) {  // zeros are above no threshold
-    std::memset(padded, 0, sizeof padded);
-    std::memcpy(padded, pixels, static_cast<std::size_t>(count) * sizeof(Pixel));
-    pixels = padded;
-  }
+std::uint64_t bright_mask(const Pixel* row, int width, int x, int x1, Pixel threshold) {
   constexpr int lanes = 16 / static_cast<int>(sizeof(Pixel));
+  const detail::Block<Pixel> at(row, width, x);
   typename detail::LanesOf<Pixel>::Type found[4];
-  for (int i = 0; i < 4; ++i) found[i] = detail::above(pixels + i * lanes, threshold);
+  for (int i = 0; i < 4; ++i) found[i] = detail::above(at.pixels + i * lanes, threshold);
   if (!detail::any_set(found[0] | found[1] | found[2] | found[3])) return 0;
   std::uint64_t words[8];
   std::memcpy(words, found, sizeof words);
   std::uint64_t mask = 0;
   for (int i = 0; i < 8; ++i) mask |= detail::gathered<Pixel>(words[i]) << (i * lanes / 2);
-  return mask;
-}
-
-// Calls run(from, to) for each stretch of set bits, lowest first.
-template <class Call>
-void for_each_bit_run(std::uint64_t mask, Call run) {
-  int base = 0;
-  while (mask != 0) {
-    const int zeros = std::countr_zero(mask);
-    mask >>= zeros;
-    const int ones = std::countr_one(mask);
-    run(base + zeros, base + zeros + ones);
-    base += zeros + ones;
-    mask = ones == 64 ? 0 : mask >> ones;
-  }
+  mask >>= at.known;
+  return x1 - x < 64 ? mask & ((std::uint64_t{1} << (x1 - x)) - 1) : mask;
 }
 
 }  // namespace glint

@@ -3,15 +3,10 @@
 #include <algorithm>
 #include <array>
 
-#include "kernels/image/bright_mask.hpp"
+#include "kernels/image/column_sums.hpp"
 
 namespace glint {
 namespace {
-
-struct Sums {
-  std::int64_t weight = 0, x = 0, y = 0;  // in half pixels: a centre is at 2 x + 1
-  std::int64_t pixels = 0, pixels_x = 0, pixels_y = 0;
-};
 
 Vector2 from_half_pixels(std::int64_t x, std::int64_t y, std::int64_t weight) {
   const auto w = static_cast<double>(weight);
@@ -30,133 +25,112 @@ void for_each_run(const BlobScratch& scratch, const Component& component, Visit 
 }
 
 template <class Pixel>
-Centroid above_threshold(const ImageView<Pixel>& image, const BlobScratch& scratch,
-                         const Component& component, std::int64_t threshold, bool weighted) {
-  Sums sums;
+Centroid weighted(const ImageView<Pixel>& image, const BlobScratch& scratch,
+                  const Component& component, std::int64_t threshold) {
+  std::int64_t weights = 0, x_sum = 0, y_sum = 0;  // in half pixels: a centre is at 2 x + 1
   Pixel peak = 0;
   for_each_run(scratch, component, [&](const Run& run) {
     const Pixel* row = image.row(run.y);
     for (int x = run.x0; x < run.x1; ++x) {
       peak = std::max(peak, row[x]);
-      const std::int64_t weight = weighted ? row[x] - threshold : 1;
-      sums.weight += weight;
-      sums.x += weight * (2 * x + 1);
-      sums.y += weight * (2 * run.y + 1);
+      const std::int64_t weight = row[x] - threshold;
+      weights += weight;
+      x_sum += weight * (2 * x + 1);
+      y_sum += weight * (2 * run.y + 1);
     }
   });
-  if (sums.weight <= 0) return {};
-  return {from_half_pixels(sums.x, sums.y, sums.weight), peak};
+  if (weights <= 0) return {};
+  return {from_half_pixels(x_sum, y_sum, weights), peak};
 }
 
-// Row masks of the component with a margin of two all round; bit 0 is column x0 - 2.
+template <class Pixel>
+Centroid binary(const ImageView<Pixel>& image, const BlobScratch& scratch,
+                const Component& component) {
+  std::int64_t pixels = 0, x_sum = 0, y_sum = 0;
+  Pixel peak = 0;
+  for_each_run(scratch, component, [&](const Run& run) {
+    const std::int64_t length = run.x1 - run.x0;
+    const Pixel* row = image.row(run.y);
+    peak = std::max({peak, row[run.x0], row[(run.x0 + run.x1) / 2], row[run.x1 - 1]});
+    pixels += length;
+    x_sum += length * (run.x0 + run.x1);  // the sum of 2 x + 1
+    y_sum += length * (2 * run.y + 1);
+  });
+  return {from_half_pixels(x_sum, y_sum, pixels), peak};
+}
+
+// Row masks, the first two rows above the component.
 using Mask = std::array<std::uint64_t, k_grown_box_max + 4>;
 
 constexpr std::uint64_t widened(std::uint64_t row) { return row | row << 1 | row >> 1; }
 
 void grow(const Mask& mask, int rows, Mask& out) {
+  std::uint64_t before = 0, row = mask[0];
   for (int y = 0; y < rows; ++y) {
-    const auto at = static_cast<std::size_t>(y);
-    std::uint64_t row = mask[at];
-    if (y > 0) row |= mask[at - 1];
-    if (y + 1 < rows) row |= mask[at + 1];
-    out[at] = widened(row);
+    const std::uint64_t after = y + 1 < rows ? mask[static_cast<std::size_t>(y + 1)] : 0;
+    out[static_cast<std::size_t>(y)] = widened(before | row | after);
+    before = row;
+    row = after;
   }
 }
 
-// Adds the pixels of one row where bits are set.
 template <class Pixel>
-void add_row(const Pixel* row, int left, int y, std::uint64_t bits, Sums& sums) {
-  for_each_bit_run(bits, [&](int from, int to) {
-    std::int64_t weight = 0, x_sum = 0;
-    for (int bit = from; bit < to; ++bit) {
-      weight += row[left + bit];
-      x_sum += static_cast<std::int64_t>(row[left + bit]) * (2 * (left + bit) + 1);
-    }
-    const std::int64_t n = to - from;
-    sums.weight += weight;
-    sums.x += x_sum;
-    sums.y += weight * (2 * y + 1);
-    sums.pixels += n;
-    sums.pixels_x += n * (2 * left + from + to);  // sum of 2 (left + bit) + 1
-    sums.pixels_y += n * (2 * y + 1);
-  });
-}
-
-template <class Pixel>
-Centroid grown(const ImageView<Pixel>& image, const BlobScratch& scratch,
+Centroid grown(const ImageView<Pixel>& image, const Frame& frame, const BlobScratch& scratch,
                const Component& component, std::uint16_t threshold) {
-  const int left = component.x0 - 2, top = component.y0 - 2;
-  const int rows = component.y1 - component.y0 + 4;
+  const GrownBox box = grown_box(frame, component);
+  const int top = component.y0 - 2, rows = component.y1 - component.y0 + 4;
   Mask own, one, two;
   std::fill_n(own.begin(), rows, 0);
-  Pixel peak = 0;
   for_each_run(scratch, component, [&](const Run& run) {
     const std::uint64_t ones = (std::uint64_t{1} << (run.x1 - run.x0)) - 1;
-    own[static_cast<std::size_t>(run.y - top)] |= ones << (run.x0 - left);
-    const Pixel* row = image.row(run.y);
-    for (int x = run.x0; x < run.x1; ++x) peak = std::max(peak, row[x]);
+    own[static_cast<std::size_t>(run.y - top)] |= ones << (run.x0 - box.left);
   });
   grow(own, rows, one);
   grow(one, rows, two);
-  // Columns outside the frame.
-  const int columns = component.x1 - component.x0 + 4;
-  std::uint64_t in_frame = columns == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << columns) - 1;
-  if (left < 0) in_frame &= ~std::uint64_t{0} << -left;
-  if (left + columns > image.width) in_frame &= ~std::uint64_t{0} >> (64 - (image.width - left));
+  const std::uint64_t in_frame =
+      image.width < 64 ? (std::uint64_t{1} << image.width) - 1 : ~std::uint64_t{0};
 
-  Sums sums;
-  std::int64_t dark = 0, dark_pixels = 0;
-  for (int i = 0; i < rows; ++i) {
-    const int y = top + i;
-    if (y < 0 || y >= image.height) continue;
-    const auto at = static_cast<std::size_t>(i);
-    const Pixel* row = image.row(y);
-    add_row(row, left, y, one[at] & in_frame, sums);
-    for_each_bit_run(two[at] & ~one[at] & in_frame, [&](int from, int to) {
-      for (int bit = from; bit < to; ++bit) {
-        const Pixel value = row[left + bit];
-        if (value > threshold) continue;  // belongs to a neighbour
-        dark += value;
-        ++dark_pixels;
-      }
-    });
+  ColumnSums sums(box, threshold);
+  for (int y = box.top; y < box.bottom; ++y) {
+    const auto at = static_cast<std::size_t>(y - top);
+    const std::uint64_t near = one[at] & in_frame;
+    sums.add_row(image.row(y) + box.left, image.width - box.left, y,
+                 {own[at], near, two[at] & in_frame & ~near});
   }
+  const GrownSums total = sums.total();
   // (I - dark / dark_pixels), times dark_pixels: at most 65535 * 64^2 * 64^2 * 1024 < 2^51.
-  const std::int64_t n = std::max<std::int64_t>(dark_pixels, 1);
-  const std::int64_t weight = sums.weight * n - dark * sums.pixels;
-  const Vector2 position =
-      from_half_pixels(sums.x * n - dark * sums.pixels_x, sums.y * n - dark * sums.pixels_y,
-                       std::max<std::int64_t>(weight, 1));
+  const std::int64_t n = std::max<std::int64_t>(total.dark_pixels, 1);
+  const std::int64_t weight = total.weight * n - total.dark * total.pixels;
+  const Vector2 position = from_half_pixels(total.x * n - total.dark * total.pixels_x,
+                                            total.y * n - total.dark * total.pixels_y,
+                                            std::max<std::int64_t>(weight, 1));
   const bool inside = position.x() >= component.x0 && position.x() <= component.x1 &&
                       position.y() >= component.y0 && position.y() <= component.y1;
-  if (weight <= 0 || !inside) return above_threshold(image, scratch, component, 0, false);
-  return {position, peak};
+  if (weight > 0 && inside) return {position, total.peak};
+  return {binary(image, scratch, component).position_px, total.peak};
 }
 
 }  // namespace
 
 Centroid grown_centroid(const Frame& frame, const BlobScratch& scratch, const Component& component,
                         std::uint16_t threshold) noexcept {
-  if (component.x1 - component.x0 > k_grown_box_max ||
-      component.y1 - component.y0 > k_grown_box_max) {
-    return binary_centroid(frame, scratch, component);
-  }
-  return frame.reflectivity_8.empty() ? grown(frame.reflectivity_16, scratch, component, threshold)
-                                      : grown(frame.reflectivity_8, scratch, component, threshold);
+  if (!fits_grown_box(component)) return binary_centroid(frame, scratch, component);
+  return frame.reflectivity_8.empty()
+             ? grown(frame.reflectivity_16, frame, scratch, component, threshold)
+             : grown(frame.reflectivity_8, frame, scratch, component, threshold);
 }
 
 Centroid weighted_centroid(const Frame& frame, const BlobScratch& scratch,
                            const Component& component, std::uint16_t threshold) noexcept {
   return frame.reflectivity_8.empty()
-             ? above_threshold(frame.reflectivity_16, scratch, component, threshold, true)
-             : above_threshold(frame.reflectivity_8, scratch, component, threshold, true);
+             ? weighted(frame.reflectivity_16, scratch, component, threshold)
+             : weighted(frame.reflectivity_8, scratch, component, threshold);
 }
 
 Centroid binary_centroid(const Frame& frame, const BlobScratch& scratch,
                          const Component& component) noexcept {
-  return frame.reflectivity_8.empty()
-             ? above_threshold(frame.reflectivity_16, scratch, component, 0, false)
-             : above_threshold(frame.reflectivity_8, scratch, component, 0, false);
+  return frame.reflectivity_8.empty() ? binary(frame.reflectivity_16, scratch, component)
+                                      : binary(frame.reflectivity_8, scratch, component);
 }
 
 }  // namespace glint

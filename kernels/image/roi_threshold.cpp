@@ -10,9 +10,15 @@ namespace glint {
 namespace {
 
 // The ROIs clipped to the frame's rows of this band, from left to right: a total order.
-Rois clipped(const Rois& rois, int width, int top, int bottom) {
+Rois clipped(const Rois& rois, const Limits& limits, int width, int top, int bottom) {
   Rois out;
-  const int count = std::clamp(rois.count, 0, static_cast<int>(rois.items.size()));
+  const int most = std::clamp(limits.tools, 1, static_cast<int>(rois.items.size()));
+  if (rois.count > most) {
+    out.items[0] = {0, top, width, bottom};
+    out.count = 1;
+    return out;
+  }
+  const int count = std::max(rois.count, 0);
   for (int i = 0; i < count; ++i) {
     const Roi& roi = rois.items[static_cast<std::size_t>(i)];
     const Roi cut{std::max(roi.x0, 0), std::max(roi.y0, top), std::min(roi.x1, width),
@@ -29,12 +35,14 @@ Rois clipped(const Rois& rois, int width, int top, int bottom) {
   return out;
 }
 
-// Calls scan(pixels of the row, y, x0, x1) for each stretch of a row that lies in an ROI.
+// Calls scan(pixels of the row, y, x0, x1) for each stretch of a row that lies in an ROI; gives the
+// number of ROIs times rows.
 template <class Pixel, class Scan>
-void for_each_stretch(const ImageView<Pixel>& image, const Rois& rois, RowBand band, Scan scan) {
+int for_each_stretch(const ImageView<Pixel>& image, const Rois& rois, const Limits& limits,
+                     RowBand band, Scan scan) {
   const int top = image.height * band.index / band.count;
   const int bottom = image.height * (band.index + 1) / band.count;
-  const Rois cut = clipped(rois, image.width, top, bottom);
+  const Rois cut = clipped(rois, limits, image.width, top, bottom);
   for (int y = top; y < bottom; ++y) {
     int end = 0;
     for (int i = 0; i < cut.count; ++i) {
@@ -45,11 +53,15 @@ void for_each_stretch(const ImageView<Pixel>& image, const Rois& rois, RowBand b
       end = std::max(end, roi.x1);
     }
   }
+  return (bottom - top) * cut.count;
 }
 
-bool usable(const Frame& frame, RowBand band) {
+bool usable(const Frame& frame, RowBand band, const Limits& limits) {
+  const int bytes = frame.reflectivity_16.empty() ? 1 : 2;
   return band.count > 0 && band.index >= 0 && band.index < band.count &&
-         frame.width() <= k_width_max && frame.height() <= k_height_max;
+         frame.width() <= std::min(limits.width, k_width_max) &&
+         frame.height() <= std::min(limits.height, k_height_max) &&
+         bytes <= limits.reflectivity_bytes;
 }
 
 // A narrow ROI jumps from row to row too fast for the processor to foresee: its rows are asked for
@@ -66,54 +78,57 @@ void ask_for(const ImageView<Pixel>& image, int x0, int x1, int y) {
 }
 
 template <class Pixel>
-void scan_fast(const ImageView<Pixel>& image, const Rois& rois, Pixel threshold, RowBand band,
-               RunWriter& writer) {
+ThresholdWork scan_fast(const ImageView<Pixel>& image, const Rois& rois, const Limits& limits,
+                        Pixel threshold, RowBand band, RunWriter& writer) {
   constexpr int block = k_mask_pixels<Pixel>;
-  for_each_stretch(image, rois, band, [&](const Pixel* row, int y, int x0, int x1) {
+  ThresholdWork work;
+  const auto scan = [&](const Pixel* row, int y, int x0, int x1) {
+    const int blocks = (x1 - x0 + block - 1) / block;
+    work.blocks += blocks;
     if (x1 - x0 < image.width) ask_for(image, x0, x1, y + k_rows_ahead);
-    if (!any_above(row + x0, x1 - x0, threshold)) return;
+    if (!any_above(row, image.width, x0, x1, threshold)) return;
+    work.masks += blocks;
     for (int x = x0; x < x1; x += block) {
-      // The last block reaches back over pixels already seen, where the row has that many.
-      const int from = x + block > x1 ? std::max(x1 - block, 0) : x;
-      const int known = x - from;
-      const std::uint64_t mask =
-          bright_mask(row + from, std::min(block, x1 - from), threshold) >> known;
-      for_each_bit_run(mask, [&](int a, int b) { writer.add(y, x + a, x + b); });
+      writer.add(y, x, bright_mask(row, image.width, x, x1, threshold));
     }
-  });
+  };
+  work.stretches = for_each_stretch(image, rois, limits, band, scan);
+  return work;
 }
 
 template <class Pixel>
-void scan_reference(const ImageView<Pixel>& image, const Rois& rois, std::uint16_t threshold,
-                    RowBand band, RunWriter& writer) {
-  for_each_stretch(image, rois, band, [&](const Pixel* row, int y, int x0, int x1) {
-    for (int x = x0; x < x1; ++x) {
-      if (row[x] > threshold) writer.add(y, x, x + 1);
-    }
+void scan_reference(const ImageView<Pixel>& image, const Rois& rois, const Limits& limits,
+                    std::uint16_t threshold, RowBand band, RunWriter& writer) {
+  for_each_stretch(image, rois, limits, band, [&](const Pixel* row, int y, int x0, int x1) {
+    for (int x = x0; x < x1; ++x) writer.add(y, x, row[x] > threshold ? 1 : 0);
   });
 }
 
 }  // namespace
 
-void threshold_runs(const Frame& frame, const Rois& rois, std::uint16_t threshold, RowBand band,
-                    Runs& out) noexcept {
-  RunWriter writer(out);
-  if (!usable(frame, band)) return;
+ThresholdWork threshold_runs(const Frame& frame, const Rois& rois, std::uint16_t threshold,
+                             RowBand band, Runs& out, const Limits& limits) noexcept {
+  RunWriter writer(out, limits.runs_per_band);
+  ThresholdWork work;
+  if (!usable(frame, band, limits)) return work;
   if (!frame.reflectivity_16.empty()) {
-    scan_fast(frame.reflectivity_16, rois, threshold, band, writer);
+    work = scan_fast(frame.reflectivity_16, rois, limits, threshold, band, writer);
   } else if (!frame.reflectivity_8.empty() && threshold < 0xFF) {
-    scan_fast(frame.reflectivity_8, rois, static_cast<std::uint8_t>(threshold), band, writer);
+    const auto narrow = static_cast<std::uint8_t>(threshold);
+    work = scan_fast(frame.reflectivity_8, rois, limits, narrow, band, writer);
   }
+  work.runs = out.count;
+  return work;
 }
 
 void threshold_runs_reference(const Frame& frame, const Rois& rois, std::uint16_t threshold,
-                              RowBand band, Runs& out) noexcept {
-  RunWriter writer(out);
-  if (!usable(frame, band)) return;
+                              RowBand band, Runs& out, const Limits& limits) noexcept {
+  RunWriter writer(out, limits.runs_per_band);
+  if (!usable(frame, band, limits)) return;
   if (!frame.reflectivity_16.empty()) {
-    scan_reference(frame.reflectivity_16, rois, threshold, band, writer);
+    scan_reference(frame.reflectivity_16, rois, limits, threshold, band, writer);
   } else if (!frame.reflectivity_8.empty()) {
-    scan_reference(frame.reflectivity_8, rois, threshold, band, writer);
+    scan_reference(frame.reflectivity_8, rois, limits, threshold, band, writer);
   }
 }
 

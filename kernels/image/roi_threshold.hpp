@@ -2,13 +2,15 @@
 //
 // What:     every pixel with reflectivity > threshold inside any ROI, as runs by rows, then from
 //           left to right; runs that touch are one run, also across the border of two ROIs.
-// Cost:     one pass over the ROIs' pixels; a row with a bright pixel is looked at twice.
-// Worst:    every second pixel bright: the buffer fills, the rest is counted and
-//           Reason::runs_full says so.
+// Cost:     one pass over the ROIs' pixels, in blocks of 64 bytes; a row with a bright pixel is
+//           looked at twice. The runs' buffer is as long as `limits` says.
+// Worst:    as many ROIs side by side as there are tools, a bright pixel in every block, more runs
+//           than fit: the rest is counted and Reason::runs_full says so.
 // Accuracy: exact; integers only, so that vector code gives equal bits.
 // Source:   the seed, section III: reflectivity above 250 inside an ROI.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "kernels/image/frame.hpp"
@@ -23,13 +25,34 @@ struct RowBand {
   int count = 1;
 };
 
-// ROIs are clipped to the frame; where they overlap they count once. Frame, threshold: raw counts.
-void threshold_runs(const Frame& frame, const Rois& rois, std::uint16_t threshold, RowBand band,
-                    Runs& out) noexcept;
+// How often its loops ran.
+struct ThresholdWork {
+  std::int32_t stretches = 0;  // ROIs times rows of the band
+  std::int32_t blocks = 0;     // looked at for any bright pixel
+  std::int32_t masks = 0;      // looked at pixel by pixel
+  std::int32_t runs = 0;
+};
+
+// ROIs are clipped to the frame; where they overlap they count once. More of them than there may be
+// tools become one that covers the frame. Nothing is searched in a frame beyond `limits`. Frame,
+// threshold: raw counts.
+ThresholdWork threshold_runs(const Frame& frame, const Rois& rois, std::uint16_t threshold,
+                             RowBand band, Runs& out, const Limits& limits = {}) noexcept;
 
 // The same, pixel by pixel: what the faster one is compared with.
 void threshold_runs_reference(const Frame& frame, const Rois& rois, std::uint16_t threshold,
-                              RowBand band, Runs& out) noexcept;
+                              RowBand band, Runs& out, const Limits& limits = {}) noexcept;
+
+// What threshold_runs may do at most, in the largest of `band_count` bands.
+[[nodiscard]] constexpr ThresholdWork threshold_work_max(const Limits& limits, int band_count) {
+  const int rows = (limits.height + band_count - 1) / band_count;
+  const int rois = std::clamp(limits.tools, 1, limits.width);
+  const int block = 64 / limits.reflectivity_bytes;
+  // A stretch of 1 + n block pixels takes n + 1 blocks: that many, where each has one pixel more.
+  const int blocks = (limits.width - rois) / block + rois;
+  const int runs = std::min(limits.runs_per_band, rows * ((limits.width + 1) / 2));
+  return {rows * rois, rows * blocks, rows * blocks, runs};
+}
 
 // One ROI that covers the frame.
 [[nodiscard]] inline Rois whole_frame(const Frame& frame) noexcept {

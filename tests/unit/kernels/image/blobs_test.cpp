@@ -184,7 +184,7 @@ TEST(Blobs, SurvivesACheckerboardAndPassesOnThatRunsWereLost) {
   Finder find;
   find.bands = 2;
   const Blobs& blobs = find(p);
-  EXPECT_EQ(blobs.count, 2);  // one a band: its first 32 rows are connected
+  EXPECT_EQ(blobs.count, 2);  // one a band: its first 16 rows are connected
   EXPECT_EQ(blobs.reason, Reason::runs_full);
 }
 
