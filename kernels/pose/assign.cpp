@@ -68,7 +68,7 @@ AssignWork assign_markers(std::span<const Labelings> per_tool, std::span<int> ch
     chosen[best_tool] = at[best_tool];
     reasons[best_tool] = Reason::none;
     for (const std::int16_t marker : best->marker) {
-      if (marker >= 0) taken.set(static_cast<std::size_t>(marker));
+      if (marker >= 0) taken[static_cast<std::size_t>(marker) % k_blobs_max] = true;
     }
   }
   return work;

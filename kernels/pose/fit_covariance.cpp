@@ -54,7 +54,11 @@ Result<Matrix6> fit_covariance(std::span<const Vector3> points_m,
     normal += j.transpose() * j;
     spread += j.transpose() * covariances_m2[i] * j;
   }
-  const Matrix6 inverse = normal.llt().solve(Matrix6::Identity());
+  // Column by column: for a whole matrix Eigen would size blocks for the processor's caches, which
+  // it asks for behind a lock.
+  const Eigen::LLT<Matrix6> factor(normal);
+  Matrix6 inverse;
+  for (int c = 0; c < 6; ++c) inverse.col(c) = factor.solve(Matrix6::Identity().col(c));
   const Matrix6 about_mean = inverse * spread * inverse;
   const Matrix6 about_reference = moved(about_mean, reference_m - mean);
   if (!std::isfinite(about_reference.sum())) {
