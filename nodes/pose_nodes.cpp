@@ -49,19 +49,35 @@ std::array<Matrix3, k_markers_per_tool_max> covariances_of(const PointPairs& pai
 void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
                             const graph::Latest<ToolSet>& tools, const Predictions& predictions,
                             graph::Slice slice, ToolLabelings& labelings) noexcept {
+  counts_ = {{1}};
   const ToolSet& set = tools.value();
-  for (int t = slice.index; t < set.count; t += slice.count) {
-    Labelings& out = labelings.tools[static_cast<std::size_t>(t)];
-    if (!verdict.usable()) {
+  const int count = tools_within(set, limits);
+  CorrespondSettings gated = settings;
+  gated.markers_max = limits.blobs;
+  gated.pair_tests_max = 0;
+  gated.search_steps_max = 0;
+  for (int t = slice.index; t < count; t += slice.count) {
+    const auto i = static_cast<std::size_t>(t);
+    Labelings& out = labelings.tools[i];
+    const Tool& tool = set.items[i];
+    if (!verdict.usable() || tool.marker_count > limits.markers_per_tool) {
       out.count = 0;
-      out.reason = verdict.reason;
+      out.reason = verdict.usable() ? Reason::out_of_range : verdict.reason;
       continue;
     }
-    const Prediction& prediction = predictions.tools[static_cast<std::size_t>(t)];
-    CorrespondSettings gated = settings;
+    const Prediction& prediction = predictions.tools[i];
     gated.prior_gate_m = settings.prior_gate_m + prediction.reach_m;
-    propose_labelings(markers, set.items[static_cast<std::size_t>(t)], gated,
-                      prediction.has_prior ? &prediction.T_camera_tool : nullptr, out);
+    gated.pair_tests_max += limits.pair_tests;
+    gated.search_steps_max += limits.search_steps;
+    const CorrespondWork work = propose_labelings(
+        markers, tool, gated, prediction.has_prior ? &prediction.T_camera_tool : nullptr, scratch_,
+        out);
+    gated.pair_tests_max -= work.pairs.tests;
+    gated.search_steps_max -= work.search.steps;
+    const graph::LoopCounts done = {{0, 1, work.markers, work.pairs.pairs, work.pairs.words_cleared,
+                                     work.pairs.tests, work.search.steps,
+                                     work.search.words_narrowed}};
+    for (std::size_t loop = 0; loop < k_loops.size(); ++loop) counts_[loop] += done[loop];
   }
 }
 

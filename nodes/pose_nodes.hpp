@@ -17,13 +17,34 @@
 
 namespace glint {
 
-// The labelings that each tool of this slice could have.
+// The labelings that each tool of this slice could have. What a tool leaves of its budgets the next
+// ones of the slice may use.
 struct Correspond {
+  static constexpr std::array<std::string_view, 8> k_loops = {
+      "call",          "tools",      "markers", "pairs",
+      "words_cleared", "pair_tests", "steps",   "words_narrowed"};
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
+    const std::int64_t tools = tools_per_slice(limits);
+    const std::int64_t blobs = limits.blobs;
+    const std::int64_t row = limits.markers_per_tool * ((blobs + 63) / 64);
+    return {{1, tools, tools * blobs, tools * blobs * (blobs - 1) / 2,
+             tools * limits.markers_per_tool * blobs * row, tools * limits.pair_tests,
+             tools * limits.search_steps, tools * limits.search_steps * row}};
+  }
+  [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
+
   CorrespondSettings settings;
+  Limits limits;
   void operator()(const FrameVerdict& verdict, const Markers& markers,
                   const graph::Latest<ToolSet>& tools, const Predictions& predictions,
                   graph::Slice slice, ToolLabelings& labelings) noexcept;
+
+ private:
+  CorrespondScratch scratch_;
+  graph::LoopCounts counts_;
 };
+
+static_assert(graph::Budgeted<Correspond, Limits>);
 
 // Gives each marker to at most one tool, in one fixed order.
 struct AssignMarkers {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace glint {
 namespace {
@@ -25,12 +26,38 @@ bool area_fits(const Marker& marker, double range_m, const Tool& tool,
   return area <= expected * settings.area_factor + k_area_slack_px;
 }
 
+// By tool marker: is `point` within the gate of where it is predicted?
+unsigned near_mask(const std::array<Vector3, k_markers_per_tool_max>& places, int count,
+                   const Vector3& point, double gate_m) {
+  unsigned mask = 0;
+  for (int j = 0; j < count; ++j) {
+    const double square = (point - places[static_cast<std::size_t>(j)]).squaredNorm();
+    mask |= static_cast<unsigned>(square <= gate_m * gate_m) << j;
+  }
+  return mask;
+}
+
+void swap_candidates(Candidates& candidates, std::size_t a, std::size_t b) {
+  std::swap(candidates.point_m[a], candidates.point_m[b]);
+  std::swap(candidates.ray[a], candidates.ray[b]);
+  std::swap(candidates.across_variance_m2[a], candidates.across_variance_m2[b]);
+  std::swap(candidates.marker[a], candidates.marker[b]);
+}
+
 }  // namespace
 
-void select_candidates(const Markers& markers, const Tool& tool, const CorrespondSettings& settings,
-                       Candidates& candidates) noexcept {
+int select_candidates(const Markers& markers, const Tool& tool, const CorrespondSettings& settings,
+                      const Pose* prior_T_camera_tool, Candidates& candidates) noexcept {
   candidates.count = 0;
-  const int count = std::clamp(markers.count, 0, k_blobs_max);
+  std::array<Vector3, k_markers_per_tool_max> places;
+  const int predicted = prior_T_camera_tool != nullptr ? tool.marker_count : 0;
+  for (int j = 0; j < predicted; ++j) {
+    const auto slot = static_cast<std::size_t>(j);
+    places[slot] = *prior_T_camera_tool * tool.markers_m[slot];
+  }
+  std::array<std::uint8_t, k_blobs_max> near{};
+  std::size_t first_far = 0;  // candidates before it lie near the prediction
+  const int count = std::clamp(markers.count, 0, settings.markers_max);
   for (int m = 0; m < count; ++m) {
     const Marker& marker = markers.items[static_cast<std::size_t>(m)];
     if ((marker.flags & k_marker_no_depth) != 0) continue;
@@ -46,68 +73,22 @@ void select_candidates(const Markers& markers, const Tool& tool, const Correspon
     candidates.ray[slot] = marker.ray;
     candidates.across_variance_m2[slot] = across * across;
     candidates.marker[slot] = static_cast<std::int16_t>(m);
+    const unsigned mask = near_mask(places, predicted, point, settings.prior_gate_m);
+    near[slot] = static_cast<std::uint8_t>(mask);
+    if (mask == 0) continue;
+    swap_candidates(candidates, slot, first_far);
+    std::swap(near[slot], near[first_far]);
+    ++first_far;
   }
   candidates.words = (candidates.count + 63) / 64;
-}
-
-void match_pairs(const Candidates& candidates, const Tool& tool, const CorrespondSettings& settings,
-                 PairMatches& matches) noexcept {
-  struct ToolPair {
-    std::size_t index;
-    double distance_m;
-  };
-  std::array<ToolPair, k_tool_pairs_max> pairs{};
-  std::size_t pair_count = 0;
-  double longest = 0;
-  for (int i = 0; i < tool.marker_count; ++i) {
-    for (int j = i + 1; j < tool.marker_count; ++j) {
-      const double distance =
-          tool.distance_m[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-      const std::size_t index = PairMatches::pair_index(i, j);
-      pairs[pair_count++] = {index, distance};
-      longest = std::max(longest, distance);
-      for (int a = 0; a < candidates.count; ++a) {
-        CandidateSet& set = matches.set[index][static_cast<std::size_t>(a)];
-        for (int w = 0; w < candidates.words; ++w) set.word[static_cast<std::size_t>(w)] = 0;
-      }
+  candidates.near = {};
+  for (std::size_t a = 0; a < first_far; ++a) {
+    for (int j = 0; j < predicted; ++j) {
+      const std::uint64_t bit = static_cast<std::uint64_t>((near[a] >> j) & 1) << (a % 64);
+      candidates.near[static_cast<std::size_t>(j)].word[a / 64] |= bit;
     }
   }
-
-  const double range_variance = settings.range_sigma_m * settings.range_sigma_m;
-  const double k = settings.gate_sigmas;
-  double across_most = 0;
-  for (int a = 0; a < candidates.count; ++a) {
-    across_most = std::max(across_most, candidates.across_variance_m2[static_cast<std::size_t>(a)]);
-  }
-  // No gate is wider than this one, for a pair as long as the tool's longest.
-  const double total_most = 2 * (range_variance + 2 * across_most);
-  const double reach = longest + std::max(settings.delta_min_m,
-                                          k * std::sqrt(total_most) + k * k * total_most / longest);
-  for (int a = 0; a < candidates.count; ++a) {
-    const auto ia = static_cast<std::size_t>(a);
-    for (int b = a + 1; b < candidates.count; ++b) {
-      const auto ib = static_cast<std::size_t>(b);
-      const Vector3 between = candidates.point_m[ia] - candidates.point_m[ib];
-      const double square = between.squaredNorm();
-      if (square > reach * reach || !(square > 0)) continue;
-      const double distance = std::sqrt(square);
-      const double along_a = between.dot(candidates.ray[ia]) / distance;
-      const double along_b = between.dot(candidates.ray[ib]) / distance;
-      const double va = candidates.across_variance_m2[ia];
-      const double vb = candidates.across_variance_m2[ib];
-      const double along_variance = va + vb + (range_variance - va) * along_a * along_a +
-                                    (range_variance - vb) * along_b * along_b;
-      const double total_variance = 2 * (range_variance + va + vb);
-      const double delta = std::max(settings.delta_min_m,
-                                    k * std::sqrt(along_variance) +
-                                        k * k * (total_variance - along_variance) / (2 * distance));
-      for (std::size_t p = 0; p < pair_count; ++p) {
-        if (!(std::abs(distance - pairs[p].distance_m) < delta)) continue;
-        matches.set[pairs[p].index][ia].insert(b);
-        matches.set[pairs[p].index][ib].insert(a);
-      }
-    }
-  }
+  return count;
 }
 
 }  // namespace glint

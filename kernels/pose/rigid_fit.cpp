@@ -1,7 +1,8 @@
 #include "kernels/pose/rigid_fit.hpp"
 
-#include <Eigen/SVD>
 #include <cmath>
+
+#include "kernels/pose/best_rotation.hpp"
 
 namespace glint {
 namespace {
@@ -23,6 +24,17 @@ Reason judge_spread(const Matrix3& covariance) {
                     (covariance(0, 0) * covariance(2, 2) - covariance(0, 2) * covariance(0, 2)) +
                     (covariance(1, 1) * covariance(2, 2) - covariance(1, 2) * covariance(1, 2));
   return e2 <= k_collinear_variance_ratio * e1 * e1 ? Reason::collinear : Reason::none;
+}
+
+// Whether the second singular value is negligible beside the first. The squares of all 2x2 minors
+// sum to w0^2 w1^2 + w0^2 w2^2 + w1^2 w2^2, those of the elements to w0^2 + w1^2 + w2^2.
+bool is_on_a_line(const Matrix3& c) {
+  const double squares = c.squaredNorm();
+  const double minors = c.col(0).cross(c.col(1)).squaredNorm() +
+                        c.col(0).cross(c.col(2)).squaredNorm() +
+                        c.col(1).cross(c.col(2)).squaredNorm();
+  constexpr double ratio = k_collinear_variance_ratio * k_collinear_variance_ratio;
+  return !(minors > ratio * squares * squares);
 }
 
 }  // namespace
@@ -64,17 +76,11 @@ RigidFit fit_rigid(std::span<const Vector3> model_m, std::span<const Vector3> me
     return fit;
   }
 
-  const Eigen::JacobiSVD<Matrix3> svd(cross_covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vector3 w = svd.singularValues();
-  if (w(1) <= k_collinear_variance_ratio * w(0)) {
+  if (is_on_a_line(cross_covariance)) {
     fit.reason = Reason::collinear;
     return fit;
   }
-  Matrix3 u = svd.matrixU();
-  const Matrix3& v = svd.matrixV();
-  if (u.determinant() * v.determinant() < 0) u.col(2) = -u.col(2);
-  const Matrix3 rotation = u * v.transpose();
-  fit.transform.rotation = Quaternion(rotation).normalized();
+  fit.transform.rotation = best_rotation(cross_covariance);
   fit.transform.translation = measured_mean - fit.transform.rotation * model_mean;
 
   double squares = 0;

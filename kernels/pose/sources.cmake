@@ -1,7 +1,12 @@
 target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/camera_model.cpp
   ${CMAKE_CURRENT_LIST_DIR}/ray_table.cpp ${CMAKE_CURRENT_LIST_DIR}/local_rays.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/back_project.cpp)
+  ${CMAKE_CURRENT_LIST_DIR}/back_project.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/depth_samples.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/robust_mean.cpp)
 target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/tool.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/rigid_fit.cpp ${CMAKE_CURRENT_LIST_DIR}/candidates.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/rigid_fit.cpp ${CMAKE_CURRENT_LIST_DIR}/best_rotation.cpp ${CMAKE_CURRENT_LIST_DIR}/candidates.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/pair_matches.cpp ${CMAKE_CURRENT_LIST_DIR}/labeling_search.cpp
   ${CMAKE_CURRENT_LIST_DIR}/correspond.cpp ${CMAKE_CURRENT_LIST_DIR}/assign.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fit_covariance.cpp)
+# Nobody reads errno here; where sqrt may set it, the pass over all pairs handles one at a time.
+set_source_files_properties(${CMAKE_CURRENT_LIST_DIR}/pair_matches.cpp PROPERTIES COMPILE_OPTIONS -fno-math-errno)

@@ -88,8 +88,10 @@ void correspondence_with(benchmark::State& state, bool prior) {
   const CorrespondSettings settings = warm.chain.tracker().node<Correspond>().settings;
   const Pose predicted = warm.token<Predictions>().tools[0].T_camera_tool;
   auto labelings = std::make_unique<Labelings>();
+  auto scratch = std::make_unique<CorrespondScratch>();
   for (auto _ : state) {
-    propose_labelings(markers, sensor.tool, settings, prior ? &predicted : nullptr, *labelings);
+    propose_labelings(markers, sensor.tool, settings, prior ? &predicted : nullptr, *scratch,
+                      *labelings);
     benchmark::DoNotOptimize(labelings->count);
   }
   state.counters["markers"] = markers.count;

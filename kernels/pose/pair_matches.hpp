@@ -1,0 +1,61 @@
+// Which pairs of candidates have the distance of which pair of the tool's markers: the table that
+// the correspondence search walks.
+//
+// What:     d_R, the distance of two candidates, equals the tool's d_M if |d_R - d_M| < delta,
+// where
+//           delta follows from the noise of these two: a range error moves a marker along its ray,
+//           so a pair beside each other keeps its distance, a pair behind each other does not.
+// Cost:     the same for every one of candidates^2 / 2 pairs, and a test for each distance of the
+//           tool that lies near a pair's: the tool's distances are kept in k_distance_bins bins.
+//           Clears (tool markers)^2 x candidates x words of the table.
+// Worst:    candidates within a hand's breadth of each other: pair_tests_max tests, then no more.
+// Accuracy: exact to second order in the noise. With d the measured distance, e its direction, r
+// the
+//           rays, S the markers' covariances: true - measured = -e.(n_a - n_b) + |perpendicular|^2
+//           / (2d), so delta = k s + k^2 p / (2d), s^2 = e'(S_a + S_b)e, p = trace(S_a + S_b) -
+//           s^2.
+// Source:   series of |d e - n| in n to second order.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "kernels/pose/candidates.hpp"
+
+namespace glint {
+
+inline constexpr int k_tool_pairs_max = k_markers_per_tool_max * (k_markers_per_tool_max - 1) / 2;
+inline constexpr int k_distance_bins = 64;  // of the tool's longest: about a gate's width each
+
+// For tool marker i being candidate a: the candidates that may then be tool marker j > i. A row
+// holds the sets of all j side by side, empty for j <= i, so that a search narrows all in one go.
+struct PairMatches {
+  static constexpr std::size_t k_words_max = std::size_t{k_markers_per_tool_max} *
+                                             k_markers_per_tool_max * k_blobs_max *
+                                             (k_blobs_max / 64);
+  std::array<std::uint64_t, k_words_max> word;
+  int candidates = 0, markers = 0, words = 0;  // in use, and so the rows' places
+
+  [[nodiscard]] std::uint64_t* row(int i, int a) { return &word[start_of(i, a)]; }
+  [[nodiscard]] const std::uint64_t* row(int i, int a) const { return &word[start_of(i, a)]; }
+  [[nodiscard]] int words_a_row() const { return markers * words; }
+
+ private:
+  [[nodiscard]] std::size_t start_of(int i, int a) const {
+    return (static_cast<std::size_t>(i) * static_cast<std::size_t>(candidates) +
+            static_cast<std::size_t>(a)) *
+           static_cast<std::size_t>(markers * words);
+  }
+};
+
+struct PairWork {
+  int pairs = 0;
+  int words_cleared = 0;
+  int tests = 0;
+  bool full = false;  // pairs after these were not tested
+};
+
+PairWork match_pairs(const Candidates& candidates, const Tool& tool,
+                     const CorrespondSettings& settings, PairMatches& matches) noexcept;
+
+}  // namespace glint
