@@ -70,16 +70,24 @@ struct BackProject {
   CameraModel camera;
   DepthSettings depth;
   NominalMarker nominal;
-  void operator()(const Frame& frame, const Blobs& blobs, Markers& markers) const noexcept {
-    markers.count = 0;
-    for (int i = 0; i < blobs.count; ++i) {
-      Marker& marker = markers.items[static_cast<std::size_t>(markers.count)];
-      if (measure_marker(frame, blobs.items[static_cast<std::size_t>(i)],
-                         static_cast<std::uint16_t>(i), camera, depth, nominal, marker)) {
-        ++markers.count;
-      }
-    }
+  Limits limits;
+  void operator()(const Frame& frame, const Blobs& blobs, Markers& markers) noexcept {
+    work_ = back_project(frame, blobs, camera, depth, nominal, markers, limits);
   }
+
+  static constexpr std::array<std::string_view, 6> k_loops = {"call",   "blobs",   "lens_steps",
+                                                              "pixels", "samples", "unwrapped"};
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
+    return counts_of(back_project_work_max(limits));
+  }
+  [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_of(work_); }
+
+ private:
+  static constexpr graph::LoopCounts counts_of(const BackProjectWork& work) noexcept {
+    return {{1, work.blobs, work.lens_steps, work.pixels, work.samples, work.unwrapped}};
+  }
+  BackProjectWork work_;
 };
+static_assert(graph::Budgeted<BackProject, Limits>);
 
 }  // namespace glint

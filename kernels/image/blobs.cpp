@@ -5,6 +5,7 @@
 #include "kernels/image/centroid.hpp"
 #include "kernels/image/components.hpp"
 #include "kernels/merge_sort.hpp"
+#include "kernels/shared_budget.hpp"
 
 namespace glint {
 namespace {
@@ -40,27 +41,6 @@ void sort_by_rows(BlobScratch& scratch, int candidates) {
     scratch.candidate[i] = unsorted[keys[i] & ((1u << 14) - 1)];
   }
 }
-
-// The pixels that all blobs' boxes share. Each may have its share; more, if it is left over when
-// those that come after have theirs.
-class PixelBudget {
- public:
-  PixelBudget(const Limits& limits, int blobs)
-      : left_(limits.centroid_pixels),
-        share_(limits.centroid_pixels / std::max(limits.blobs, 1)),
-        blobs_left_(blobs) {}
-
-  [[nodiscard]] bool take(int pixels) {
-    --blobs_left_;
-    if (pixels > left_ - share_ * blobs_left_) return false;
-    left_ -= pixels;
-    return true;
-  }
-  [[nodiscard]] int left() const { return left_; }
-
- private:
-  int left_, share_, blobs_left_;
-};
 
 Blob blob_of(const Frame& frame, const Component& component, const Centroid& centroid,
              std::uint16_t saturated_from) {
@@ -104,11 +84,14 @@ BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
   }
   out.dropped = static_cast<std::uint32_t>(scratch.component_count - candidates);
   sort_by_rows(scratch, candidates);
-  PixelBudget budget(limits, candidates);
+  SharedBudget budget(limits.centroid_pixels, limits.blobs, candidates);
   for (int i = 0; i < candidates; ++i) {
     const Component& component = scratch.components[scratch.candidate[static_cast<std::size_t>(i)]];
+    const int most_pixels = budget.most_for_next();
     const bool small = fits_grown_box(component);
-    const bool paid = budget.take(small ? 4 * grown_box(frame, component).fours() : 0);
+    const int pixels = small ? 4 * grown_box(frame, component).fours() : 0;
+    const bool paid = pixels <= most_pixels;
+    if (paid) budget.spend(pixels);
     if (!paid) out.reason = Reason::blobs_full;
     const Centroid centroid = small && paid
                                   ? grown_centroid(frame, scratch, component, settings.threshold)

@@ -7,19 +7,25 @@
 //           sphere r - sqrt(r^2 - s^2) further away. Centre saturated or without depth: the same
 //           over the ring between the inner half and the rim. z depth becomes radial by each
 //           pixel's own ray. A range that has wrapped is told by the blob's size.
-// Cost:     3 unprojections, at most k_inner_samples_max samples; with the ring
-//           (2 k_scan_radius_max_px + 1)^2 pixels and k_ring_samples_max samples; twice if wrapped.
-// Worst:    a large blob with a saturated middle.
+// Cost:     a ray for each blob, and what depth_samples.hpp and robust_mean.hpp say, the mean twice
+//           if wrapped. All blobs together look at no more pixels and average no more samples than
+//           `limits` says; each may have its share, and what the others leave.
+// Worst:    as many large blobs as there may be, their middles saturated, their ranges wrapped, at
+//           the rim of a wide lens.
 // Accuracy: noise of one pixel / sqrt(samples); bias on a sphere of the nominal radius 0.1 mm, by
 //           the ring 1 mm; a disc taken for a sphere comes out 0.14 of the nominal radius short.
 // Source:   the seed, section III; AHAT's wrap: hl2ss, "alias".
 #pragma once
 
+#include <algorithm>
+
 #include "kernels/image/blob.hpp"
 #include "kernels/image/frame.hpp"
 #include "kernels/pose/camera_model.hpp"
 #include "kernels/pose/depth_settings.hpp"
+#include "kernels/pose/local_rays.hpp"
 #include "kernels/pose/marker.hpp"
+#include "kernels/pose/robust_mean.hpp"
 #include "kernels/pose/tool.hpp"
 
 namespace glint {
@@ -31,16 +37,41 @@ struct NominalMarker {
   MarkerShape shape = MarkerShape::sphere;
 };
 
-inline constexpr int k_inner_samples_max = 49;
-inline constexpr int k_ring_samples_max = 64;
-inline constexpr int k_scan_radius_max_px = 40;
+// What one blob may take: pixels looked at for depth, samples averaged.
+struct MarkerWorkLimits {
+  int pixels = k_range_pixels_max;
+  int samples = k_range_samples_max;
+};
 
 // blob_index: its place in Blobs. True: out has a ray; without any depth k_marker_no_depth is set
 // and surface_range_m is 0. False: the lens has no ray for the centroid.
 // surface_range_m: radial, from the camera to the marker's front point along the centroid's ray.
 [[nodiscard]] bool measure_marker(const Frame& frame, const Blob& blob, std::uint16_t blob_index,
                                   const CameraModel& camera, const DepthSettings& depth,
-                                  const NominalMarker& nominal, Marker& out) noexcept;
+                                  const NominalMarker& nominal, Marker& out,
+                                  const MarkerWorkLimits& most = {}) noexcept;
+
+// How often the loops ran.
+struct BackProjectWork {
+  std::int32_t blobs = 0;
+  std::int32_t lens_steps = 0;
+  std::int32_t pixels = 0;     // looked at
+  std::int32_t samples = 0;    // averaged
+  std::int32_t unwrapped = 0;  // samples averaged again
+};
+
+// Every blob's marker, in the blobs' order; those without a ray are left out. Blobs beyond
+// limits.blobs are not looked at.
+BackProjectWork back_project(const Frame& frame, const Blobs& blobs, const CameraModel& camera,
+                             const DepthSettings& depth, const NominalMarker& nominal, Markers& out,
+                             const Limits& limits = {}) noexcept;
+
+// What back_project may do at most.
+[[nodiscard]] constexpr BackProjectWork back_project_work_max(const Limits& limits) {
+  const int samples = std::min(limits.range_samples, limits.blobs * k_range_values_max);
+  return {limits.blobs, limits.blobs * k_local_rays_steps_max, limits.range_pixels, samples,
+          samples};
+}
 
 // Pixels that a sphere (or a disc that faces the camera) of this radius covers around a pixel with
 // its centre at this range (metres, radial): its solid angle over the pixel's. 0: no ray there.

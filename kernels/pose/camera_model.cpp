@@ -46,15 +46,23 @@ bool inside_lens(const CameraModel& camera, const Vector2& p, const Distorted& d
   return d.dxdx * d.dydy - d.dxdy * d.dydx > 0 && d.dxdx + d.dydy > 0;
 }
 
-Result<Vector2> undistort(const CameraModel& camera, const Vector2& target) {
+struct Undistorted {
+  Vector2 position = Vector2::Zero();  // on the plane z = 1
+  Distorted there{};
+};
+
+// Adds the steps it took to `steps`.
+Result<Undistorted> undistort(const CameraModel& camera, const Vector2& target, int steps_max,
+                              int& steps) {
   const bool rational = camera.lens == Lens::rational;
   Vector2 p = target;
-  for (int i = 0; i < k_undistort_iterations_max; ++i) {
+  for (int i = 0; i < steps_max; ++i) {
+    ++steps;
     const Distorted d = distort(camera.distortion, p, rational);
     const Vector2 miss = target - d.position;
     if (miss.squaredNorm() <= k_converged_square) {
       if (!inside_lens(camera, p, d)) break;
-      return {p};
+      return {{p, d}};
     }
     const double determinant = d.dxdx * d.dydy - d.dxdy * d.dydx;
     if (!(std::abs(determinant) > 1e-12)) break;
@@ -64,7 +72,7 @@ Result<Vector2> undistort(const CameraModel& camera, const Vector2& target) {
     if (length > k_step_max) step *= k_step_max / length;
     p += step;
   }
-  return {Vector2::Zero(), Reason::out_of_range};
+  return {{}, Reason::out_of_range};
 }
 
 }  // namespace
@@ -74,12 +82,40 @@ Result<Vector3> unproject(const CameraModel& camera, const Vector2& pixel) noexc
   Vector2 p{(pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy};
   if (!(p.squaredNorm() < 1e6)) return {Vector3::Zero(), Reason::out_of_range};
   if (camera.lens != Lens::pinhole) {
-    const Result<Vector2> found = undistort(camera, p);
+    int steps = 0;
+    const Result<Undistorted> found = undistort(camera, p, k_undistort_iterations_max, steps);
     if (!found) return {Vector3::Zero(), found.reason};
-    p = found.value;
+    p = found.value.position;
   }
   const double length = std::sqrt(p.squaredNorm() + 1);
   return {Vector3{p.x() / length, p.y() / length, 1 / length}};
+}
+
+Result<TurningRay> unproject_turning(const CameraModel& camera, const Vector2& pixel,
+                                     int& lens_steps) noexcept {
+  Vector2 p{(pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy};
+  if (!(p.squaredNorm() < 1e6)) return {{}, Reason::out_of_range};
+  // The change of p by one pixel: the lens's Jacobian, inverted.
+  Vector2 dx{1 / camera.fx, 0}, dy{0, 1 / camera.fy};
+  if (camera.lens != Lens::pinhole) {
+    const Result<Undistorted> found = undistort(camera, p, k_turning_ray_steps_max, lens_steps);
+    if (!found) return {{}, found.reason};
+    p = found.value.position;
+    const Distorted& d = found.value.there;
+    const double determinant = d.dxdx * d.dydy - d.dxdy * d.dydx;
+    dx = Vector2{d.dydy, -d.dydx} / (determinant * camera.fx);
+    dy = Vector2{-d.dxdy, d.dxdx} / (determinant * camera.fy);
+  }
+  const double length = std::sqrt(p.squaredNorm() + 1);
+  TurningRay out;
+  out.ray = {p.x() / length, p.y() / length, 1 / length};
+  const auto across = [&](const Vector2& change) {
+    const Vector3 moved{change.x() / length, change.y() / length, 0};
+    return Vector3(moved - out.ray * out.ray.dot(moved));
+  };
+  out.along_x = across(dx);
+  out.along_y = across(dy);
+  return {out};
 }
 
 Result<Vector2> project(const CameraModel& camera, const Vector3& point) noexcept {

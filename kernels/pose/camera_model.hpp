@@ -40,10 +40,22 @@ struct CameraModel {
 };
 
 inline constexpr int k_undistort_iterations_max = 20;
+// Of the lenses we know none takes more than 7, rim included.
+inline constexpr int k_turning_ray_steps_max = 12;
 inline constexpr int k_lut_search_iterations_max = k_lens_steps_max;
 
 // Reason::out_of_range: outside the table, or the lens has no ray there.
 [[nodiscard]] Result<Vector3> unproject(const CameraModel& camera, const Vector2& pixel) noexcept;
+
+// A pixel's ray and by how much it turns, at right angles to itself, from one pixel to the next.
+struct TurningRay {
+  Vector3 ray = Vector3::UnitZ();
+  Vector3 along_x = Vector3::Zero(), along_y = Vector3::Zero();
+};
+// For every lens but a table, which has neighbours to ask. Reason::out_of_range: no ray there, or
+// not found in k_turning_ray_steps_max Newton steps; those taken are added to `lens_steps`.
+[[nodiscard]] Result<TurningRay> unproject_turning(const CameraModel& camera, const Vector2& pixel,
+                                                   int& lens_steps) noexcept;
 
 // Reason::out_of_range: behind the camera or outside the lens; the pixel may lie outside the frame.
 [[nodiscard]] Result<Vector2> project(const CameraModel& camera, const Vector3& point) noexcept;

@@ -1,11 +1,16 @@
 #include "kernels/pose/local_rays.hpp"
 
 namespace glint {
+namespace {
 
-Result<LocalRays> local_rays(const CameraModel& camera, const Vector2& pixel) noexcept {
+Result<LocalRays> from_table(const CameraModel& camera, const Vector2& pixel, int& lens_steps) {
   LocalRays local;
   local.pixel = pixel;
-  const Result<Vector3> middle = unproject(camera, pixel);
+  const auto look_up = [&](const Vector2& at) {
+    lens_steps += k_lens_steps_a_look_up;
+    return unproject(camera, at);
+  };
+  const Result<Vector3> middle = look_up(pixel);
   if (!middle) return {local, middle.reason};
   local.ray = middle.value;
   Vector3* const slopes[2] = {&local.along_x, &local.along_y};
@@ -14,7 +19,7 @@ Result<LocalRays> local_rays(const CameraModel& camera, const Vector2& pixel) no
     for (const double side : {1.0, -1.0}) {
       Vector2 beside = pixel;
       beside[axis] += side;
-      const Result<Vector3> ray = unproject(camera, beside);
+      const Result<Vector3> ray = look_up(beside);
       if (!ray) continue;
       const Vector3 change = (ray.value - local.ray) * side;
       *slopes[axis] = change - local.ray * local.ray.dot(change);
@@ -22,6 +27,16 @@ Result<LocalRays> local_rays(const CameraModel& camera, const Vector2& pixel) no
     }
   }
   return {local};
+}
+
+}  // namespace
+
+Result<LocalRays> local_rays(const CameraModel& camera, const Vector2& pixel,
+                             int& lens_steps) noexcept {
+  if (camera.lens == Lens::lut) return from_table(camera, pixel, lens_steps);
+  const Result<TurningRay> turning = unproject_turning(camera, pixel, lens_steps);
+  const TurningRay& found = turning.value;
+  return {{pixel, found.ray, found.along_x, found.along_y}, turning.reason};
 }
 
 }  // namespace glint
