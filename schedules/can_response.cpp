@@ -60,7 +60,8 @@ class Bus {
                                                       std::int64_t early_ns) const {
     std::vector<Interference> urgent;
     for (std::size_t k = 0; k < messages_.size(); ++k) {
-      if (k == but_not || urgency_[k] <= level || same_queue(k, but_not)) continue;
+      // An identifier that two nodes use, though it should not be, may win on either side.
+      if (k == but_not || urgency_[k] < level || same_queue(k, but_not)) continue;
       urgent.push_back({results_[k].frame_ns, messages_[k].period_ns,
                         messages_[k].jitter_ns + results_[k].queued_ns + early_ns});
     }

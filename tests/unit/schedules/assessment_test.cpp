@@ -1,0 +1,159 @@
+#include "schedules/assessment.hpp"
+
+#include <gtest/gtest.h>
+
+#include "random_groups.hpp"
+#include "schedules/sensitivity.hpp"
+#include "schedules/synthesis.hpp"
+
+namespace glint {
+namespace {
+
+constexpr std::int64_t k_us = 1'000, k_ms = 1'000'000;
+
+// A frame group of 100 us and a tick group of 50 us on one core, one CAN frame a tick.
+Question small_question() {
+  Question question;
+  TaskGroup frame = staged_group({{"Find", 1, 60 * k_us}, {"Fit", 1, 40 * k_us}});
+  frame.min_gap_ns = frame.deadline_ns = 20 * k_ms;
+  frame.jitter_ns = 400 * k_us;
+  TaskGroup tick = staged_group({{"Predict", 1, 20 * k_us}, {"Pack", 1, 30 * k_us}});
+  tick.name = "tick";
+  tick.min_gap_ns = tick.deadline_ns = 4 * k_ms;
+  tick.can_writes = 2;
+  question.model.groups = {frame, tick};
+  question.model.system = {20 * k_us, 2 * k_us, 1 * k_ms, 5 * k_us, 0};
+  question.plan = synthesize(question.model);
+  question.sensor = {2 * k_ms, 8 * k_ms};
+  CanMessage own;
+  own.name = "pose";
+  own.identifier = 0x1A0;
+  own.period_ns = own.deadline_ns = 4 * k_ms;
+  own.node = k_own_can_node;
+  own.fifo = true;
+  CanMessage foreign = own;
+  foreign.name = "drive";
+  foreign.identifier = 0x100;
+  foreign.period_ns = foreign.deadline_ns = 10 * k_ms;
+  foreign.node = 1;
+  foreign.fifo = false;
+  question.frames = {own, foreign};
+  question.rates = {.nominal = 1e6};
+  question.frame_to_can_deadline_ns = 10 * k_ms;
+  question.age_deadline_ns = 250 * k_ms;
+  return question;
+}
+
+TEST(Assessment, AddsEachStageOnceAndKeepsEstimatesApart) {
+  const Assessment found = assess(small_question());
+  ASSERT_TRUE(found.holds()) << found.fails.front();
+  ASSERT_EQ(found.chains.size(), 2U);
+  const Chain& to_can = found.chains[0];
+  std::int64_t sum = 0, estimates = 0;
+  for (const ChainStage& stage : to_can.stages) {
+    sum += stage.ns;
+    if (stage.kind == StageKind::estimate) estimates += stage.ns;
+  }
+  EXPECT_EQ(to_can.total_ns, sum);
+  EXPECT_EQ(to_can.estimate_ns, estimates);
+  // Frame: 100 us of nodes and one tick of 50. The tick: 50.
+  EXPECT_EQ(to_can.stages[1].ns, 150 * k_us);
+  EXPECT_EQ(to_can.stages[3].ns, 4 * k_ms);
+  EXPECT_EQ(to_can.stages[5].ns, 50 * k_us);
+  // Estimates: waking 20, the tick's two writes of 5 and one interrupt of 2 while the frame group
+  // runs; waking 20, an interrupt of 2, a write of 5.
+  EXPECT_EQ(to_can.stages[0].ns, 20 * k_us);
+  EXPECT_EQ(to_can.stages[2].ns, 12 * k_us);
+  EXPECT_EQ(to_can.estimate_ns, (20 + 12 + 20 + 2 + 5) * k_us);
+}
+
+TEST(Assessment, GivesReactionTimeAndDataAgeFromMidExposureToTheLastBit) {
+  const Question question = small_question();
+  const Assessment found = assess(question);
+  const Chain& to_bus = found.chains[1];
+  EXPECT_EQ(to_bus.stages[0].ns, 1 * k_ms);
+  EXPECT_EQ(to_bus.stages[1].ns, 8 * k_ms);
+  EXPECT_EQ(to_bus.stages[2].ns, 400 * k_us);
+  // Its own 135 bits, the other node's 135 in front of them and one that began before.
+  EXPECT_EQ(to_bus.stages.back().ns, 270 * k_us);
+  EXPECT_EQ(to_bus.maximum_reaction_time_ns, to_bus.total_ns + 20 * k_ms);
+  EXPECT_EQ(to_bus.maximum_data_age_ns, to_bus.total_ns + 16 * k_ms);
+  EXPECT_EQ(to_bus.jitter_ns, to_bus.total_ns - (9 * k_ms + 108 * k_us));
+  EXPECT_EQ(found.can[0].response_ns, *found.groups[1].response_ns + 270 * k_us);
+}
+
+TEST(Assessment, SaysWhichDeadlineIsMissedAndByHowMuch) {
+  Question question = small_question();
+  question.frame_to_can_deadline_ns = 3 * k_ms;
+  question.model.groups[1].deadline_ns = 40 * k_us;
+  const Assessment found = assess(question);
+  ASSERT_EQ(found.fails.size(), 2U);
+  EXPECT_EQ(found.fails[0], "group tick: bound 82.0 us, deadline 40.0 us");
+  EXPECT_EQ(found.fails[1].substr(0, 24), "chain frame_to_can: boun");
+}
+
+TEST(Sensitivity, FindsTheFactorThatAnIndependentSearchFinds) {
+  Question question = small_question();
+  question.model.system = {};
+  question.model.groups[0].deadline_ns = 1 * k_ms;
+  // The frame group: 400 us of jitter, 50 of the tick; 600 - 50 are left for 100 us of nodes.
+  const auto group = largest_factor(question, [](std::size_t g, std::size_t) { return g == 0; });
+  ASSERT_TRUE(group);
+  EXPECT_NEAR(*group, 5.5, 0.001);
+  EXPECT_NEAR(slack_percent(*group), 450, 0.1);
+  // One node of 60 us alone: 600 - 50 - 40 are left.
+  const auto node =
+      largest_factor(question, [](std::size_t g, std::size_t n) { return g == 0 && n == 0; });
+  EXPECT_NEAR(*node, 510.0 / 60, 0.001);
+  // Everything: 600 / 150.
+  const auto all = largest_factor(
+      question, [](std::size_t, std::size_t) { return true; }, true);
+  EXPECT_NEAR(*all, 4.0, 0.001);
+  // What was found holds, a little more does not.
+  for (const double factor : {*all, *all * 1.001}) {
+    Question scaled_question = question;
+    scaled_question.model = scaled(
+        question.model, factor, [](std::size_t, std::size_t) { return true; }, true);
+    EXPECT_EQ(assess(scaled_question).holds(), factor == *all);
+  }
+}
+
+TEST(Sensitivity, IsNegativeWhereADeadlineIsMissedAndNoneWhereNothingHelps) {
+  Question question = small_question();
+  question.model.system = {};
+  question.model.groups[1].deadline_ns = 40 * k_us;  // the tick needs 50
+  const auto factor = largest_factor(question, [](std::size_t, std::size_t) { return true; });
+  ASSERT_TRUE(factor);
+  EXPECT_NEAR(slack_percent(*factor), -20, 0.1);
+  question.frame_to_can_deadline_ns = 1 * k_ms;  // sampling alone takes 4
+  EXPECT_FALSE(largest_factor(question, [](std::size_t, std::size_t) { return true; }));
+}
+
+// A chain by brute force: frames arrive and ticks come at any phase, every group takes its
+// response; no pose is later on the wire than the bound, none is sent that is older than its age.
+TEST(Assessment, NoPhaseOfFramesAndTicksIsLaterThanTheChainsBounds) {
+  Question question = small_question();
+  question.model.system = {};
+  const Assessment found = assess(question);
+  const std::int64_t frame_ns = *found.groups[0].response_ns - 400 * k_us;
+  const std::int64_t tick_ns = *found.groups[1].response_ns;
+  std::int64_t latest = 0, oldest = 0;
+  for (std::int64_t phase = 0; phase < 4 * k_ms; phase += 5 * k_us) {
+    const auto published = [&](int n) {
+      return phase + n * 20 * k_ms + 1 * k_ms + 8 * k_ms + 400 * k_us + frame_ns;
+    };
+    // Tick k looks at 4k; a frame that is published at that very moment has just missed it.
+    const auto first_tick = [&](int n) { return (published(n) / (4 * k_ms) + 1) * 4 * k_ms; };
+    const std::int64_t mid = phase + 0;
+    const std::int64_t wire = tick_ns + 270 * k_us;
+    latest = std::max(latest, first_tick(0) + wire - mid);
+    oldest = std::max(oldest, first_tick(1) - 4 * k_ms + wire - mid);
+  }
+  EXPECT_LE(latest, found.chains[1].total_ns);
+  EXPECT_LE(oldest, found.chains[1].maximum_data_age_ns);
+  EXPECT_GT(latest, found.chains[1].total_ns - 10 * k_us);
+  EXPECT_GT(oldest, found.chains[1].maximum_data_age_ns - 10 * k_us);
+}
+
+}  // namespace
+}  // namespace glint
