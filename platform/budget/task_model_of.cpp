@@ -6,6 +6,8 @@
 #include "graph/plan_tables.hpp"
 #include "nodes/output.hpp"
 #include "nodes/tracker.hpp"
+#include "platform/input_error.hpp"
+#include "schedules/node_bounds.hpp"
 
 namespace glint {
 namespace {
@@ -52,16 +54,33 @@ TaskModel task_structure_of(const Cell& cell) {
   tick.name = "tick";
   tick.min_gap_ns = tick_period_ns(cell);
   tick.deadline_ns = cell.deadlines.tick.nanoseconds;
-  tick.can_writes = can_frames_per_tick_max(cell);
+  tick.can_writes = can_frames_per_tick_max(cell, cell.tools.count);
   tick.nodes = nodes_of<Output>();
   model.groups = {frame, tick};
   return model;
 }
 
-int can_frames_per_tick_max(const Cell& cell) {
+TaskModel task_model_of(const Cell& cell, const CostTable& costs, const SystemShare& system,
+                        const Limits& limits) {
+  if (const std::string_view missing = missing_cost<Tracker, Output>(costs); !missing.empty()) {
+    throw InputError(std::string(costs.board) + ": no cost of " + std::string(missing) +
+                     "; expected one of each of its loops");
+  }
+  TaskModel model = task_structure_of(cell);
+  model.system = system;
+  model.groups[k_tick_group_index].can_writes = can_frames_per_tick_max(cell, limits.tools);
+  const auto give = [](TaskGroup& group, const auto& bounds) {
+    for (std::size_t n = 0; n < bounds.size(); ++n) group.nodes[n].bound_ns = bounds[n];
+  };
+  give(model.groups[k_frame_group_index], node_bounds<Tracker>(costs, limits));
+  give(model.groups[k_tick_group_index], node_bounds<Output>(costs, limits));
+  return model;
+}
+
+int can_frames_per_tick_max(const Cell& cell, int tools) {
   constexpr int k_classic_pose_frames = 5;
   // Beside the poses: a heartbeat, an emergency for each tool, the pair of time frames.
-  return cell.tools.count * (cell.can.fd ? 1 : k_classic_pose_frames) + 1 + cell.tools.count + 2;
+  return tools * (cell.can.fd ? 1 : k_classic_pose_frames) + 1 + tools + 2;
 }
 
 std::string graphs_signature() {

@@ -1,0 +1,150 @@
+#include "platform/budget/check.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "platform/budget/bus_frames.hpp"
+#include "platform/budget/task_model_of.hpp"
+#include "platform/input_error.hpp"
+#include "schedules/sensitivity.hpp"
+
+namespace glint {
+namespace {
+
+TaskModel what_if_model(const CheckInput& input, const CheckOptions& options,
+                        const Limits& limits) {
+  TaskModel model = task_model_of(input.cell, input.board.table(), input.board.system, limits);
+  model.cores = input.plan.cores;
+  for (const auto& [kernel, factor] : options.scale) {
+    model = scaled(model, factor, [&, &name = kernel](std::size_t g, std::size_t n) {
+      return model.groups[g].nodes[n].name == name;
+    });
+  }
+  if (options.clock != 1) {
+    model = scaled(
+        model, 1 / options.clock, [](std::size_t, std::size_t) { return true; }, true);
+  }
+  return model;
+}
+
+void check_scale(const Question& question, const CheckOptions& options) {
+  std::string known;
+  for (const TaskGroup& group : question.model.groups) {
+    for (const TaskNode& node : group.nodes) {
+      if (node.copy == 0) known += (known.empty() ? "" : ", ") + node.name;
+    }
+  }
+  for (const auto& [kernel, factor] : options.scale) {
+    if ((", " + known + ",").find(", " + kernel + ",") != std::string::npos) continue;
+    throw InputError("--scale " + kernel + ": no such node; expected one of " + known);
+  }
+}
+
+// A question about another number of tools or pixels, with the same plan.
+bool fits(const CheckInput& input, const CheckOptions& options, const Limits& limits) {
+  CheckInput other{input.cell, input.board, input.plan, limits, input.foreign};
+  return assess(question_of(other, options)).holds();
+}
+
+void add_kernels(CheckResult& result) {
+  const Question& question = result.question;
+  for (std::size_t g = 0; g < question.model.groups.size(); ++g) {
+    const auto& nodes = question.model.groups[g].nodes;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      if (nodes[n].copy != 0) continue;
+      KernelSlack slack{g, nodes[n].name, {}, {}};
+      slack.one_copy = largest_factor(
+          question, [&](std::size_t group, std::size_t node) { return group == g && node == n; });
+      slack.all_copies = nodes[n].copies == 1
+                             ? slack.one_copy
+                             : largest_factor(question, [&](std::size_t group, std::size_t node) {
+                                 return group == g && nodes[node].name == nodes[n].name;
+                               });
+      result.kernels.push_back(slack);
+    }
+  }
+}
+
+void add_largest(const CheckInput& input, const CheckOptions& options, CheckResult& result) {
+  for (int tools = k_tools_max; tools > 0 && result.tools_largest == 0; --tools) {
+    Limits limits = input.limits;
+    limits.tools = tools;
+    if (fits(input, options, limits)) result.tools_largest = tools;
+  }
+  // Whole rows: the largest number under which everything is still in time.
+  int low = 0, high = k_height_max;
+  while (low < high) {
+    const int rows = (low + high + 1) / 2;
+    Limits limits = input.limits;
+    limits.height = rows;
+    if (fits(input, options, limits)) {
+      low = rows;
+    } else {
+      high = rows - 1;
+    }
+  }
+  result.roi_pixels_largest = static_cast<long long>(low) * input.limits.width;
+}
+
+}  // namespace
+
+Question question_of(const CheckInput& input, const CheckOptions& options) {
+  Question question;
+  question.model = what_if_model(input, options, input.limits);
+  question.plan = input.plan;
+  question.sensor = {input.cell.camera.exposure.nanoseconds,
+                     input.cell.camera.transport.nanoseconds};
+  question.frames = own_frames_of(input.cell, input.limits.tools);
+  question.frames.insert(question.frames.end(), input.foreign.begin(), input.foreign.end());
+  question.rates = bit_rates_of(input.cell);
+  question.frame_to_can_deadline_ns = input.cell.deadlines.frame_to_can.nanoseconds;
+  question.age_deadline_ns = input.cell.lost_after.nanoseconds;
+  return question;
+}
+
+CheckResult check(const CheckInput& input, const CheckOptions& options) {
+  CheckResult result;
+  result.question = question_of(input, options);
+  check_scale(result.question, options);
+  result.assessment = assess(result.question);
+  result.fails = result.assessment.fails;
+  result.bus_load = load_of(result.question.frames, result.question.rates);
+  for (const auto& [kernel, factor] : options.scale) {
+    char text[160];
+    std::snprintf(text, sizeof text, "what if: %.80s takes %g times its bound", kernel.c_str(),
+                  factor);
+    result.what_if.emplace_back(text);
+  }
+  if (options.clock != 1) {
+    char text[80];
+    std::snprintf(text, sizeof text, "what if: the clock runs at %g of what is declared",
+                  options.clock);
+    result.what_if.emplace_back(text);
+  }
+
+  add_kernels(result);
+  const auto everything = [](std::size_t, std::size_t) { return true; };
+  for (std::size_t g = 0; g < result.question.model.groups.size(); ++g) {
+    result.groups.push_back(largest_factor(
+        result.question, [g](std::size_t group, std::size_t) { return group == g; }));
+  }
+  // Both chains run through the frame and the tick group.
+  const auto chain = largest_factor(result.question, [](std::size_t group, std::size_t) {
+    return group == k_frame_group_index || group == k_tick_group_index;
+  });
+  result.chains.assign(result.assessment.chains.size(), chain);
+  result.system = largest_factor(result.question, everything, true);
+  add_largest(input, options, result);
+
+  const double slack = result.system ? slack_percent(*result.system) : -100;
+  if (slack < options.margin_percent) {
+    char text[120];
+    std::snprintf(text, sizeof text, "margin: slack of the system %.1f %%, policy %.1f %%", slack,
+                  options.margin_percent);
+    result.fails.emplace_back(text);
+  }
+  if (!options.observed.empty()) compare_observed(options.observed, result);
+  return result;
+}
+
+}  // namespace glint

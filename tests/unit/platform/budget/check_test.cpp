@@ -1,0 +1,187 @@
+#include "platform/budget/check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include "platform/budget/bus_frames.hpp"
+#include "platform/budget/expected_board.hpp"
+#include "platform/budget/task_model_of.hpp"
+#include "platform/input_error.hpp"
+#include "schedules/synthesis.hpp"
+
+namespace glint {
+namespace {
+
+// Every loop of every kernel at one price.
+Board flat_board(double ns_a_count) {
+  Board board;
+  board.name = "flat";
+  board.sha256 = std::string(64, '0');
+  for (const KernelLoops& loops : expected_board().kernels) {
+    board.kernels.push_back({loops, std::vector<double>(loops.loops.size(), ns_a_count)});
+  }
+  price(board);
+  board.system = {20'000, 2'000, 1'000'000, 5'000, 500};
+  return board;
+}
+
+Limits small_limits() {
+  Limits limits;
+  limits.tools = 1;
+  limits.blobs = 16;
+  limits.markers_per_tool = 4;
+  return limits;
+}
+
+struct Fixture {
+  explicit Fixture(double ns_a_count = 0.2, int cores = 2) : board(flat_board(ns_a_count)) {
+    TaskModel model = task_model_of(cell, board.table(), board.system, small_limits());
+    model.cores = cores;
+    plan = synthesize(model);
+    plan.board_sha256 = board.sha256;
+  }
+  [[nodiscard]] CheckInput input() const { return {cell, board, plan, small_limits(), foreign}; }
+
+  Cell cell = default_cell();
+  Board board;
+  Plan plan;
+  std::vector<CanMessage> foreign;
+};
+
+TEST(Check, HoldsOnAFastBoardAndGivesEveryKeyThatItsReadersNeed) {
+  const Fixture fixture;
+  const CheckInput input = fixture.input();
+  const CheckResult result = check(input, {});
+  ASSERT_TRUE(result.fails.empty()) << result.fails.front();
+  const auto json = check_json(input, {}, result);
+  for (const char* key :
+       {"board", "board_sha256", "plan", "cores", "limits", "void", "groups", "nodes", "chains",
+        "can", "bus_load", "system_slack_percent", "break_even_clock", "largest", "estimates",
+        "margin_percent", "verdict", "fails"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  EXPECT_EQ(json["verdict"], "holds");
+  EXPECT_TRUE(json["void"].empty());
+  EXPECT_EQ(json["groups"].size(), 2U);
+  EXPECT_EQ(json["chains"].size(), 2U);
+  EXPECT_GT(json["system_slack_percent"].get<double>(), 0);
+  EXPECT_LT(json["break_even_clock"].get<double>(), 1);
+  EXPECT_GE(result.tools_largest, 1);
+  const std::string table = check_table(input, result);
+  EXPECT_NE(table.find("chain frame_to_can"), std::string::npos);
+  EXPECT_NE(table.find("estimate"), std::string::npos);
+}
+
+TEST(Check, BreakEvenClockHoldsAndABitLessDoesNot) {
+  const Fixture fixture;
+  const CheckResult result = check(fixture.input(), {});
+  ASSERT_TRUE(result.system);
+  CheckOptions options;
+  options.clock = 1 / *result.system * 1.0001;
+  EXPECT_TRUE(assess(question_of(fixture.input(), options)).holds());
+  options.clock = 1 / *result.system * 0.999;
+  EXPECT_FALSE(assess(question_of(fixture.input(), options)).holds());
+  const CheckResult slow = check(fixture.input(), options);
+  EXPECT_FALSE(slow.fails.empty());
+  EXPECT_EQ(check_json(fixture.input(), options, slow)["void"].size(), 1U);
+}
+
+TEST(Check, ScalesOneKernelUpToItsSlackAndNoFurther) {
+  const Fixture fixture;
+  const CheckResult result = check(fixture.input(), {});
+  for (const KernelSlack& slack : result.kernels) {
+    if (slack.name != "FindBlobs") continue;
+    ASSERT_TRUE(slack.all_copies);
+    CheckOptions options;
+    options.scale["FindBlobs"] = *slack.all_copies;
+    EXPECT_TRUE(assess(question_of(fixture.input(), options)).holds());
+    options.scale["FindBlobs"] = *slack.all_copies * 1.001;
+    EXPECT_FALSE(assess(question_of(fixture.input(), options)).holds());
+  }
+  CheckOptions unknown;
+  unknown.scale["blob"] = 1.3;
+  EXPECT_THROW((void)check(fixture.input(), unknown), InputError);
+}
+
+TEST(Check, FailsBelowThePolicysMarginAndAboveAnObservation) {
+  const Fixture fixture;
+  const double slack = 100 * (*check(fixture.input(), {}).system - 1);
+  CheckOptions options;
+  options.margin_percent = slack + 1;
+  EXPECT_EQ(check(fixture.input(), options).fails.size(), 1U);
+  options.margin_percent = slack - 1;
+  EXPECT_TRUE(check(fixture.input(), options).fails.empty());
+
+  options.observed = testing::TempDir() + "observed_summary.json";
+  for (const double max_us : {5.0, 1e6}) {
+    std::ofstream(options.observed) << "{\"frame_to_can_us\": {\"max\": " << max_us << "}}";
+    const CheckResult result = check(fixture.input(), options);
+    EXPECT_EQ(result.fails.empty(), max_us < 100);
+    if (!result.fails.empty()) {
+      EXPECT_EQ(result.fails.front().find("frame to CAN: observed 1000000.0 us, bound "), 0U);
+    }
+  }
+  std::ofstream(options.observed) << "{}";
+  EXPECT_THROW((void)check(fixture.input(), options), InputError);
+  std::remove(options.observed.c_str());
+}
+
+TEST(Check, SaysThatAPlanOfAnotherBoardFileIsVoid) {
+  Fixture fixture;
+  fixture.plan.board_sha256 = std::string(64, '1');
+  const CheckInput input = fixture.input();
+  EXPECT_EQ(check_json(input, {}, check(input, {}))["void"].size(), 1U);
+}
+
+TEST(BusFrames, CarryWhatTheCellSendsAndNoIdentifierTwice) {
+  const Cell cell = default_cell();
+  const auto own = own_frames_of(cell, 2);
+  // Two tools of five frames, heartbeat, two of time, an emergency each.
+  EXPECT_EQ(own.size(), 2U * 5 + 1 + 2 + 2);
+  EXPECT_EQ(own.front().identifier, cell.can.base_id);
+  for (const CanMessage& frame : own) EXPECT_TRUE(frame.fifo);
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    (void)foreign_frames_from_text(text, "foreign.toml", own_frames_of(default_cell(), 1));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(BusFrames, OfOthersAreReadAndRefusedByLine) {
+  const std::string good =
+      "[[frame]]\nname = \"torque\"\nidentifier = 0x120\nbytes = 8\nperiod_ms = 4\n"
+      "jitter_ms = 0.2\nnode = \"drive\"\nqueue = \"fifo\"\n";
+  const auto frames =
+      foreign_frames_from_text(good, "foreign.toml", own_frames_of(default_cell(), 1));
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].period_ns, 4'000'000);
+  EXPECT_EQ(frames[0].jitter_ns, 200'000);
+  EXPECT_EQ(frames[0].deadline_ns, 4'000'000);
+  EXPECT_TRUE(frames[0].fifo);
+  EXPECT_NE(frames[0].node, own_frames_of(default_cell(), 1)[0].node);
+
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  EXPECT_EQ(refusal(with("0x120", "0x800")).find("foreign.toml:3: frame.identifier is 2048"), 0U);
+  EXPECT_NE(refusal(with("0x120", "0x1A0")).find("is also that of tool 1 position"),
+            std::string::npos);
+  EXPECT_NE(refusal(with("bytes = 8", "bytes = 9")).find("from 0 to 8"), std::string::npos);
+  EXPECT_NE(refusal(with("period_ms = 4\n", "")).find("no period_ms"), std::string::npos);
+  EXPECT_NE(refusal(with("jitter_ms = 0.2", "jitter_ms = 5")).find("from 0 to 4"),
+            std::string::npos);
+  EXPECT_NE(refusal(good + good).find("is also that of torque"), std::string::npos);
+  std::string mixed = good + with("0x120", "0x121");
+  mixed.replace(mixed.rfind("fifo"), 4, "priority");
+  EXPECT_NE(refusal(mixed).find("queue differs"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace glint
