@@ -10,5 +10,6 @@ void add_budget_schedule(CLI::App& budget, int& exit_code);
 void add_budget_check(CLI::App& budget, int& exit_code);
 void add_budget_report(CLI::App& budget, int& exit_code);
 void add_budget_diff(CLI::App& budget, int& exit_code);
+void add_budget_export(CLI::App& budget, int& exit_code);
 
 }  // namespace glint

@@ -1,0 +1,93 @@
+// A report as headings, sentences, tables and figures, before it becomes HTML or Markdown: both say
+// the same because both are written from this.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace glint {
+
+// What a number is. A reader must never take one for another, so every figure's column says it.
+enum class NumberKind { none, bound, estimate, observed };
+
+enum class Tone { plain, good, bad, faint };
+
+struct TableCell {
+  std::string text;
+  Tone tone = Tone::plain;
+};
+
+struct Column {
+  std::string title;
+  NumberKind kind = NumberKind::none;
+  bool is_number = false;
+};
+
+struct Table {
+  std::string caption;
+  std::vector<Column> columns;
+  std::vector<std::vector<TableCell>> rows;
+};
+
+struct Sentence {
+  std::string text;
+  Tone tone = Tone::plain;
+};
+
+struct Command {
+  std::string text;  // one that a reader can paste
+};
+
+struct Figure {
+  std::string name;     // of its file beside the Markdown
+  std::string caption;  // also what a reader hears who does not see it
+  std::string svg;
+};
+
+struct FigureGrid {
+  std::vector<Figure> figures;  // small ones, side by side
+};
+
+using Block = std::variant<Sentence, Table, Command, Figure, FigureGrid>;
+
+struct Section {
+  std::string id, title;
+  std::vector<Block> blocks;
+};
+
+// One of the three figures at the top.
+struct Headline {
+  NumberKind kind = NumberKind::none;
+  std::string value;       // with its unit; "not applicable", "not given"
+  std::string what;        // of what
+  std::string provenance;  // board, table, build, machine, n
+};
+
+enum class Verdict { holds, fails, void_bound, not_shown };
+
+struct Document {
+  std::string title, subtitle;
+  Verdict verdict = Verdict::not_shown;
+  std::string verdict_text;
+  std::vector<Sentence> reasons;
+  std::vector<Headline> headlines;
+  std::vector<Section> sections;
+};
+
+[[nodiscard]] std::string name_of(NumberKind kind);
+[[nodiscard]] std::string name_of(Verdict verdict);
+
+// One page that needs nothing else: no network, no script, no font, no picture.
+[[nodiscard]] std::string html_of(const Document& document);
+
+// The same; its figures are files of their names beside it (in `figures/`).
+[[nodiscard]] std::string markdown_of(const Document& document);
+
+// All figures, in order.
+[[nodiscard]] std::vector<Figure> figures_of(const Document& document);
+
+// A figure as a file of its own, with the colours that the page would give it.
+[[nodiscard]] std::string standalone_svg(const Figure& figure);
+
+}  // namespace glint

@@ -1,0 +1,38 @@
+// The report's sections, each from the files that it needs. A file that was not given leaves a
+// sentence that says which command makes it.
+#pragma once
+
+#include "platform/budget/report/document.hpp"
+#include "platform/budget/report/report_sources.hpp"
+
+namespace glint {
+
+// Fills the top of the page: the verdict with its reasons, and the three figures.
+void judge(const ReportSources& sources, Document& document);
+
+[[nodiscard]] Section reading_section(const ReportSources& sources);
+[[nodiscard]] Section chains_section(const ReportSources& sources);
+[[nodiscard]] Section slack_section(const ReportSources& sources);
+[[nodiscard]] Section groups_section(const ReportSources& sources);
+[[nodiscard]] Section schedule_section(const ReportSources& sources);
+[[nodiscard]] Section nodes_section(const ReportSources& sources);
+[[nodiscard]] Section loops_section(const ReportSources& sources);
+[[nodiscard]] Section costs_section(const ReportSources& sources);
+[[nodiscard]] Section interference_section(const ReportSources& sources);
+[[nodiscard]] Section can_section(const ReportSources& sources);
+[[nodiscard]] Section estimates_section(const ReportSources& sources);
+[[nodiscard]] Section footprint_section(const ReportSources& sources);
+[[nodiscard]] Section worst_frames_section(const ReportSources& sources, std::size_t frames);
+[[nodiscard]] Section spoiled_section(const ReportSources& sources);
+[[nodiscard]] Section inputs_section(const ReportSources& sources);
+
+// Words shared by them.
+[[nodiscard]] std::string us_text(double us);    // "12.34", "-" where it is not finite
+[[nodiscard]] std::string count_text(double n);  // "12 345", with thin spaces
+[[nodiscard]] std::string percent_text(double percent);
+[[nodiscard]] Tone tone_of_slack(double percent, double wanted);
+// A node of check.json with the number of its copy, where its group has more than one of it.
+[[nodiscard]] std::string node_label(const JsonView& node, const std::vector<JsonView>& all);
+[[nodiscard]] Sentence not_given(const std::string& option, const std::string& command);
+
+}  // namespace glint

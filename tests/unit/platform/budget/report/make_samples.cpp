@@ -1,0 +1,13 @@
+// Leaves the sample files in a folder, for checks that are commands: make_samples FOLDER
+#include <cstdio>
+
+#include "tests/unit/platform/budget/report/sample_files.hpp"
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "expected a folder\n");
+    return 2;
+  }
+  glint::write_samples(argv[1], {});
+  return 0;
+}

@@ -1,0 +1,194 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "platform/budget/report/budget_report.hpp"
+#include "platform/budget/report/drawing.hpp"
+#include "platform/budget/report/sections.hpp"
+#include "platform/input_error.hpp"
+#include "tests/unit/platform/budget/report/sample_files.hpp"
+
+namespace glint {
+namespace {
+
+class BudgetReport : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        std::filesystem::path(testing::TempDir()) /
+        ("budget_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::remove_all(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] std::string path(const char* name) const { return (folder_ / name).string(); }
+
+  Document report(SampleSettings settings) {
+    settings.frames = std::min(settings.frames, 1300);
+    write_samples(folder_.string(), settings);
+    return budget_report(read_sources({{path("measure.json"), path("measure_time.json")},
+                                       path("check.json"),
+                                       path("run"),
+                                       path("footprint.json")}),
+                         {});
+  }
+
+  std::filesystem::path folder_;
+};
+
+const Section& section(const Document& document, const std::string& id) {
+  const auto found = std::find_if(document.sections.begin(), document.sections.end(),
+                                  [&](const Section& s) { return s.id == id; });
+  if (found == document.sections.end()) throw std::runtime_error("no section " + id);
+  return *found;
+}
+
+const Table& table(const Section& section, std::size_t number = 0) {
+  for (const Block& block : section.blocks) {
+    if (const Table* found = std::get_if<Table>(&block)) {
+      if (number-- == 0) return *found;
+    }
+  }
+  throw std::runtime_error("no table in " + section.id);
+}
+
+bool some_reason_has(const Document& document, const std::string& words) {
+  return std::any_of(document.reasons.begin(), document.reasons.end(), [&](const Sentence& reason) {
+    return reason.text.find(words) != std::string::npos;
+  });
+}
+
+TEST_F(BudgetReport, HoldsWhereEveryBoundMeetsItsDeadlineAndNothingSeenLiesAboveIt) {
+  const Document document = report({});
+  EXPECT_EQ(document.verdict, Verdict::holds) << document.reasons.front().text;
+  EXPECT_TRUE(some_reason_has(document, "best effort"));
+}
+
+TEST_F(BudgetReport, IsVoidWhereOneNodeOnceTookLongerThanItsBound) {
+  const Document document = report({.one_frame_above_bound = true});
+  EXPECT_EQ(document.verdict, Verdict::void_bound);
+  EXPECT_TRUE(some_reason_has(document, "FindBlobs: 1 of 1300 calls above their bound of 58"));
+}
+
+TEST_F(BudgetReport, FailsWhereTheCheckFailed) {
+  const Document document = report({.check_fails = true});
+  EXPECT_EQ(document.verdict, Verdict::fails);
+  EXPECT_TRUE(some_reason_has(document, "578 us above its deadline"));
+}
+
+TEST_F(BudgetReport, ShowsNothingItWasNotGiven) {
+  write_samples(folder_.string(), {.frames = 50});
+  const Document document = budget_report(read_sources({{path("measure.json")}, "", "", ""}), {});
+  EXPECT_EQ(document.verdict, Verdict::not_shown);
+  for (const Headline& headline : document.headlines) EXPECT_EQ(headline.value, "not given");
+  EXPECT_NE(markdown_of(document).find("Not given: pass `--check F`"), std::string::npos);
+}
+
+TEST_F(BudgetReport, KeepsBoundEstimateAndObservedInColumnsOfTheirOwn) {
+  const Document document = report({});
+  ASSERT_EQ(document.headlines.size(), 3U);
+  EXPECT_EQ(document.headlines[0].kind, NumberKind::bound);
+  EXPECT_EQ(document.headlines[0].value, "4474 \u00b5s");
+  EXPECT_EQ(document.headlines[1].kind, NumberKind::estimate);
+  EXPECT_EQ(document.headlines[1].value, "103 \u00b5s");
+  EXPECT_EQ(document.headlines[2].kind, NumberKind::observed);
+  // A chain's computed, declared and measured shares add up to its whole.
+  const Table& chains = table(section(document, "chains"));
+  EXPECT_EQ(chains.columns[2].kind, NumberKind::bound);
+  EXPECT_EQ(chains.columns[5].kind, NumberKind::estimate);
+  EXPECT_EQ(chains.rows[0][2].text, "4474");
+  EXPECT_EQ(chains.rows[0][3].text, "371");
+  EXPECT_EQ(chains.rows[0][4].text, "4000");
+  EXPECT_EQ(chains.rows[0][5].text, "103");
+}
+
+TEST_F(BudgetReport, ListsTheWorstFrameFirstWithTheCommandThatReplaysIt) {
+  const Document document = report({});
+  const Table& worst = table(section(document, "worst-frames"));
+  ASSERT_EQ(worst.rows.size(), 10U);
+  EXPECT_EQ(worst.rows[0][0].text, "1234");
+  EXPECT_EQ(worst.rows[0][4].text, "FindBlobs");
+  EXPECT_EQ(worst.rows[0][7].text, "`glint replay " + path("run") + "/run.mcap --frame 1234`");
+}
+
+TEST_F(BudgetReport, CountsEveryCallOnceInANodesTimes) {
+  const Document document = report({});
+  const Table& nodes = table(section(document, "nodes"));
+  ASSERT_EQ(nodes.rows.size(), 16U);
+  EXPECT_EQ(nodes.rows[6][1].text, "FindBlobs");
+  EXPECT_EQ(nodes.rows[6][3].text, "1\u2009300");
+  EXPECT_EQ(nodes.rows[6][7].text, us_text(0.8 * 58));
+  EXPECT_EQ(nodes.rows[6][8].text, "0");
+}
+
+TEST_F(BudgetReport, MarksALoopThatRanMoreOftenThanItMay) {
+  write_samples(folder_.string(), {.frames = 50});
+  std::ifstream in(path("measure.json"));
+  auto json = nlohmann::ordered_json::parse(in);
+  json["kernels"][1]["loops"][2]["observed"] = 262145;
+  std::ofstream(path("measure.json")) << json.dump();
+  const Document document = budget_report(read_sources({{path("measure.json")}, "", "", ""}), {});
+  const Table& loops = table(section(document, "loops"));
+  EXPECT_EQ(loops.rows[4][3].tone, Tone::bad);
+  EXPECT_EQ(loops.rows[3][3].tone, Tone::plain);
+}
+
+TEST_F(BudgetReport, SaysTheSameInMarkdownAsOnThePage) {
+  const Document document = report({});
+  const std::string html = html_of(document), markdown = markdown_of(document);
+  for (const Section& part : document.sections) {
+    EXPECT_NE(html.find(escaped(part.title)), std::string::npos) << part.title;
+    EXPECT_NE(markdown.find(part.title), std::string::npos) << part.title;
+  }
+  for (const Figure& figure : figures_of(document)) {
+    EXPECT_NE(html.find("figure-" + figure.name), std::string::npos) << figure.name;
+    EXPECT_NE(markdown.find("figures/" + figure.name + ".svg"), std::string::npos) << figure.name;
+  }
+}
+
+TEST_F(BudgetReport, NeedsNothingFromOutsideThePage) {
+  const std::string html = html_of(report({}));
+  EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
+  for (const char* outside : {"<script", "src=", "url(", "@import", "<link"}) {
+    EXPECT_EQ(html.find(outside), std::string::npos) << outside;
+  }
+}
+
+TEST_F(BudgetReport, ShowsNamesFromFilesAsTextAndNeverAsMarkup) {
+  write_samples(folder_.string(), {.frames = 50});
+  std::ifstream in(path("measure.json"));
+  auto json = nlohmann::ordered_json::parse(in);
+  json["board"] = "<img src=x onerror=alert(1)>";
+  std::ofstream(path("measure.json")) << json.dump();
+  const std::string html =
+      html_of(budget_report(read_sources({{path("measure.json")}, "", "", ""}), {}));
+  EXPECT_EQ(html.find("<img"), std::string::npos);
+  EXPECT_NE(html.find("&lt;img"), std::string::npos);
+}
+
+TEST_F(BudgetReport, RefusesABrokenFileByItsPlaceInIt) {
+  write_samples(folder_.string(), {.frames = 50});
+  const auto message_of = [&](const ReportPaths& paths) -> std::string {
+    try {
+      (void)budget_report(read_sources(paths), {});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  std::ofstream(path("broken.json")) << "{\n \"kernels\": [\n  {,}\n ]}";
+  EXPECT_NE(message_of({{path("broken.json")}, "", "", ""}).find("broken.json:3: "),
+            std::string::npos);
+  std::ofstream(path("short.json")) << R"({"kernels":[{"name":"FindBlobs","loops":[]}]})";
+  EXPECT_NE(message_of({{path("short.json")}, "", "", ""})
+                .find("short.json: /kernels/0/bound: found nothing; expected a value"),
+            std::string::npos);
+  EXPECT_NE(message_of({{}, path("measure.json"), "", ""}).find("no \"chains\""),
+            std::string::npos);
+  EXPECT_NE(message_of({}).find("nothing to report on"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace glint
