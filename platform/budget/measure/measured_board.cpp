@@ -1,0 +1,96 @@
+#include <sys/utsname.h>
+
+#include <algorithm>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+
+#include "platform/budget/measure/measure_result.hpp"
+#include "platform/cells/toml_reader.hpp"
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+std::string kernel_release() {
+  utsname name{};
+  return uname(&name) == 0 ? std::string(name.sysname) + " " + name.release : "unknown";
+}
+
+std::string governor() {
+  std::ifstream in("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
+  std::string text;
+  return in >> text ? text : "unknown: the kernel shows none";
+}
+
+double clock_mhz() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("cpu MHz")) return std::atof(line.c_str() + line.find(':') + 1);
+  }
+  return 0;
+}
+
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  char text[16];
+  std::strftime(text, sizeof text, "%Y-%m-%d", &parts);
+  return text;
+}
+
+}  // namespace
+
+Board measured_board(const Measurement& measurement, const BoardRequest& request,
+                     const BoardExpectation& expected) {
+  Board board;
+  board.name = request.name;
+  board.build = measurement.build;
+  board.graphs = expected.graphs;
+  board.counter = measurement.count_instructions ? CostCounter::instructions : CostCounter::time;
+  board.ns_per_instruction = measurement.count_instructions ? request.ns_per_instruction : 1;
+  BoardProvenance& from = board.provenance;
+  from.machine = measurement.machine;
+  from.kernel = kernel_release();
+  from.governor = measurement.count_instructions ? "none: instructions are counted" : governor();
+  from.version = measurement.version;
+  from.date = today();
+  from.command = request.command;
+  from.clock_mhz = measurement.count_instructions ? 0 : clock_mhz();
+  from.inputs = request.inputs;
+  from.margin_percent = request.margin_percent;
+  board.system = request.system;
+  for (const KernelLoops& kernel : expected.kernels) {
+    const auto found = std::find_if(measurement.kernels.begin(), measurement.kernels.end(),
+                                    [&](const auto& one) { return one.name == kernel.kernel; });
+    if (found == measurement.kernels.end() ||
+        !std::equal(found->loops.begin(), found->loops.end(), kernel.loops.begin(),
+                    kernel.loops.end())) {
+      throw InputError("--write: " + std::string(kernel.kernel) +
+                       " was not measured with the loops that the graph's node has; expected a" +
+                       " measuring program of this version, and all kernels");
+    }
+    board.kernels.push_back({kernel, found->cost});
+  }
+  price(board);
+  return board;
+}
+
+SystemShare system_share_in(const std::string& file) {
+  SystemShare share;
+  if (!std::filesystem::exists(file)) return share;
+  const toml::table root = parse_toml(read_text(file), file);
+  const toml::table* system = root["system"].as_table();
+  if (system == nullptr) return share;
+  constexpr std::int64_t second = 1'000'000'000;
+  TomlReader reader(*system, file, "system.");
+  share.wake_up_ns = reader.integer("wake_up_ns", 0, 0, second);
+  share.interrupt_ns = reader.integer("interrupt_ns", 0, 0, second);
+  share.interrupt_gap_ns = reader.integer("interrupt_gap_ns", 0, 0, second);
+  share.can_write_ns = reader.integer("can_write_ns", 0, 0, second);
+  share.core_handover_ns = reader.integer("core_handover_ns", 0, 0, second);
+  return share;
+}
+
+}  // namespace glint

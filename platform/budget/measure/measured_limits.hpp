@@ -1,0 +1,24 @@
+// The problems that costs are measured on: the largest there is, and a usual cell's.
+#pragma once
+
+#include <array>
+
+#include "kernels/limits.hpp"
+
+namespace glint {
+
+// Five tools and 64 blobs in a whole AHAT frame. One set of costs has to cover both this and
+// Limits{}, as costs are of a count and not of a cell.
+[[nodiscard]] constexpr Limits measured_cell_limits() {
+  Limits limits;
+  limits.tools = 5;
+  limits.blobs = 64;
+  limits.runs_per_band = 1024;
+  return limits;
+}
+
+[[nodiscard]] constexpr std::array<Limits, 2> measured_limits() {
+  return {Limits{}, measured_cell_limits()};
+}
+
+}  // namespace glint

@@ -1,0 +1,146 @@
+#include "platform/budget/measure/observations.hpp"
+
+#include <stdlib.h>
+
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <sstream>
+
+#include "platform/budget/measure/child_program.hpp"
+#include "platform/cells/toml_reader.hpp"
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+class MeasuringFolder {
+ public:
+  MeasuringFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "glint-measure-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw InputError(name + ": cannot be made");
+    path_ = name;
+  }
+  ~MeasuringFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  MeasuringFolder(const MeasuringFolder&) = delete;
+  MeasuringFolder& operator=(const MeasuringFolder&) = delete;
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+class MeasuringRun {
+ public:
+  explicit MeasuringRun(const MeasureRequest& request) : request_(request) {
+    if (!std::filesystem::exists(request.program)) {
+      throw MissingDevice(request.program + ": no measuring program there; expected glint_measure" +
+                          " (--measure-program FILE)");
+    }
+  }
+
+  Observations run(const std::function<void(int, int)>& progress) {
+    Observations all;
+    const std::vector<std::string> names = list(all.build);
+    std::map<int, std::string> running;
+    std::size_t next = 0;
+    int done = 0;
+    while (next < names.size() || !running.empty()) {
+      while (next < names.size() && static_cast<int>(running.size()) < request_.jobs) {
+        running[start(command_for(names[next]), names[next])] = names[next];
+        ++next;
+      }
+      const EndedProgram ended = wait_for_program();
+      const auto which = running.find(ended.process);
+      if (which == running.end()) continue;
+      check(ended.status, which->second);
+      running.erase(which);
+      progress(++done, static_cast<int>(names.size()));
+    }
+    for (const std::string& name : names) all.kernels.push_back(read(name));
+    return all;
+  }
+
+ private:
+  [[nodiscard]] std::vector<std::string> emulated(bool counted, const std::string& name) const {
+    std::vector<std::string> command;
+    if (request_.emulator.empty()) return command;
+    command = {request_.emulator, "-cpu", request_.cpu_model};
+    if (counted) {
+      command.insert(command.end(), {"-plugin", request_.plugin + ",out=" + name + ".counts"});
+    }
+    return command;
+  }
+  [[nodiscard]] std::vector<std::string> command_for(const std::string& kernel) const {
+    std::vector<std::string> command = emulated(request_.count_instructions, kernel);
+    command.insert(command.end(), {request_.program, "--kernel", kernel, "--inputs",
+                                   std::to_string(request_.inputs), "--out", kernel + ".txt",
+                                   "--counter", request_.count_instructions ? "marks" : "time",
+                                   "--cache", request_.cache, "--enemy", request_.enemy});
+    return command;
+  }
+  int start(const std::vector<std::string>& command, const std::string& name) const {
+    const int process = start_program(command, folder_.path(), name + ".output");
+    if (process < 0) throw MissingDevice("no process can be started to measure " + name);
+    return process;
+  }
+  void check(int status, const std::string& name) const {
+    if (status == 0) return;
+    if (status == 127 && !request_.emulator.empty()) {
+      throw MissingDevice(request_.emulator + " is not installed (Debian package qemu-user)");
+    }
+    throw InputError(request_.program + ": measuring " + name + " ended with " +
+                     std::to_string(status) + ": " +
+                     first_line(read_text(folder_.path() + "/" + name + ".output")));
+  }
+  std::vector<std::string> list(std::string& build) const {
+    std::vector<std::string> command = emulated(false, "");
+    command.insert(command.end(), {request_.program, "--list"});
+    const int process = start(command, "list");
+    EndedProgram ended;
+    do {
+      ended = wait_for_program();
+    } while (ended.process != process && ended.process >= 0);
+    check(ended.status, "list");
+    std::istringstream lines(read_text(folder_.path() + "/list.output"));
+    std::getline(lines, build);
+    std::vector<std::string> names;
+    std::string known;
+    for (std::string line; std::getline(lines, line);) {
+      known += (known.empty() ? "" : ", ") + line;
+      if (request_.kernel.empty() || request_.kernel == line) names.push_back(line);
+    }
+    if (names.empty()) {
+      throw InputError("--kernel is \"" + request_.kernel + "\"; expected one of " + known);
+    }
+    return names;
+  }
+  [[nodiscard]] KernelObservations read(const std::string& name) const {
+    const std::string file = folder_.path() + "/" + name + ".txt";
+    std::vector<std::uint64_t> counted;
+    if (request_.count_instructions) {
+      const std::string bytes = read_text(folder_.path() + "/" + name + ".counts");
+      counted.resize(bytes.size() / sizeof(std::uint64_t));
+      std::memcpy(counted.data(), bytes.data(), counted.size() * sizeof(std::uint64_t));
+      if (counted.empty())
+        throw InputError(name + ": nothing was counted; expected markers in " + request_.program);
+    }
+    return parse_observations(name, file, read_text(file), counted);
+  }
+
+  const MeasureRequest& request_;
+  MeasuringFolder folder_;
+};
+
+}  // namespace
+
+Observations measure(const MeasureRequest& request, const std::function<void(int, int)>& progress) {
+  return MeasuringRun(request).run(progress);
+}
+
+}  // namespace glint

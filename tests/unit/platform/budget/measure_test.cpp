@@ -1,0 +1,186 @@
+// Measures a kernel of known work through the real programs: GLINT_TOY_MEASURE is glint_measure
+// with that kernel in place of Glint's own.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "platform/budget/measure/cost_fit.hpp"
+#include "platform/budget/measure/measure_result.hpp"
+#include "platform/budget/measure/measured_limits.hpp"
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+MeasureRequest toy_request() {
+  MeasureRequest request;
+  request.program = GLINT_TOY_MEASURE;
+  request.emulator = "qemu-x86_64";
+  request.cpu_model = "qemu64";
+  request.plugin = GLINT_PLUGIN;
+  request.inputs = 400;
+  return request;
+}
+
+Observations observed(const MeasureRequest& request) {
+  return measure(request, [](int, int) {});
+}
+
+TEST(InputNumbers, ShareEveryTwentyAndAlternateBetweenTheLimits) {
+  int kinds[4] = {};
+  for (std::uint64_t i = 0; i < 20; ++i) ++kinds[static_cast<int>(input_of(i).kind)];
+  EXPECT_EQ(kinds[0], 12);
+  EXPECT_EQ(kinds[1], 4);
+  EXPECT_EQ(kinds[2], 2);
+  EXPECT_EQ(kinds[3], 2);
+  EXPECT_EQ(input_of(19).limits, 0u);
+  EXPECT_EQ(input_of(20).limits, 1u);
+}
+
+TEST(InputNumbers, NeverTakeAnInputTwice) {
+  std::set<std::tuple<int, std::uint64_t, std::uint64_t>> seen;
+  for (std::uint64_t i = 0; i < 10'000; ++i) {
+    const MeasuredInput input = input_of(i);
+    EXPECT_TRUE(seen.insert({static_cast<int>(input.kind), input.number, input.limits}).second);
+  }
+}
+
+TEST(InputNumbers, PutHalfOfEveryKindIntoEachHalf) {
+  for (std::uint64_t limits = 0; limits < k_limit_sets; ++limits) {
+    for (int kind = 0; kind < 4; ++kind) {
+      int fitted = 0;
+      for (std::uint64_t number = 0; number < 1000; ++number) {
+        fitted += fits_on({static_cast<InputKind>(kind), number, limits}) ? 1 : 0;
+      }
+      EXPECT_NEAR(fitted, 500, 80) << kind;  // five standard deviations of a fair coin
+    }
+  }
+}
+
+#if GLINT_CAN_COUNT
+TEST(CountInstructions, GivesTheSameNumbersTwice) {
+  const Observations first = observed(toy_request());
+  const Observations second = observed(toy_request());
+  ASSERT_EQ(first.kernels.size(), 1u);
+  ASSERT_EQ(first.kernels[0].calls.size(), 400u);
+  for (std::size_t i = 0; i < 400; ++i) {
+    EXPECT_EQ(first.kernels[0].calls[i].call.cost, second.kernels[0].calls[i].call.cost);
+    EXPECT_EQ(first.kernels[0].calls[i].call.counts, second.kernels[0].calls[i].call.counts);
+  }
+}
+
+TEST(CountInstructions, CountsExactlyWhatALoopAdds) {
+  const auto& calls = observed(toy_request()).kernels.at(0).calls;
+  const auto cost_at = [&](std::int64_t steps) {
+    for (const Observation& seen : calls) {
+      if (seen.call.counts[1] == steps) return seen.call.cost;
+    }
+    return -1.0;
+  };
+  const double none = cost_at(0);
+  const double cell = cost_at(64);
+  const double most = cost_at(256);
+  ASSERT_GE(none, 0);
+  // A step is some whole number of instructions, the same one wherever the loop is long.
+  const double step = (most - cell) / (256 - 64);
+  EXPECT_EQ(step, static_cast<double>(static_cast<int>(step)));
+  EXPECT_GE(step, 3);  // load, reckon, store
+  EXPECT_LT(cell - none - 64 * step, 10);
+}
+
+TEST(CountInstructions, FindsTheEnvelopeOfAKernelWhoseCostIsExact) {
+  const KernelObservations toy = observed(toy_request()).kernels.at(0);
+  const MeasuredCosts costs = costs_of(toy, nullptr, 0);
+  EXPECT_TRUE(costs.holds());
+  EXPECT_NEAR(costs.at[0].ratio(), 1, 0.001);
+  EXPECT_NEAR(costs.at[1].ratio(), 1, 0.01);
+  EXPECT_EQ(costs.judge_half.above, 0);
+  EXPECT_EQ(costs.declared[1], Limits{}.blobs);
+  EXPECT_EQ(costs.observed[1], Limits{}.blobs);
+}
+
+TEST(CountInstructions, SaysWhichEmulatorIsMissing) {
+  MeasureRequest request = toy_request();
+  request.emulator = "qemu-no-such-machine";
+  EXPECT_THROW((void)observed(request), MissingDevice);
+}
+#endif
+
+TEST(Measure, TakesTimeOnThisMachine) {
+  MeasureRequest request = toy_request();
+  request.count_instructions = false;
+  request.emulator.clear();
+  const KernelObservations toy = observed(request).kernels.at(0);
+  double dearest = 0;
+  for (const Observation& seen : toy.calls) dearest = std::max(dearest, seen.call.cost);
+  EXPECT_GT(dearest, 10);  // 256 dependent steps through memory
+}
+
+TEST(Measure, RefusesAKernelThatIsNotThereAndNamesThoseThatAre) {
+  MeasureRequest request = toy_request();
+  request.count_instructions = false;
+  request.emulator.clear();
+  request.kernel = "Tox";
+  try {
+    (void)observed(request);
+    FAIL() << "measured";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "--kernel is \"Tox\"; expected one of Toy");
+  }
+}
+
+TEST(Measure, SaysWhereNoMeasuringProgramIs) {
+  MeasureRequest request = toy_request();
+  request.program = "/no/such/program";
+  EXPECT_THROW((void)observed(request), MissingDevice);
+}
+
+KernelObservations parsed(const std::string& text, const std::vector<std::uint64_t>& counted) {
+  return parse_observations("Toy", "toy.txt", text, counted);
+}
+const std::string k_seen =
+    "loops call steps\nworst 0 1 10\nworst 1 1 5\ninput 0 worst 3 1 10 7.5\n";
+
+TEST(Observations, TakeTheirCostsFromTheCounterLessTheEmptyCall) {
+  EXPECT_EQ(parsed(k_seen, {}).calls.at(0).call.cost, 7.5);
+  EXPECT_EQ(parsed(k_seen, {9, 109}).calls.at(0).call.cost, 100);
+  EXPECT_EQ(parsed(k_seen, {}).worst[1][1], 5);
+}
+
+TEST(Observations, AreRefusedWhereTheyAreNotWhole) {
+  EXPECT_THROW((void)parsed(k_seen, {9, 109, 110}), InputError);
+  EXPECT_THROW((void)parsed(k_seen, {9, 8}), InputError);
+  EXPECT_THROW((void)parsed("loops call steps\ninput 0 worst 3 1 10\n", {}), InputError);
+  EXPECT_THROW((void)parsed("loops call\ninput 0 wurst 3 1 10\n", {}), InputError);
+  EXPECT_THROW((void)parsed("loops\n", {}), InputError);
+  EXPECT_THROW((void)parsed("loops call\nworst 2 1\n", {}), InputError);
+}
+
+// A kernel that is dearer than its board says is no news to hide: the bound does not hold.
+TEST(CostFit, SeesACallAboveTheBoundOfABoard) {
+  const KernelObservations seen = parsed(k_seen, {0, 1000});
+  const std::array<std::string_view, 2> loops = {"call", "steps"};
+  const BoardKernel dear{{"Toy", loops}, {0, 100}};
+  const BoardKernel cheap{{"Toy", loops}, {0, 99}};
+  EXPECT_TRUE(costs_of(seen, &dear, 0).holds());
+  EXPECT_FALSE(costs_of(seen, &cheap, 0).holds());
+  EXPECT_EQ(costs_of(seen, &cheap, 0).at[0].bound, 990);
+}
+
+TEST(CostFit, MakesABoardOfEveryKernelOrNone) {
+  Measurement measurement;
+  const std::array<std::string_view, 2> loops = {"call", "steps"};
+  BoardExpectation expected;
+  expected.kernels.push_back({"Toy", loops});
+  BoardRequest request;
+  request.name = "toy";
+  request.ns_per_instruction = 2;
+  EXPECT_THROW((void)measured_board(measurement, request, expected), InputError);
+  measurement.kernels.push_back(costs_of(parsed(k_seen, {0, 1000}), nullptr, 0));
+  const Board board = measured_board(measurement, request, expected);
+  EXPECT_EQ(bound_ns(board.costs.at(0), {{1, 10}}), 2000);
+}
+
+}  // namespace
+}  // namespace glint
