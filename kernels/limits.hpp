@@ -11,10 +11,11 @@ inline constexpr int k_markers_per_tool_max = 8;
 inline constexpr int k_blobs_max = 256;
 inline constexpr int k_row_bands = 4;  // how often the frame is split; never the worker count
 inline constexpr int k_runs_per_band_max = 4096;
-inline constexpr int k_reflectivity_bytes_max = 2;    // of a pixel
-inline constexpr int k_centroid_pixels_max = 98'304;  // of all blobs' boxes: 384 a blob
-inline constexpr int k_range_pixels_max = 32'768;     // looked at for depth: 128 a blob
-inline constexpr int k_range_samples_max = 6'144;     // ranges that are averaged: 24 a blob
+inline constexpr int k_reflectivity_bytes_max = 2;  // of a pixel
+// What all blobs share, in parts of a blob. Most take less, and a larger one what they leave.
+inline constexpr int k_centroid_pixels_a_blob = 320;   // of the box a centroid is weighed in
+inline constexpr int k_range_pixels_a_blob = 128;      // looked at for depth
+inline constexpr int k_range_samples_a_blob = 24;      // ranges that are averaged
 inline constexpr int k_labelings_max = 8;              // kept for each tool, best first
 inline constexpr int k_lens_steps_max = 40;            // of a search in a lens table, a projection
 inline constexpr int k_pair_tests_max = 16'384;        // of a distance against a tool's, a tool
@@ -35,9 +36,9 @@ struct Limits {
   int search_steps = k_search_steps_max;
   int background_steps = k_background_steps_max;
   int reflectivity_bytes = k_reflectivity_bytes_max;
-  int centroid_pixels = k_centroid_pixels_max;
-  int range_pixels = k_range_pixels_max;
-  int range_samples = k_range_samples_max;
+  int centroid_pixels_a_blob = k_centroid_pixels_a_blob;
+  int range_pixels_a_blob = k_range_pixels_a_blob;
+  int range_samples_a_blob = k_range_samples_a_blob;
 };
 
 }  // namespace glint

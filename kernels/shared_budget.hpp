@@ -2,15 +2,13 @@
 // those that come after have theirs.
 #pragma once
 
-#include <algorithm>
-
 namespace glint {
 
 class SharedBudget {
  public:
-  // total: for at most `takers_max`, of which `takers` come.
-  SharedBudget(int total, int takers_max, int takers)
-      : left_(total), share_(total / std::max(takers_max, 1)), takers_left_(takers) {}
+  // A share for each of `takers_max`, of which `takers` come.
+  SharedBudget(int share, int takers_max, int takers)
+      : left_(share * takers_max), share_(share), takers_left_(takers) {}
 
   // To be called once for each taker, before it spends.
   [[nodiscard]] int most_for_next() {

@@ -84,7 +84,7 @@ BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
   }
   out.dropped = static_cast<std::uint32_t>(scratch.component_count - candidates);
   sort_by_rows(scratch, candidates);
-  SharedBudget budget(limits.centroid_pixels, limits.blobs, candidates);
+  SharedBudget budget(limits.centroid_pixels_a_blob, limits.blobs, candidates);
   for (int i = 0; i < candidates; ++i) {
     const Component& component = scratch.components[scratch.candidate[static_cast<std::size_t>(i)]];
     const int most_pixels = budget.most_for_next();
@@ -100,7 +100,7 @@ BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
         blob_of(frame, component, centroid, settings.saturated_from);
   }
   work.blobs = out.count;
-  work.pixels = limits.centroid_pixels - budget.left();
+  work.pixels = limits.blobs * limits.centroid_pixels_a_blob - budget.left();
   return work;
 }
 

@@ -3,8 +3,8 @@
 // What:     connected components inside the size gate, each with a sub-pixel centroid. More than
 //           limits.blobs: those nearest a predicted marker stay, then the topmost, then the
 //           leftmost. A blob whose grown box holds no more than its share of
-//           limits.centroid_pixels has the centroid of that box, a larger one if the others leave
-//           enough, by rows from the top; else the plain mean.
+//           limits.centroid_pixels_a_blob has the centroid of that box, a larger one if the others
+//           leave enough, by rows from the top; else the plain mean.
 // Cost:     linear in runs; distances only when full (components x predictions); linear in the
 //           grown boxes' pixels.
 // Worst:    as many single runs inside the gate as fit, as many predictions as tools have markers,
@@ -46,7 +46,8 @@ BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
   const int runs =
       k_row_bands * std::min(limits.runs_per_band, band_rows * ((limits.width + 1) / 2));
   const int fours = (limits.tools * limits.markers_per_tool + 3) / 4;
-  return {runs, runs * fours, std::min(limits.blobs, runs), limits.centroid_pixels / 4 * 4};
+  return {runs, runs * fours, std::min(limits.blobs, runs),
+          limits.blobs * limits.centroid_pixels_a_blob};
 }
 
 }  // namespace glint

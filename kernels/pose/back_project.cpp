@@ -128,8 +128,8 @@ BackProjectWork back_project(const Frame& frame, const Blobs& blobs, const Camer
   BackProjectWork work;
   out.count = 0;
   const int count = std::clamp(blobs.count, 0, std::min(limits.blobs, k_blobs_max));
-  SharedBudget pixels(limits.range_pixels, limits.blobs, count);
-  SharedBudget samples(limits.range_samples, limits.blobs, count);
+  SharedBudget pixels(limits.range_pixels_a_blob, limits.blobs, count);
+  SharedBudget samples(limits.range_samples_a_blob, limits.blobs, count);
   for (int i = 0; i < count; ++i) {
     const Measured one =
         measure(frame, blobs.items[static_cast<std::size_t>(i)], static_cast<std::uint16_t>(i),

@@ -39,8 +39,8 @@ struct NominalMarker {
 
 // What one blob may take: pixels looked at for depth, samples averaged.
 struct MarkerWorkLimits {
-  int pixels = k_range_pixels_max;
-  int samples = k_range_samples_max;
+  int pixels = k_blobs_max * k_range_pixels_a_blob;
+  int samples = k_blobs_max * k_range_samples_a_blob;
 };
 
 // blob_index: its place in Blobs. True: out has a ray; without any depth k_marker_no_depth is set
@@ -68,9 +68,9 @@ BackProjectWork back_project(const Frame& frame, const Blobs& blobs, const Camer
 
 // What back_project may do at most.
 [[nodiscard]] constexpr BackProjectWork back_project_work_max(const Limits& limits) {
-  const int samples = std::min(limits.range_samples, limits.blobs * k_range_values_max);
-  return {limits.blobs, limits.blobs * k_local_rays_steps_max, limits.range_pixels, samples,
-          samples};
+  const int samples = limits.blobs * limits.range_samples_a_blob;
+  return {limits.blobs, limits.blobs * k_local_rays_steps_max,
+          limits.blobs * limits.range_pixels_a_blob, samples, samples};
 }
 
 // Pixels that a sphere (or a disc that faces the camera) of this radius covers around a pixel with

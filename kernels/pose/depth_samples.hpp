@@ -25,7 +25,7 @@ inline constexpr int k_ring_samples_max = k_range_values_max;
 inline constexpr int k_scan_radius_max_px = 40;
 // The square around a disc of the largest inner radius: it is always looked at as a whole.
 inline constexpr int k_inner_square_max_px = 9 * 9;
-static_assert(k_range_pixels_max / k_blobs_max > k_inner_square_max_px);
+static_assert(k_range_pixels_a_blob > k_inner_square_max_px);
 
 // One blob and the lens around its middle.
 struct DepthView {
