@@ -25,8 +25,8 @@ struct CorrespondSettings {
   int search_steps_max = k_search_steps_max;  // of the search; a fit counts as k_fit_steps
 };
 
-// What a fit costs beside naming one more marker, in instructions on x86-64 and arm64 alike.
-inline constexpr int k_fit_steps = 24;
+// What a fit costs beside naming one more marker, in time and, nearly, in instructions.
+inline constexpr int k_fit_steps = 40;
 
 // A blob of a few pixels may be wider than its marker by this much whatever the factor.
 inline constexpr double k_area_slack_px = 8;

@@ -47,20 +47,28 @@ int LabelingSearch::next_candidate(int i) {
 
 // Fills the next level's sets. Returns how many later markers may still be named.
 int LabelingSearch::narrow(int level, int i, int a) {
-  const std::uint64_t* row = matches_.row(i, a);
-  const std::uint64_t* from = sets_[level].word.data();
-  std::uint64_t* to = sets_[level + 1].word.data();
-  int possible = 0;
+  const std::uint64_t* const row = &matches_.word[matches_.set_of(i, a, 0)];
+  const std::uint64_t* const from = sets_[level].word.data();
+  std::uint64_t* const to = sets_[level + 1].word.data();
   const int words = candidates_.words;
-  for (int j = 0; j < tool_.marker_count; ++j) {
+  work_.words_narrowed += matches_.words_a_row();
+  int possible = 0;
+  if (words == 1) {  // the usual case, without the inner loop
+    for (int j = 0; j < tool_.marker_count; ++j) {
+      const std::uint64_t both = from[j] & row[j];
+      to[j] = both;
+      possible += both != 0 ? 1 : 0;
+    }
+    return possible;
+  }
+  for (int j = 0, at = 0; j < tool_.marker_count; ++j) {
     std::uint64_t any = 0;
-    for (int w = 0; w < words; ++w, ++row, ++from, ++to) {
-      *to = *from & *row;
-      any |= *to;
+    for (int w = 0; w < words; ++w, ++at) {
+      to[at] = from[at] & row[at];
+      any |= to[at];
     }
     possible += any != 0 ? 1 : 0;
   }
-  work_.words_narrowed += matches_.words_a_row();
   return possible;
 }
 

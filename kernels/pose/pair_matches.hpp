@@ -36,15 +36,10 @@ struct PairMatches {
   std::array<std::uint64_t, k_words_max> word;
   int candidates = 0, markers = 0, words = 0;  // in use, and so the rows' places
 
-  [[nodiscard]] std::uint64_t* row(int i, int a) { return &word[start_of(i, a)]; }
-  [[nodiscard]] const std::uint64_t* row(int i, int a) const { return &word[start_of(i, a)]; }
   [[nodiscard]] int words_a_row() const { return markers * words; }
-
- private:
-  [[nodiscard]] std::size_t start_of(int i, int a) const {
-    return (static_cast<std::size_t>(i) * static_cast<std::size_t>(candidates) +
-            static_cast<std::size_t>(a)) *
-           static_cast<std::size_t>(markers * words);
+  // Where the set for marker j stands when candidate a is marker i.
+  [[nodiscard]] int set_of(int i, int a, int j) const {
+    return (i * candidates + a) * words_a_row() + j * words;
   }
 };
 

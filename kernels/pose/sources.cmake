@@ -8,5 +8,7 @@ target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/tool.cpp
   ${CMAKE_CURRENT_LIST_DIR}/pair_matches.cpp ${CMAKE_CURRENT_LIST_DIR}/labeling_search.cpp
   ${CMAKE_CURRENT_LIST_DIR}/correspond.cpp ${CMAKE_CURRENT_LIST_DIR}/assign.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fit_covariance.cpp)
-# Nobody reads errno here; where sqrt may set it, the pass over all pairs handles one at a time.
-set_source_files_properties(${CMAKE_CURRENT_LIST_DIR}/pair_matches.cpp PROPERTIES COMPILE_OPTIONS -fno-math-errno)
+# Nobody reads errno or asks for floating-point traps here; where either might be seen, the pass over
+# all pairs handles one at a time. Neither changes a result.
+set_source_files_properties(${CMAKE_CURRENT_LIST_DIR}/pair_matches.cpp PROPERTIES
+  COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math")
