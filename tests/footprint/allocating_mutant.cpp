@@ -1,6 +1,4 @@
 // What the check of symbols must catch: linked into nothing.
 #include <cstdlib>
 
-void* one_block() {
-  return std::malloc(64);
-}
+void* one_block() { return std::malloc(64); }
