@@ -29,11 +29,8 @@ namespace detail {
 template <class Listed>
 [[nodiscard]] consteval KernelLoops loops_of() {
   using Node = typename graph::Unit<Listed>::Node;
-  if constexpr (graph::Budgeted<Node, Limits>) {
-    return {graph::type_name<Node>(), Node::k_loops};
-  } else {
-    return {graph::type_name<Node>(), {}};
-  }
+  (void)sizeof(NodeWithoutBudget<Node, graph::Budgeted<Node, Limits>>);
+  return {graph::type_name<Node>(), Node::k_loops};
 }
 
 template <class... Listed>

@@ -18,12 +18,15 @@ namespace glint {
 
 inline constexpr std::int64_t k_no_bound = -1;
 
-// Whether the costs are of these loops, in this order: a table of an older kernel is not.
+// Whether the costs are of these loops, in this order, and of no other that costs anything: a table
+// of an older kernel is not.
 [[nodiscard]] constexpr bool costs_of(const KernelCost& cost, const KernelLoops& kernel) {
   for (std::size_t loop = 0; loop < graph::k_loops_max; ++loop) {
-    const std::string_view expected =
-        loop < kernel.loops.size() ? kernel.loops[loop] : std::string_view();
-    if (cost.loops[loop] != expected) return false;
+    if (loop >= kernel.loops.size()) {
+      if (cost.cost_ps[loop] != 0) return false;
+    } else if (cost.loops[loop] != kernel.loops[loop]) {
+      return false;
+    }
   }
   return true;
 }
@@ -41,14 +44,10 @@ template <class... G>
 // One node (of a split: each copy) in nanoseconds.
 template <class Node>
 [[nodiscard]] constexpr std::int64_t node_bound(const CostTable& table, const Limits& limits) {
-  if constexpr (graph::Budgeted<Node, Limits>) {
-    const KernelLoops kernel{graph::type_name<Node>(), Node::k_loops};
-    const KernelCost* cost = table.find(kernel.kernel);
-    if (cost == nullptr || !costs_of(*cost, kernel)) return k_no_bound;
-    return bound_ns(*cost, Node::worst(limits));
-  } else {
-    return k_no_bound;
-  }
+  const KernelLoops kernel{graph::type_name<Node>(), Node::k_loops};
+  const KernelCost* cost = table.find(kernel.kernel);
+  if (cost == nullptr || !costs_of(*cost, kernel)) return k_no_bound;
+  return bound_ns(*cost, Node::worst(limits));
 }
 
 // By node number: the order of execution, each copy of a split by itself, as in

@@ -1,0 +1,5 @@
+// expect: success
+#include "budget.hpp"
+
+struct FrameChain : FrameUntil<6'222> {};
+static_assert(fits<k_board, Limits{}, TickChain, FrameChain>);

@@ -1,0 +1,5 @@
+// expect: ChainMissesDeadline<FrameChain, FitSpots, 1(L|LL|l)?, false>
+#include "budget.hpp"
+
+struct FrameChain : FrameUntil<6'221> {};
+static_assert(fits<k_board, Limits{}, TickChain, FrameChain>);

@@ -1,0 +1,5 @@
+// expect: ChainMissesDeadline<FrameChain, FindSpots, 3222(L|LL|l)?, false>
+#include "budget.hpp"
+
+struct FrameChain : FrameUntil<3'000> {};
+static_assert(fits<k_board, Limits{}, TickChain, FrameChain>);
