@@ -1,0 +1,92 @@
+// glint budget check: what a plan is worth on a board, before it runs.
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "platform/budget/bus_frames.hpp"
+#include "platform/budget/check.hpp"
+#include "platform/budget/expected_board.hpp"
+#include "platform/budget/plan_file.hpp"
+#include "platform/budget/task_model_of.hpp"
+#include "platform/cli/budget_commands.hpp"
+#include "platform/cli/output_file.hpp"
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+struct CheckArguments {
+  std::string cell, board, plan, json;
+  std::vector<std::string> scale;
+  CheckOptions options;
+};
+
+// "FindBlobs=1.3"
+void add_scale(const std::string& text, CheckOptions& options) {
+  const std::size_t at = text.find('=');
+  char* end = nullptr;
+  const double factor = at == std::string::npos ? 0 : std::strtod(text.c_str() + at + 1, &end);
+  if (at == std::string::npos || end == text.c_str() + at + 1 || *end != '\0' ||
+      !(factor > 0 && factor <= 1000)) {
+    throw InputError("--scale " + text + ": expected NODE=FACTOR with a factor up to 1000");
+  }
+  options.scale[text.substr(0, at)] = factor;
+}
+
+int run_check(const CheckArguments& arguments) {
+  const Cell cell = arguments.cell.empty() ? default_cell() : load_cell(arguments.cell);
+  const Board board = load_board(arguments.board, expected_board(), BoardUse::analyse);
+  CheckOptions options = arguments.options;
+  for (const std::string& scale : arguments.scale) add_scale(scale, options);
+
+  CheckInput input{cell, board, {}, budget_limits(cell), {}};
+  TaskModel model = task_model_of(cell, board.table(), board.system, input.limits);
+  input.plan = load_plan(arguments.plan, model, graphs_signature());
+  if (!options.foreign.empty()) {
+    input.foreign = foreign_frames(options.foreign, own_frames_of(cell, input.limits.tools));
+  }
+  model.cores = input.plan.cores;
+  const std::vector<std::string> faults = check_plan(input.plan, model);
+  if (!faults.empty()) throw InputError(arguments.plan + ": " + faults.front());
+  if (input.plan.traffic.tools < input.limits.tools) {
+    throw InputError(arguments.plan + ": made for " + std::to_string(input.plan.traffic.tools) +
+                     " tools; expected " + std::to_string(input.limits.tools) + " as in the cell");
+  }
+
+  const CheckResult result = check(input, options);
+  std::fputs(check_table(input, result).c_str(), stdout);
+  nlohmann::ordered_json json = check_json(input, options, result);
+  json["plan"] = arguments.plan;
+  write_json(arguments.json, json);
+  return result.fails.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+void add_budget_check(CLI::App& budget, int& exit_code) {
+  auto arguments = std::make_shared<CheckArguments>();
+  CheckOptions& options = arguments->options;
+  CLI::App* command =
+      budget.add_subcommand("check", "responses, chains, bus and slack of a plan on a board");
+  command->add_option("--cell", arguments->cell, "cell file; the built-in one where left out");
+  command->add_option("--board", arguments->board, "board file, or a built-in board's name")
+      ->required();
+  command->add_option("--plan", arguments->plan, "plan file of `glint budget schedule`")
+      ->required();
+  command->add_option("--foreign", options.foreign, "file of other nodes' CAN frames");
+  command->add_option("--scale", arguments->scale, "NODE=FACTOR: what if it were slower");
+  command->add_option("--clock", options.clock, "fraction of the declared clock: what if")
+      ->check(CLI::Range(0.001, 1000.0))
+      ->capture_default_str();
+  command->add_option("--margin", options.margin_percent, "least slack of the system in %")
+      ->capture_default_str();
+  command->add_option("--observed", options.observed, "summary.json of a run to hold against it");
+  command->add_option("--json", arguments->json, "write the figures here");
+  command->footer(
+      "Exit code 1: a bound above its deadline, an observation above its bound, or too little\n"
+      "margin.\n"
+      "Example: glint budget check --board cortex-a72-emulated --plan plan.toml --clock 0.8");
+  command->callback([arguments, &exit_code] { exit_code = run_check(*arguments); });
+}
+
+}  // namespace glint
