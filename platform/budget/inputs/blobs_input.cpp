@@ -1,0 +1,177 @@
+// FindBlobs' inputs: a frame with its runs, and where markers are predicted.
+#include <algorithm>
+#include <array>
+
+#include "kernels/image/grown_box.hpp"
+#include "nodes/image_nodes.hpp"
+#include "platform/budget/inputs/image_inputs.hpp"
+
+namespace glint {
+namespace {
+
+constexpr int k_wide_px = k_grown_box_max;  // the widest blob that still has a grown box
+constexpr int k_wide_pitch_px = 64;
+
+class MeasuredFindBlobs final : public MeasuredKernel {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "FindBlobs"; }
+  [[nodiscard]] std::span<const std::string_view> loops() const override {
+    return FindBlobs::k_loops;
+  }
+  [[nodiscard]] graph::LoopCounts worst(const Limits& limits) const override {
+    return FindBlobs::worst(limits);
+  }
+  void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
+    CounterRandom random(2, kind, number);
+    limits_ = limits;
+    node_->limits = limits;
+    node_->settings = {1, 4096, drawn_threshold(limits), 0xFFFF};
+    drawn_.clear(limits);
+    predict_at_random(random);
+    switch (kind) {
+      case InputKind::typical:
+        drawn_.scene(random);
+        break;
+      case InputKind::recorded:
+        drawn_.recorded(random);
+        break;
+      case InputKind::worst:
+        draw_worst(number);
+        break;
+      case InputKind::searched:
+        search(random);
+        break;
+    }
+    find_runs();
+  }
+  void run() noexcept override { (*node_)(frame_, *bands_, *predictions_, *blobs_); }
+  [[nodiscard]] graph::LoopCounts counts() const override { return node_->counts(); }
+
+ private:
+  void find_runs() {
+    frame_ = drawn_.view();
+    for (int band = 0; band < k_row_bands; ++band) {
+      threshold_runs(frame_, whole_frame(frame_), drawn_threshold(limits_), {band, k_row_bands},
+                     (*bands_)[band], limits_);
+    }
+  }
+
+  void predict_at_random(CounterRandom& random) {
+    predictions_->marker_count = limits_.tools * limits_.markers_per_tool;
+    for (int i = 0; i < predictions_->marker_count; ++i) {
+      const double x = random.uniform() * limits_.width;
+      predictions_->markers_px[static_cast<std::size_t>(i)] = {x,
+                                                               random.uniform() * limits_.height};
+    }
+  }
+
+  // Single dots, as many as there are runs, all of them candidates; and blobs as wide as a box may
+  // be, as many as may stay, with the predictions between them, so that these are the ones.
+  void draw_dots_and_bars(int gap) {
+    const int per_row = std::max(limits_.width / k_wide_pitch_px, 1);
+    const int wide_a_band = limits_.blobs / k_row_bands;
+    const int wide_rows = (wide_a_band + per_row - 1) / per_row;
+    const int dots_a_row = (limits_.width + gap) / (1 + gap);
+    const int dot_rows = (limits_.runs_per_band - wide_a_band + dots_a_row - 1) / dots_a_row;
+    const int predicted = predictions_->marker_count;
+    for (int band = 0; band < k_row_bands; ++band) {
+      const int top = limits_.height * band / k_row_bands + 2;
+      const int bottom = limits_.height * (band + 1) / k_row_bands;
+      drawn_.pattern({k_wide_px, k_wide_pitch_px - k_wide_px, 1, 1, 0, 0, limits_.width, top,
+                      std::min(top + 2 * wide_rows, bottom)});
+      // The lower end of the band, as far from the bars as can be, but for the next band's.
+      const int first = std::max(top + 2 * wide_rows, bottom - 40 - 2 * dot_rows);
+      drawn_.pattern({1, gap, 1, 1, 0, 0, limits_.width, first, bottom - 1});
+      for (int i = predicted * band / k_row_bands; i < predicted * (band + 1) / k_row_bands; ++i) {
+        predictions_->markers_px[static_cast<std::size_t>(i)] = {
+            62.0 + 128 * (i % 4), top + static_cast<double>(wide_rows)};
+      }
+    }
+  }
+
+  void draw_worst(std::uint64_t variant) {
+    const int side = limits_.width;
+    switch (variant % 8) {
+      case 0:
+        draw_dots_and_bars(1);
+        break;
+      case 1:
+        drawn_.pattern({1, 1, 1, 0, 1, 0, side, 0, side});
+        break;  // checkerboard
+      case 2:
+        drawn_.pattern({60, 4, 60, 4, 0, 0, side, 0, side});
+        break;  // squares
+      case 3:
+        drawn_.pattern({1, 4, 60, 2, 0, 0, side, 0, side});
+        break;  // bars upright
+      case 4:
+        draw_dots_and_bars(2);
+        break;
+      case 5:
+        drawn_.pattern({1, 1, 1, 1, 0, 0, side, 0, side});
+        break;  // dots
+      case 6:
+        drawn_.pattern({12, 6, 12, 6, 0, 0, side, 0, side});
+        break;
+      default:
+        draw_comb();
+        break;
+    }
+  }
+
+  // Teeth on a back, a component of many runs, four pixels apart.
+  void draw_comb() {
+    for (int y = 0; y + 60 < limits_.height; y += 64) {
+      drawn_.pattern({60, 4, 1, 0, 0, 0, limits_.width, y, y + 1});
+      drawn_.pattern({1, 3, 59, 0, 0, 0, limits_.width, y + 1, y + 60});
+    }
+  }
+
+  // Two patterns, one above the other.
+  struct Halves {
+    RunPattern upper, lower;
+    int border = 0;
+  };
+  void draw(const Halves& halves) {
+    drawn_.clear(limits_);
+    RunPattern upper = halves.upper, lower = halves.lower;
+    upper.y1 = lower.y0 = halves.border;
+    drawn_.pattern(upper);
+    drawn_.pattern(lower);
+    find_runs();
+  }
+  void search(CounterRandom& random) {
+    const auto any = [&] { return random_pattern(random, limits_); };
+    const Halves first{any(), any(), random.below(limits_.height)};
+    const auto change = [&](Halves halves) {
+      const int which = random.below(3);
+      if (which == 0) halves.upper = any();
+      if (which == 1) halves.lower = any();
+      if (which == 2) halves.border = random.below(limits_.height);
+      return halves;
+    };
+    draw(climb(first, change, [&](const Halves& halves) {
+      draw(halves);
+      run();
+      const graph::LoopCounts n = counts();
+      return 100 * n[1] + 8 * n[2] + 500 * n[3] + 7 * n[4];
+    }));
+  }
+
+  Limits limits_;
+  std::unique_ptr<FindBlobs> node_ = std::make_unique<FindBlobs>();
+  std::unique_ptr<graph::Parts<Runs, k_row_bands>> bands_ =
+      std::make_unique<graph::Parts<Runs, k_row_bands>>();
+  std::unique_ptr<Predictions> predictions_ = std::make_unique<Predictions>();
+  std::unique_ptr<Blobs> blobs_ = std::make_unique<Blobs>();
+  DrawnFrame drawn_;
+  Frame frame_;
+};
+
+}  // namespace
+
+std::unique_ptr<MeasuredKernel> measured_find_blobs() {
+  return std::make_unique<MeasuredFindBlobs>();
+}
+
+}  // namespace glint
