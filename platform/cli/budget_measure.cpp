@@ -93,6 +93,11 @@ std::vector<Interference> interference_of(MeasureRequest request, const Observat
   return factors;
 }
 
+const char* verdict_of(const MeasuredCosts& kernel) {
+  if (kernel.beyond_declared > 0) return "  A LOOP RAN MORE OFTEN THAN DECLARED";
+  return kernel.holds() ? "" : "  ABOVE ITS BOUND";
+}
+
 void print(const Measurement& measurement) {
   std::printf("%s a call, %s, %s\n\n", measurement.unit(), measurement.machine.c_str(),
               measurement.board.empty() ? "costs fitted now"
@@ -107,7 +112,7 @@ void print(const Measurement& measurement) {
                 kernel.at[0].ratio(), kernel.at[1].ratio(), worst.c_str(),
                 static_cast<long long>(kernel.judge_half.above),
                 static_cast<long long>(kernel.judge_half.calls),
-                kernel.judge_half.worst_excess_percent, kernel.holds() ? "" : "  ABOVE ITS BOUND");
+                kernel.judge_half.worst_excess_percent, verdict_of(kernel));
   }
   std::printf("\n%-15s %-18s %12s %12s %12s\n", "kernel", "loop", "declared", "observed",
               "cost a count");

@@ -33,6 +33,8 @@ MeasuredCosts costs_of(const KernelObservations& kernel, const BoardKernel* boar
     for (std::size_t j = 0; j < graph::k_loops_max; ++j) {
       result.observed[j] = std::max(result.observed[j], seen.call.counts[j]);
     }
+    const graph::LoopCounts& declared = kernel.worst[seen.input.limits];
+    result.beyond_declared += graph::within(seen.call.counts, declared) ? 0 : 1;
     double& most = result.at[seen.input.limits].observed_max;
     most = std::max(most, seen.call.cost);
     if (seen.call.cost > dearest) {

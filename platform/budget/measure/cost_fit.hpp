@@ -26,7 +26,10 @@ struct MeasuredCosts {
   EnvelopeJudgement fit_half, judge_half;
   MeasuredInput worst_input;  // the dearest of all
   std::vector<double> sorted_costs;
-  [[nodiscard]] bool holds() const { return at[0].holds() && at[1].holds(); }
+  std::int64_t beyond_declared = 0;  // calls in which a loop ran more often than its node declares
+  [[nodiscard]] bool holds() const {
+    return at[0].holds() && at[1].holds() && beyond_declared == 0;
+  }
 };
 
 // With the costs of a board (in its counter's unit), or with an envelope that is fitted now.

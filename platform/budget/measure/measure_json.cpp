@@ -36,6 +36,7 @@ nlohmann::ordered_json kernel_json(const MeasuredCosts& kernel) {
           {"observed_max", largest.observed_max},
           {"ratio", largest.ratio()},
           {"inputs", sorted.size()},
+          {"beyond_declared", kernel.beyond_declared},
           {"worst_input",
            {{"kind", name_of(kernel.worst_input.kind)},
             {"number", kernel.worst_input.number},

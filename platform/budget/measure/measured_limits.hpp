@@ -7,13 +7,18 @@
 
 namespace glint {
 
-// Five tools and 64 blobs in a whole AHAT frame. One set of costs has to cover both this and
-// Limits{}, as costs are of a count and not of a cell.
+// Five tools of five markers and 64 blobs in a whole AHAT frame, a lens without a table: the
+// built-in cell's budgets. One set of costs has to cover both this and Limits{}, as costs are of a
+// count and not of a cell.
 [[nodiscard]] constexpr Limits measured_cell_limits() {
   Limits limits;
   limits.tools = 5;
   limits.blobs = 64;
+  limits.markers_per_tool = 5;
   limits.runs_per_band = 1024;
+  limits.lens_steps = 0;
+  limits.pair_tests = 1024;
+  limits.search_steps = 768;
   return limits;
 }
 

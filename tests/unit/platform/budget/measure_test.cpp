@@ -168,6 +168,15 @@ TEST(CostFit, SeesACallAboveTheBoundOfABoard) {
   EXPECT_EQ(costs_of(seen, &cheap, 0).at[0].bound, 990);
 }
 
+TEST(CostFit, SeesALoopThatRanMoreOftenThanDeclared) {
+  const KernelObservations seen =
+      parsed("loops call steps\nworst 0 1 9\nworst 1 1 5\ninput 0 worst 3 1 10 7.5\n", {});
+  const std::array<std::string_view, 2> loops = {"call", "steps"};
+  const BoardKernel dear{{"Toy", loops}, {0, 100}};
+  EXPECT_EQ(costs_of(seen, &dear, 0).beyond_declared, 1);
+  EXPECT_FALSE(costs_of(seen, &dear, 0).holds());
+}
+
 TEST(CostFit, MakesABoardOfEveryKernelOrNone) {
   Measurement measurement;
   const std::array<std::string_view, 2> loops = {"call", "steps"};
