@@ -1,0 +1,69 @@
+#include "platform/boards/board_groups.hpp"
+
+#include <array>
+#include <span>
+
+#include "kernels/wire/bits.hpp"
+#include "platform/session/pipeline.hpp"
+
+namespace glint {
+
+BoardGroups::BoardGroups(const Cell& cell, Sinks& sinks, const Clock& now,
+                         std::int64_t unix_offset_ns, std::size_t frames)
+    : frame_(cell, tool_set_, now, frame_runner_, nullptr),
+      tick_(cell, frame_.estimates(), robot_, now, {sinks.can(), sinks.dds(), nullptr, nullptr},
+            unix_offset_ns, frames, tick_runner_, frame_.overrun_notes()) {
+  tool_set_.write_slot() = cell.tools;
+  tool_set_.publish(1, 0);
+  robot_.write_slot() = declared_robot_frame(cell);
+  robot_.publish(1, 0);
+}
+
+void BoardGroups::process(const ArrivedFrame& arrived) noexcept {
+  frame_.process(arrived);
+  const Estimates& estimates = frame_.newest();
+  std::array<std::uint8_t, 5> said{};
+  put_little_endian(std::span(said).first(4), arrived.frame.sequence);
+  said[4] = static_cast<std::uint8_t>(estimates.verdict.reason);
+  verdicts_.add(said);
+  bool seen = false;
+  for (int t = 0; t < estimates.tool_count; ++t) {
+    const Track& track = estimates.tracks[static_cast<std::size_t>(t)];
+    seen = seen || track.seen_now;
+    const std::array<std::uint8_t, 3> of_tool{static_cast<std::uint8_t>(track.seen_now),
+                                              static_cast<std::uint8_t>(track.reason),
+                                              track.marker_mask};
+    verdicts_.add(of_tool);
+  }
+  ++frames_;
+  if (seen) ++tracked_;
+}
+
+void BoardGroups::tick(std::uint32_t number, Time nominal, Time woken) noexcept {
+  tick_.tick(number, nominal, woken);
+  const PoseSamples& samples = tick_.samples();
+  for (int t = 0; t < samples.count; ++t) {
+    const PoseSample& sample = samples.items[static_cast<std::size_t>(t)];
+    std::array<std::uint8_t, 10> said{};
+    put_little_endian(std::span(said).first(4), number);
+    put_little_endian(std::span(said).subspan(4, 4), sample.frame_sequence);
+    said[8] = static_cast<std::uint8_t>(sample.state);
+    said[9] = static_cast<std::uint8_t>(sample.reason);
+    states_.add(said);
+  }
+}
+
+void BoardGroups::report(BoardResult& result) const {
+  result.frames = frames_;
+  result.frames_tracked = tracked_;
+  result.latencies = tick_.latencies().entries();
+  result.latencies_left_out = tick_.latencies().beyond();
+  result.can_frames = tick_.can_frames();
+  result.output_sha256 = tick_.output_sha256();
+  Sha256 both;
+  both.add(verdicts_.digest());
+  both.add(states_.digest());
+  result.decision_sha256 = both.hex();
+}
+
+}  // namespace glint

@@ -1,0 +1,39 @@
+// The two groups as a board runs them, and one hash over everything that they decided.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "graph/latest.hpp"
+#include "platform/boards/board_run.hpp"
+#include "platform/record/sha256.hpp"
+#include "platform/session/frame_group.hpp"
+#include "platform/session/sinks.hpp"
+#include "platform/session/tick_group.hpp"
+
+namespace glint {
+
+class BoardGroups {
+ public:
+  BoardGroups(const Cell& cell, Sinks& sinks, const Clock& now, std::int64_t unix_offset_ns,
+              std::size_t frames);
+
+  void process(const ArrivedFrame& arrived) noexcept;                  // frame thread
+  void tick(std::uint32_t number, Time nominal, Time woken) noexcept;  // tick thread
+
+  // When both threads have ended.
+  void report(BoardResult& result) const;
+
+ private:
+  graph::TripleBuffer<ToolSet> tool_set_;
+  graph::TripleBuffer<RobotFrame> robot_;
+  GroupRunner<Tracker> frame_runner_;
+  GroupRunner<Output> tick_runner_;
+  FrameGroup frame_;
+  TickGroup tick_;
+  // Each thread has its own hash; the run's is taken over both.
+  Sha256 verdicts_, states_;
+  std::int64_t frames_ = 0, tracked_ = 0;
+};
+
+}  // namespace glint

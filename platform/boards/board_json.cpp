@@ -1,0 +1,83 @@
+#include "platform/boards/board_json.hpp"
+
+#include <algorithm>
+
+namespace glint {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json as_json(const LatencyFigures& figures) {
+  return {{"n", figures.n},
+          {"p50", figures.p50_us},
+          {"p99", figures.p99_us},
+          {"p99_9", figures.p99_9_us},
+          {"max", figures.max_us}};
+}
+
+// Percentiles of plain nanoseconds, by the same ranks.
+Json spread_us(const std::vector<std::int64_t>& nanoseconds) {
+  std::vector<FrameToCan> entries;
+  entries.reserve(nanoseconds.size());
+  for (const std::int64_t ns : nanoseconds) entries.push_back({{ns}, {}, {}});
+  return as_json(figures_of_totals(entries));
+}
+
+std::int64_t largest(const std::vector<std::int64_t>& values) {
+  return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
+}
+std::int64_t smallest(const std::vector<std::int64_t>& values) {
+  return values.empty() ? 0 : *std::min_element(values.begin(), values.end());
+}
+
+}  // namespace
+
+Json as_json(const BoardResult& result) {
+  return {
+      {"frames", result.frames},
+      {"frames_worst", result.frames_worst},
+      {"frames_tracked", result.frames_tracked},
+      {"ticks", result.ticks},
+      {"ticks_late", result.ticks_late},
+      {"ticks_skipped", result.ticks_skipped},
+      {"frame_to_can_us", as_json(figures_of_totals(result.latencies))},
+      {"computing_us", as_json(figures_of(result.latencies, &FrameToCan::computing))},
+      {"sampling_us", as_json(figures_of(result.latencies, &FrameToCan::sampling))},
+      {"sending_us", as_json(figures_of(result.latencies, &FrameToCan::sending))},
+      {"latencies_left_out", result.latencies_left_out},
+      {"frame_wake_up_us", spread_us(result.frame_wake_up_ns)},
+      {"tick_wake_up_us", spread_us(result.tick_wake_up_ns)},
+      {"can",
+       {{"frames", result.can_frames},
+        {"sent", result.sinks.can.sent},
+        {"dropped", result.sinks.can.dropped},
+        {"failed", result.sinks.can.failed}}},
+      {"dds", {{"offered", result.sinks.dds.offered}, {"written", result.sinks.dds.written}}},
+      {"heap_counted", result.heap_counted},
+      {"heap_allocations", result.heap_allocations},
+      {"page_faults", result.page_faults},
+      {"output_sha256", result.output_sha256},
+      {"decision_sha256", result.decision_sha256},
+      {"best_effort", result.refused},
+  };
+}
+
+Json as_json(const SystemShareFigures& figures) {
+  return {
+      {"kind", "estimate"},
+      {"tick_wake_up_us", spread_us(figures.tick_wake_up_ns)},
+      {"frame_wake_up_us", spread_us(figures.frame_wake_up_ns)},
+      {"interrupt_us", spread_us(figures.interrupt_ns)},
+      {"interrupt_gap_us", spread_us(figures.interrupt_gap_ns)},
+      {"can_write_us", spread_us(figures.can_write_ns)},
+      {"clock_read_ns", figures.clock_read_ns},
+      {"system",
+       {{"wake_up_ns",
+         std::max(largest(figures.tick_wake_up_ns), largest(figures.frame_wake_up_ns))},
+        {"interrupt_ns", largest(figures.interrupt_ns)},
+        {"interrupt_gap_ns", smallest(figures.interrupt_gap_ns)},
+        {"can_write_ns", largest(figures.can_write_ns)}}},
+  };
+}
+
+}  // namespace glint

@@ -1,0 +1,93 @@
+// glint_board: Glint as a board runs it. Frames come from memory, poses go to CAN and DDS.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+
+#include "platform/boards/board_json.hpp"
+#include "platform/boards/board_run.hpp"
+#include "platform/boards/system_share.hpp"
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+struct Arguments {
+  std::string cell_file, frames_file, can, json_file;
+  bool with_dds = false, measure_system = false;
+  BoardOptions options;
+};
+
+void write(const std::string& file, const nlohmann::ordered_json& figures) {
+  if (file.empty()) {
+    std::printf("%s\n", figures.dump(2).c_str());
+    return;
+  }
+  std::ofstream stream(file);
+  stream << figures.dump(2) << '\n';
+  stream.close();
+  if (!stream) throw InputError(file + ": cannot be written; expected a folder that takes it");
+}
+
+int run(const Arguments& arguments) {
+  Cell cell = arguments.cell_file.empty() ? default_cell() : load_cell(arguments.cell_file);
+  if (!arguments.can.empty()) cell.can.sink = arguments.can;
+  cell.dds.on = arguments.with_dds;
+  if (arguments.measure_system) {
+    CanSinkOptions can;
+    can.directory = arguments.options.out;
+    can.format = cell.can.fd ? CanFormat::fd : CanFormat::classic;
+    SystemShareOptions options;
+    options.core = arguments.options.core;
+    const auto sink = open_can_sink(cell.can.sink, can);
+    write(arguments.json_file, as_json(measure_system_share(*sink, options)));
+    return 0;
+  }
+  const FrameLoop loop(arguments.frames_file);
+  const BoardResult result = run_board(std::move(cell), loop, arguments.options);
+  write(arguments.json_file, as_json(result));
+  for (const std::string& refused : result.refused) {
+    std::fprintf(stderr, "best effort: %s\n", refused.c_str());
+  }
+  return result.frames == arguments.options.frames && result.sinks.can.all_sent() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace glint
+
+int main(int argc, char** argv) {
+  glint::Arguments arguments;
+  CLI::App app{"Glint on a board: frames from memory, poses to CAN and DDS"};
+  app.add_option("--cell", arguments.cell_file, "cell file; default: the built-in cell");
+  app.add_option("--can", arguments.can, "socketcan:IF or log:FILE, in place of the cell's");
+  app.add_option("--json", arguments.json_file, "the figures; default: standard output");
+  app.add_option("--out", arguments.options.out, "folder of a CAN log");
+  app.add_option("--core", arguments.options.core, "the core for all threads of the run");
+  app.add_flag("--dds", arguments.with_dds, "publish over DDS as the cell says");
+  auto* const frames = app.add_option("--frames", arguments.frames_file,
+                                      "loop of frames made by glint_board_frames");
+  app.add_option("--count", arguments.options.frames, "frames to process")
+      ->check(CLI::PositiveNumber);
+  auto* const system = app.add_flag("--measure-system", arguments.measure_system,
+                                    "measure the operating system's share instead");
+  frames->excludes(system);
+  app.footer("Example: glint_board --frames loop.frames --count 10000 --can socketcan:can0");
+  try {
+    app.parse(argc, argv);
+    if (arguments.frames_file.empty() && !arguments.measure_system) {
+      throw CLI::RequiredError("--frames or --measure-system");
+    }
+    return glint::run(arguments);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const glint::InputError& error) {
+    std::fprintf(stderr, "glint_board: %s\n", error.what());
+    return 2;
+  } catch (const glint::MissingDevice& error) {
+    std::fprintf(stderr, "glint_board: %s\n", error.what());
+    return 3;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "glint_board: %s\n", error.what());
+    return 1;
+  }
+}

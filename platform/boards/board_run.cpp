@@ -1,0 +1,135 @@
+#include "platform/boards/board_run.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <utility>
+
+#include "platform/boards/board_groups.hpp"
+#include "platform/boards/loop_source.hpp"
+#include "platform/input_error.hpp"
+#include "platform/rt/allocation_counter.hpp"
+#include "platform/rt/clock.hpp"
+#include "platform/rt/memory_lock.hpp"
+#include "platform/rt/periodic_loop.hpp"
+#include "platform/rt/real_time_thread.hpp"
+
+namespace glint {
+namespace {
+
+// As in a session: tick preempts frame, both stay below the kernel's interrupt threads (50). The
+// arrival thread stands in for the camera driver and so comes before both.
+constexpr int k_arrival_priority = 49;
+constexpr int k_tick_priority = 48;
+constexpr int k_frame_priority = 45;
+
+// From here to the first frame everything starts; its ticks are due before it.
+constexpr Duration k_lead = milliseconds(100);
+
+std::int64_t page_faults_of_this_thread() {
+  rusage usage{};
+  ::getrusage(RUSAGE_THREAD, &usage);
+  return usage.ru_minflt + usage.ru_majflt;
+}
+
+void require_same_camera(const Cell& cell, const FrameLoop& loop) {
+  const FrameLoopHeader& header = loop.header();
+  const CameraModel& model = cell.camera.model;
+  const auto text = [](auto width, auto height, auto bits) {
+    return std::to_string(width) + " x " + std::to_string(height) + " pixels of " +
+           std::to_string(bits) + " bits";
+  };
+  const std::string found = text(header.width, header.height, header.reflectivity_bits);
+  const std::string expected = text(model.width, model.height, cell.camera.reflectivity_bits);
+  if (found != expected) {
+    throw InputError("the loop has frames of " + found + "; expected " + expected +
+                     ", as the cell's camera has");
+  }
+}
+
+// Runs `body` armed: from here on neither the heap nor a page that is not there may be touched.
+template <class Body>
+void counted(std::atomic<std::int64_t>& page_faults, Body body) {
+  AllocationCounter::arm();
+  const std::int64_t before = page_faults_of_this_thread();
+  body();
+  page_faults += page_faults_of_this_thread() - before;
+  AllocationCounter::disarm();
+}
+
+}  // namespace
+
+BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& options) {
+  require_same_camera(cell, loop);
+  cell.realtime = true;
+  cell.record.file.clear();
+  cell.files = {"", ""};
+
+  BoardResult result;
+  if (const MemoryLock lock = lock_memory(); !lock.locked) {
+    result.refused.push_back("memory: " + lock.refused);
+  }
+  const Duration tick_period{static_cast<std::int64_t>(1e9 / cell.tick_hz)};
+  const Duration frame_period{loop.header().period_ns};
+  const Time epoch = monotonic_now() + k_lead;
+  const std::int64_t unix_offset_ns = unix_offset().nanoseconds + epoch.nanoseconds;
+  Sinks sinks(cell, {options.out, false}, unix_offset_ns);
+  auto groups = std::make_unique<BoardGroups>(
+      cell, sinks, [epoch] { return Time{} + (monotonic_now() - epoch); }, unix_offset_ns,
+      static_cast<std::size_t>(options.frames));
+  const Duration run = frame_period * options.frames + cell.lost_after;
+  result.tick_wake_up_ns.reserve(
+      static_cast<std::size_t>(run.nanoseconds / tick_period.nanoseconds + 1));
+
+  // The first frame's exposure must not lie before the session's clock began.
+  LoopSource source(loop, {options.frames, frame_period, epoch + frame_period, epoch,
+                           k_arrival_priority, options.core});
+  std::atomic<std::int64_t> page_faults{0};
+  std::atomic<bool> frames_done{false};
+  PeriodicLoop ticks(epoch, tick_period);
+  const std::uint64_t allocations_before = AllocationCounter::count();
+  RealTimeThread tick_thread({"glint-tick", options.core, k_tick_priority}, [&] {
+    counted(page_faults, [&] {
+      while (result.tick_wake_up_ns.size() < result.tick_wake_up_ns.capacity()) {
+        const Tick tick = ticks.next();
+        const Time nominal = Time{} + (tick.nominal - epoch);
+        if (nominal > Time{} + run) break;
+        groups->tick(tick.number, nominal, Time{} + (tick.woken - epoch));
+        result.tick_wake_up_ns.push_back((tick.woken - tick.nominal).nanoseconds);
+      }
+    });
+  });
+  RealTimeThread frame_thread({"glint-frame", options.core, k_frame_priority}, [&] {
+    counted(page_faults, [&] {
+      ArrivedFrame arrived;
+      while (source.wait(arrived)) {
+        groups->process(arrived);
+        source.give_back(arrived);
+      }
+    });
+  });
+  source.start();
+  frame_thread.join();
+  tick_thread.join();
+
+  result.heap_allocations = AllocationCounter::count() - allocations_before;
+  result.heap_counted = AllocationCounter::available();
+  result.page_faults = page_faults;
+  for (const ThreadReport* report :
+       {&source.report(), &frame_thread.report(), &tick_thread.report()}) {
+    if (!report->refused.empty()) result.refused.push_back(report->name + ": " + report->refused);
+  }
+  result.frames_worst = source.worst_shown();
+  result.frame_wake_up_ns = source.wake_ups_ns();
+  result.ticks = static_cast<std::int64_t>(result.tick_wake_up_ns.size());
+  result.ticks_late = static_cast<std::int64_t>(ticks.late());
+  result.ticks_skipped = static_cast<std::int64_t>(ticks.skipped());
+  groups->report(result);
+  result.sinks.output_sha256 = result.output_sha256;
+  sinks.close(result.sinks);
+  return result;
+}
+
+}  // namespace glint

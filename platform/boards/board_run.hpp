@@ -1,0 +1,43 @@
+// A run on a board: frames from memory at the camera's rate, ticks by the clock, poses to CAN and,
+// if asked for, to DDS. Real time on one core; nothing is recorded.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "platform/boards/frame_loop.hpp"
+#include "platform/cells/cell.hpp"
+#include "platform/session/latency.hpp"
+#include "platform/session/sink_outcome.hpp"
+
+namespace glint {
+
+struct BoardOptions {
+  std::int64_t frames = 1000;
+  int core = -1;          // all threads of the run on this core; -1: on any
+  std::string out = ".";  // folder of a CAN log, where the cell names one
+};
+
+struct BoardResult {
+  std::int64_t frames = 0;
+  std::int64_t frames_worst = 0;    // of these, drawn as worst inputs
+  std::int64_t frames_tracked = 0;  // of these, with at least one tool seen
+  std::int64_t ticks = 0, ticks_late = 0, ticks_skipped = 0;
+  std::vector<FrameToCan> latencies;
+  std::int64_t latencies_left_out = 0;
+  std::vector<std::int64_t> frame_wake_up_ns, tick_wake_up_ns;
+  std::uint64_t heap_allocations = 0;  // of both groups after their start
+  bool heap_counted = false;
+  std::int64_t page_faults = 0;  // of both groups after their start, minor and major
+  std::uint64_t can_frames = 0;
+  SinkOutcome sinks;
+  std::string output_sha256;         // over the output records
+  std::string decision_sha256;       // over every tick's states and every frame's verdict
+  std::vector<std::string> refused;  // rights that the system did not grant
+};
+
+// Throws InputError where the loop's frames are not the cell's camera's, MissingDevice.
+[[nodiscard]] BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& options);
+
+}  // namespace glint

@@ -1,0 +1,49 @@
+#include "platform/boards/loop_source.hpp"
+
+#include "platform/rt/clock.hpp"
+
+namespace glint {
+
+LoopSource::LoopSource(const FrameLoop& loop, const ArrivalSettings& settings)
+    : loop_(loop), settings_(settings) {
+  wake_ups_ns_.reserve(static_cast<std::size_t>(settings.frames));
+}
+
+LoopSource::~LoopSource() {
+  stop_ = true;
+  if (arrivals_ != nullptr) arrivals_->join();
+}
+
+void LoopSource::start() {
+  const ThreadSettings thread{"glint-arrival", settings_.core, settings_.priority};
+  arrivals_ = std::make_unique<RealTimeThread>(thread, [this] { arrive(); });
+}
+
+void LoopSource::arrive() {
+  for (std::int64_t i = 0; i < settings_.frames && !stop_; ++i) {
+    sleep_until(settings_.first + settings_.period * i);
+    arrived_count_.fetch_add(1, std::memory_order_release);
+    arrived_.post();
+  }
+}
+
+bool LoopSource::wait(ArrivedFrame& arrived) {
+  if (delivered_ == settings_.frames) return false;
+  const bool found_waiting = arrived_count_.load(std::memory_order_acquire) <= delivered_;
+  arrived_.wait();
+  const Time due = settings_.first + settings_.period * delivered_;
+  if (found_waiting) wake_ups_ns_.push_back((monotonic_now() - due).nanoseconds);
+
+  const std::uint32_t place = loop_.place_of(static_cast<std::uint64_t>(delivered_));
+  const Time stamp = Time{} + (due - settings_.epoch);
+  arrived.frame = loop_.view(place, stamp, static_cast<std::uint32_t>(delivered_ + 1));
+  arrived.head = loop_.head(place, stamp);
+  arrived.slot = static_cast<int>(place);
+  if (loop_.entry(place).kind == LoopFrameKind::worst) ++worst_shown_;
+  ++delivered_;
+  return true;
+}
+
+void LoopSource::give_back(const ArrivedFrame& /*arrived*/) noexcept {}  // the loop keeps them all
+
+}  // namespace glint
