@@ -36,28 +36,24 @@ int add_disjoint(Roi box, Rois& rois) {
   return comparisons;
 }
 
-// The box of the tool's first `markers` markers with its reach about each; nothing where one of
-// them cannot be projected.
-bool box_of(const CameraModel& camera, const Tool& tool, const Prediction& prediction, int markers,
-            int& lens_steps, Roi& box) {
-  double x0 = 1e9, y0 = 1e9, x1 = -1e9, y1 = -1e9;
-  bool in_view = true;
-  for (int m = 0; m < markers; ++m) {
-    const Vector3 point = prediction.T_camera_tool * tool.markers_m[m];
-    const Result<Vector2> pixel = project(camera, point, lens_steps);
-    in_view = in_view && pixel.reason == Reason::none;
-    const double radius_px =
-        camera.fx * (prediction.reach_m + 2 * tool.marker_radius_m) / std::max(point.z(), 0.05);
-    x0 = std::min(x0, pixel.value.x() - radius_px);
-    y0 = std::min(y0, pixel.value.y() - radius_px);
-    x1 = std::max(x1, pixel.value.x() + radius_px);
-    y1 = std::max(y1, pixel.value.y() + radius_px);
-  }
-  if (!in_view) return false;
-  box = {
-      clamp_to_int(std::floor(x0), 0, camera.width), clamp_to_int(std::floor(y0), 0, camera.height),
-      clamp_to_int(std::ceil(x1), 0, camera.width), clamp_to_int(std::ceil(y1), 0, camera.height)};
-  return box.x0 < box.x1 && box.y0 < box.y1;
+// Widens the box of what is predicted by one marker with the tool's reach about it.
+void include(const CameraModel& camera, const Tool& tool, const Vector3& point,
+             const Vector2& pixel, Prediction& prediction) {
+  const double radius_px =
+      camera.fx * (prediction.reach_m + 2 * tool.marker_radius_m) / std::max(point.z(), 0.05);
+  const Vector2 radius(radius_px, radius_px);
+  prediction.low_px = prediction.low_px.cwiseMin(pixel - radius);
+  prediction.high_px = prediction.high_px.cwiseMax(pixel + radius);
+}
+
+// The part of the frame that holds the tool; false where there is none.
+bool box_of(const CameraModel& camera, const Prediction& prediction, Roi& box) {
+  const Vector2 &low = prediction.low_px, &high = prediction.high_px;
+  box = {clamp_to_int(std::floor(low.x()), 0, camera.width),
+         clamp_to_int(std::floor(low.y()), 0, camera.height),
+         clamp_to_int(std::ceil(high.x()), 0, camera.width),
+         clamp_to_int(std::ceil(high.y()), 0, camera.height)};
+  return prediction.in_view && box.x0 < box.x1 && box.y0 < box.y1;
 }
 
 }  // namespace
@@ -105,10 +101,16 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
         settings.margin_m + drift_m + 0.5 * settings.acceleration_max_m_s2 * seconds * seconds;
     const int markers = markers_within(set.items[t], limits);
     counts_[3] += markers;
+    prediction.in_view = true;
+    prediction.low_px = Vector2::Constant(1e9);
+    prediction.high_px = Vector2::Constant(-1e9);
     for (int m = 0; m < markers; ++m) {
       const Vector3 point = predicted * set.items[t].markers_m[m];
       const Result<Vector2> pixel = project(camera, point, lens_steps);
-      if (pixel) predictions.markers_px[predictions.marker_count++] = pixel.value;
+      prediction.in_view = prediction.in_view && pixel.reason == Reason::none;
+      if (!pixel) continue;
+      predictions.markers_px[predictions.marker_count++] = pixel.value;
+      include(camera, set.items[t], point, pixel.value, prediction);
     }
   }
   counts_[4] = lens_steps;
@@ -120,21 +122,16 @@ void LocateRois::operator()(const FrameVerdict& verdict, const graph::Latest<Too
   counts_ = {{1}};
   if (!verdict.usable()) return;
   const ToolSet& set = tools.value();
-  int lens_steps = 0;
   bool whole_frame = false;
   const int count = tools_within(set, limits);
   for (int t = 0; t < count && !whole_frame; ++t) {
     const Prediction& prediction = predictions.tools[t];
-    whole_frame = !prediction.has_prior || prediction.missed_last;
-    if (whole_frame) break;
-    const int markers = markers_within(set.items[t], limits);
     ++counts_[1];
-    counts_[2] += markers;
     Roi box;
-    whole_frame = !box_of(camera, set.items[t], prediction, markers, lens_steps, box);
-    if (!whole_frame) counts_[4] += add_disjoint(box, rois);
+    whole_frame =
+        !prediction.has_prior || prediction.missed_last || !box_of(camera, prediction, box);
+    if (!whole_frame) counts_[2] += add_disjoint(box, rois);
   }
-  counts_[3] = lens_steps;
   if (whole_frame) {
     rois.count = 1;
     rois.items[0] = {0, 0, camera.width, camera.height};

@@ -55,14 +55,12 @@ struct PredictTracks {
 
 // The rectangles to search: around the priors, or the whole frame; none for a refused frame.
 struct LocateRois {
-  static constexpr std::array<std::string_view, 5> k_loops = {"call", "tools", "markers",
-                                                              "lens_steps", "comparisons"};
+  static constexpr std::array<std::string_view, 3> k_loops = {"call", "tools", "comparisons"};
   // Of n boxes the first n - 1 can stay apart, (n - 1)(n - 2) / 2 comparisons, and the last can
   // then be merged with each at the last of those that are left, n (n - 1) / 2 more.
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
     const std::int64_t others = limits.tools - 1;
-    const std::int64_t markers = std::int64_t{limits.tools} * limits.markers_per_tool;
-    return {{1, limits.tools, markers, markers * limits.lens_steps, others * others}};
+    return {{1, limits.tools, others * others}};
   }
   [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
 

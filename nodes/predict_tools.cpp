@@ -78,7 +78,8 @@ void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& es
       if (sample.reason == Reason::none) sample.reason = Reason::too_old;
       continue;
     }
-    const bool fresh = !is_overrun(track.reason) && 2 * age.nanoseconds <= 3 * settings.nominal_gap.nanoseconds;
+    const bool fresh =
+        !is_overrun(track.reason) && 2 * age.nanoseconds <= 3 * settings.nominal_gap.nanoseconds;
     sample.state = fresh ? TrackState::measured : TrackState::predicted;
     sample.marker_mask = track.marker_mask;
 

@@ -39,6 +39,9 @@ struct Prediction {
   bool missed_last = false;  // the last frame did not show it: search the whole frame
   Pose T_camera_tool;
   double reach_m = 0;  // how far the tool may be from there
+  // The markers' box in the image with that reach about each; not where one has no pixel.
+  bool in_view = false;
+  Vector2 low_px = Vector2::Zero(), high_px = Vector2::Zero();
 };
 struct Predictions {
   std::array<Prediction, k_tools_max> tools;

@@ -1,5 +1,6 @@
 #include "platform/cells/cell.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -72,6 +73,12 @@ void CellParser::read_camera(const toml::table* table) {
       static_cast<std::uint16_t>(reader.integer("threshold", cell.camera.threshold, 1, top - 1));
   cell.arrival_jitter = from_ms(reader.real("arrival_jitter_ms", 0.4, 0, 10));
   reader.done();
+  if (cell.camera.model.width > k_width_max || cell.camera.model.height > k_height_max) {
+    throw InputError(cell.file + ":" + std::to_string(reader.line_of("model")) + ": " + model +
+                     " has " + std::to_string(cell.camera.model.width) + " x " +
+                     std::to_string(cell.camera.model.height) + " pixels; expected at most " +
+                     std::to_string(k_width_max) + " x " + std::to_string(k_height_max));
+  }
   if (cell.ray_table.empty()) return;
   if (carried == nullptr) {
     cell.camera = with_ray_table(cell.camera, cell.ray_table);
@@ -134,6 +141,46 @@ void read_deadlines(const toml::table* table, Cell& cell) {
   reader.done();
 }
 
+void read_overrun(const toml::table* table, Cell& cell) {
+  if (table == nullptr) return;
+  TomlReader reader(*table, cell.file, "overrun.");
+  const auto policy = [&](const char* key, graph::OverrunPolicy otherwise) {
+    const std::string name = reader.one_of(key, std::string(name_of(otherwise)),
+                                           {"skip_output", "hold_last", "predict", "stop_safe"});
+    auto found = graph::OverrunPolicy::skip_output;
+    while (name_of(found) != name) {
+      found = static_cast<graph::OverrunPolicy>(static_cast<std::uint8_t>(found) + 1);
+    }
+    return found;
+  };
+  cell.overrun.watch = reader.boolean("watch", cell.overrun.watch);
+  cell.overrun.frame = policy("frame", cell.overrun.frame);
+  cell.overrun.tick = policy("tick", cell.overrun.tick);
+  reader.done();
+}
+
+void read_budget(const toml::table* table, Cell& cell) {
+  static const toml::table k_empty;
+  TomlReader reader(table != nullptr ? *table : k_empty, cell.file, "budget.");
+  BudgetSettings& budget = cell.budget;
+  const int listed = cell.tools.count;
+  budget.tools = static_cast<int>(reader.integer("tools", listed, 1, k_tools_max));
+  budget.blobs = static_cast<int>(reader.integer("blobs", budget.blobs, 8, k_blobs_max));
+  budget.runs_per_band = static_cast<int>(
+      reader.integer("runs_per_band", budget.runs_per_band, 64, k_runs_per_band_max));
+  budget.pair_tests =
+      static_cast<int>(reader.integer("pair_tests", budget.pair_tests, 64, k_pair_tests_max));
+  budget.search_steps =
+      static_cast<int>(reader.integer("search_steps", budget.search_steps, 64, k_search_steps_max));
+  reader.done();
+  if (budget.tools < listed) {
+    throw InputError(cell.file + ":" + std::to_string(table->get("tools")->source().begin.line) +
+                     ": budget.tools is " + std::to_string(budget.tools) + ", but " +
+                     std::to_string(listed) + " tools are listed; expected at least " +
+                     std::to_string(listed));
+  }
+}
+
 void read_sinks(TomlReader& root, Cell& cell) {
   if (const toml::table* table = root.table("can")) {
     TomlReader reader(*table, cell.file, "can.");
@@ -186,8 +233,9 @@ void CellParser::read_tools(TomlReader& root) {
   cell.tool_files = root.texts("tools");
   if (cell.tool_files.empty()) cell.tool_files = {"pen"};
   if (cell.tool_files.size() > static_cast<std::size_t>(k_tools_max)) {
-    throw InputError(cell.file + ": " + std::to_string(cell.tool_files.size()) +
-                     " tools; expected at most " + std::to_string(k_tools_max));
+    throw InputError(cell.file + ":" + std::to_string(root.line_of("tools")) + ": " +
+                     std::to_string(cell.tool_files.size()) + " tools; expected at most " +
+                     std::to_string(k_tools_max));
   }
   if (carried != nullptr) {
     cell.tools = carried->tools;
@@ -224,10 +272,32 @@ Cell cell_from_text(const std::string& text, const std::string& file, const Cell
   parser.read_simulator(root.table("simulator"));
   read_rates(root.table("rates"), cell);
   read_deadlines(root.table("deadlines"), cell);
+  read_overrun(root.table("overrun"), cell);
+  read_budget(root.table("budget"), cell);
   read_sinks(root, cell);
   read_robot(root.table("robot"), cell);
   root.done();
   return cell;
+}
+
+Limits limits_of(const Cell& cell) {
+  const CameraModel& camera = cell.camera.model;
+  Limits limits;
+  limits.width = camera.width;
+  limits.height = camera.height;
+  limits.reflectivity_bytes = (cell.camera.reflectivity_bits + 7) / 8;
+  limits.lens_steps = camera.lens == Lens::lut ? k_lens_steps_max : 0;
+  limits.tools = cell.budget.tools;
+  limits.markers_per_tool = 3;
+  for (int t = 0; t < cell.tools.count; ++t) {
+    limits.markers_per_tool = std::max(limits.markers_per_tool,
+                                       cell.tools.items[static_cast<std::size_t>(t)].marker_count);
+  }
+  limits.blobs = cell.budget.blobs;
+  limits.runs_per_band = cell.budget.runs_per_band;
+  limits.pair_tests = cell.budget.pair_tests;
+  limits.search_steps = cell.budget.search_steps;
+  return limits;
 }
 
 Cell default_cell() { return cell_from_text(k_default_cell, "built-in default cell"); }

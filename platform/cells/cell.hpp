@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "graph/overrun.hpp"
 #include "kernels/geometry.hpp"
+#include "kernels/limits.hpp"
 #include "kernels/pose/tool.hpp"
 #include "kernels/units.hpp"
 #include "platform/sensors/camera.hpp"
@@ -64,6 +66,22 @@ struct DeadlineSettings {
   Duration frame_to_can;  // last byte in memory -> first CAN frame written; frame + 2 tick
 };
 
+// What is done about an activation that is not in time; by its deadline, without a clock never.
+struct OverrunSettings {
+  bool watch = true;
+  graph::OverrunPolicy frame = graph::OverrunPolicy::predict;
+  graph::OverrunPolicy tick = graph::OverrunPolicy::hold_last;
+};
+
+// The problem that the cell takes on: what its nodes stop at and its bounds are computed from.
+struct BudgetSettings {
+  int tools = 0;  // at least as many as are listed
+  int blobs = 64;
+  int runs_per_band = 1024;
+  int pair_tests = 1024;
+  int search_steps = 768;
+};
+
 struct Cell {
   std::string file;  // where it was read, for messages
   std::string text;  // as read: goes into every recording
@@ -79,6 +97,8 @@ struct Cell {
   int workers = 2;
   Duration arrival_jitter = microseconds(400);  // of a frame's transport beyond the camera's
   DeadlineSettings deadlines;
+  OverrunSettings overrun;
+  BudgetSettings budget;
   CanSettings can;
   DdsCellSettings dds;
   RecordSettings record;
@@ -87,6 +107,9 @@ struct Cell {
   bool robot_given = true;        // T_world_robot holds; otherwise the pose stays in the world
   Pose T_world_robot;
 };
+
+// What every node of the cell's graphs stops at.
+[[nodiscard]] Limits limits_of(const Cell& cell);
 
 // The cell that `glint run` uses when none is named.
 [[nodiscard]] Cell default_cell();

@@ -172,6 +172,11 @@ std::vector<const toml::table*> TomlReader::tables(const char* key) {
   return values;
 }
 
+std::uint32_t TomlReader::line_of(const char* key) const {
+  const toml::node* node = table_.get(key);
+  return node == nullptr ? 1 : node->source().begin.line;
+}
+
 void TomlReader::done() const {
   for (const auto& [key, node] : table_) {
     const std::string name(key.str());

@@ -40,6 +40,9 @@ class TomlReader {
   // [[key]], or a list of { }; nothing where the key is absent.
   [[nodiscard]] std::vector<const toml::table*> tables(const char* key);
 
+  // Where a key stands in the file; the first line where it is absent.
+  [[nodiscard]] std::uint32_t line_of(const char* key) const;
+
   // Refuses any key that was not read above.
   void done() const;
 

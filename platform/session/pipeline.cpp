@@ -72,15 +72,22 @@ TrackSettings track_settings(const Cell& cell) {
 // What both trackers have: everything from the candidate markers on.
 template <class AnyTracker>
 void configure_common(const Cell& cell, AnyTracker& tracker) {
+  const Limits limits = limits_of(cell);
   tracker.template node<PredictTracks>().settings = locate_settings(cell);
   tracker.template node<PredictTracks>().camera = cell.camera.model;
-  tracker.template for_each<Correspond>(
-      [&](Correspond& node) { node.settings = correspond_settings(cell); });
+  tracker.template node<PredictTracks>().limits = limits;
+  tracker.template for_each<Correspond>([&](Correspond& node) {
+    node.settings = correspond_settings(cell);
+    node.limits = limits;
+  });
+  tracker.template node<AssignMarkers>().limits = limits;
   tracker.template for_each<FitRigid>([&](FitRigid& node) {
+    node.limits = limits;
     node.noise = MarkerNoise{};
     node.noise.focal_px = cell.camera.model.fx;
   });
   tracker.template node<TrackTools>().settings = track_settings(cell);
+  tracker.template node<TrackTools>().limits = limits;
 }
 
 template <class AnyGraph>
@@ -102,12 +109,18 @@ void configure(const Cell& cell, Tracker& tracker) {
   LocateRois& locate = tracker.node<LocateRois>();
   locate.settings = locate_settings(cell);
   locate.camera = camera.model;
-  tracker.for_each<RoiThreshold>([&](RoiThreshold& node) { node.threshold = camera.threshold; });
+  locate.limits = limits_of(cell);
+  tracker.for_each<RoiThreshold>([&](RoiThreshold& node) {
+    node.threshold = camera.threshold;
+    node.limits = locate.limits;
+  });
   tracker.node<FindBlobs>().settings = blob_settings(cell);
+  tracker.node<FindBlobs>().limits = locate.limits;
   BackProject& back_project = tracker.node<BackProject>();
   back_project.camera = camera.model;
   back_project.depth = camera.depth;
   back_project.nominal = nominal_marker(cell.tools);
+  back_project.limits = locate.limits;
   configure_common(cell, tracker);
   prepare(tracker);
 }
@@ -122,10 +135,12 @@ void configure(const Cell& cell, Output& output) {
   predict.settings.nominal_gap = cell.camera.period;
   predict.settings.lost_after = cell.lost_after;
   predict.settings.actuation_delay = cell.actuation_delay;
+  predict.limits = limits_of(cell);
   PackCan& pack = output.node<PackCan>();
   pack.settings.format = cell.can.fd ? CanFormat::fd : CanFormat::classic;
   pack.settings.base_identifier = cell.can.base_id;
   pack.settings.node = static_cast<unsigned>(cell.can.node);
+  pack.limits = predict.limits;
   prepare(output);
 }
 

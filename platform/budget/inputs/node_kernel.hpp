@@ -1,0 +1,28 @@
+// What all nodes have in common as measured kernels.
+#pragma once
+
+#include "platform/budget/measured_kernel.hpp"
+
+namespace glint::inputs {
+
+template <class Node>
+class NodeKernel : public MeasuredKernel {
+ public:
+  explicit NodeKernel(std::string_view name) : name_(name) {}
+  [[nodiscard]] std::string_view name() const override { return name_; }
+  [[nodiscard]] std::span<const std::string_view> loops() const override { return Node::k_loops; }
+  [[nodiscard]] graph::LoopCounts worst(const Limits& limits) const override {
+    return Node::worst(limits);
+  }
+  void rewind() override { node_ = start_; }
+  [[nodiscard]] graph::LoopCounts counts() const override { return node_.counts(); }
+
+ protected:
+  Node start_;  // as the input begins
+  Node node_;   // as it runs
+
+ private:
+  std::string_view name_;
+};
+
+}  // namespace glint::inputs

@@ -1,0 +1,21 @@
+// The frame group's kernels from the stamp to the track, each with its inputs.
+#pragma once
+
+#include <memory>
+
+#include "platform/budget/measured_kernel.hpp"
+
+namespace glint::inputs {
+
+[[nodiscard]] std::unique_ptr<MeasuredKernel> stamp_frame_kernel();
+[[nodiscard]] std::unique_ptr<MeasuredKernel> check_frame_kernel();
+[[nodiscard]] std::unique_ptr<MeasuredKernel> predict_tracks_kernel();
+[[nodiscard]] std::unique_ptr<MeasuredKernel> locate_rois_kernel();
+[[nodiscard]] std::unique_ptr<MeasuredKernel> correspond_kernel();
+[[nodiscard]] std::unique_ptr<MeasuredKernel> assign_markers_kernel();
+[[nodiscard]] std::unique_ptr<MeasuredKernel> fit_rigid_kernel();
+[[nodiscard]] std::unique_ptr<MeasuredKernel> track_tools_kernel();
+[[nodiscard]] std::unique_ptr<MeasuredKernel> predict_tools_kernel();
+[[nodiscard]] std::unique_ptr<MeasuredKernel> pack_can_kernel();
+
+}  // namespace glint::inputs

@@ -1,0 +1,251 @@
+// Frames' stamps, tracks and predictions: from one frame to the next.
+#include <vector>
+
+#include "nodes/check_frame.hpp"
+#include "nodes/locate_rois.hpp"
+#include "nodes/track_tools.hpp"
+#include "platform/budget/inputs/node_kernel.hpp"
+#include "platform/budget/inputs/pose_kernels.hpp"
+#include "platform/budget/inputs/views.hpp"
+
+namespace glint::inputs {
+namespace {
+
+bool at_its_worst(InputKind kind) {
+  return kind == InputKind::worst || kind == InputKind::searched;
+}
+
+class StampKernel final : public NodeKernel<StampFrame> {
+ public:
+  StampKernel() : NodeKernel("StampFrame"), pixel_(1) {}
+  void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
+    Numbers numbers(kind, number);
+    start_.width = limits.width;
+    start_.height = limits.height;
+    start_.reflectivity_bits = 16;
+    frame_ = {};
+    frame_.sequence = static_cast<std::uint32_t>(number);
+    frame_.mid_exposure = Time{static_cast<std::int64_t>(number) * 22'222'222};
+    frame_.arrival = frame_.mid_exposure + milliseconds(9);
+    const int width = numbers.one_in(9) ? 8 : limits.width;
+    if (!numbers.one_in(9)) frame_.reflectivity_16 = {pixel_.data(), width, limits.height};
+    frame_.depth = {pixel_.data(), limits.width, limits.height};
+    rewind();
+  }
+  void run() noexcept override { node_(frame_, stamp_); }
+
+ private:
+  std::vector<std::uint16_t> pixel_;
+  Frame frame_;
+  FrameStamp stamp_;
+};
+
+// A few frames before the one that counts: in order, doubled, late, or with a clock that restarted.
+class CheckKernel final : public NodeKernel<CheckFrame> {
+ public:
+  CheckKernel() : NodeKernel("CheckFrame") {}
+  void set_input(InputKind kind, std::uint64_t number, const Limits&) override {
+    Numbers numbers(kind, number);
+    start_ = {};
+    const int before = at_its_worst(kind) ? 1 + static_cast<int>(number % 12) : numbers.below(12);
+    for (int i = 0; i < before; ++i) {
+      const bool back = at_its_worst(kind) ? i > 0 : numbers.one_in(3);
+      start_(stamp_at(back ? i : 1000 + i, i), verdict_);
+    }
+    const bool back = at_its_worst(kind) || numbers.one_in(3);
+    stamp_ = stamp_at(back ? before : 1000 + before, before);
+    if (numbers.one_in(8)) stamp_.reason = Reason::frame_invalid;
+    rewind();
+  }
+  void run() noexcept override { node_(stamp_, verdict_); }
+
+ private:
+  static FrameStamp stamp_at(int frame, int sequence) {
+    FrameStamp stamp;
+    stamp.mid_exposure = Time{} + milliseconds(22) * (frame + 1);
+    stamp.arrival = stamp.mid_exposure + milliseconds(9);
+    stamp.sequence = static_cast<std::uint32_t>(sequence);
+    return stamp;
+  }
+  FrameStamp stamp_;
+  FrameVerdict verdict_;
+};
+
+// What several nodes read: tools that move, and a head that does.
+struct Tracked {
+  FrameVerdict verdict = admitted(2);
+  HeadPose head;
+  ToolSet set;
+  graph::Latest<ToolSet> tools;
+  Estimates last;
+
+  void fill(InputKind kind, Numbers& numbers, const Limits& limits) {
+    const bool all = at_its_worst(kind);
+    head.valid = all || !numbers.one_in(4);
+    head.time = verdict.stamp.mid_exposure;
+    head.T_world_camera = {numbers.rotation(), numbers.in_box(2)};
+    set.count = all ? limits.tools : 1 + numbers.below(limits.tools);
+    last.tool_count = set.count;
+    for (int t = 0; t < set.count; ++t) {
+      const int markers =
+          all ? limits.markers_per_tool : 3 + numbers.below(limits.markers_per_tool - 2);
+      set.items[t] = any_tool(numbers, markers);
+      const Pose seen = any_view(numbers);
+      const Pose before = moved(seen, numbers);
+      Track& track = last.tracks[t];
+      track = {};
+      track.alive = all || !numbers.one_in(4);
+      track.seen_now = all || !numbers.one_in(4);
+      track.has_previous = track.alive && (all || !numbers.one_in(4));
+      track.base = head.valid ? ReferenceFrame::world : ReferenceFrame::camera;
+      const Pose base = head.valid ? head.T_world_camera : Pose{};
+      track.newest = {Time{} + milliseconds(44), base * seen};
+      track.previous = {Time{} + milliseconds(22), base * before};
+      track.T_camera_tool = seen;
+      track.covariance = Matrix6::Identity() * 1e-6;
+      track.marker_mask = 31;
+    }
+    tools.set(set, 1, 0);
+  }
+};
+
+constexpr int k_table_side = 24;
+
+class PredictTracksKernel final : public NodeKernel<PredictTracks> {
+ public:
+  PredictTracksKernel() : NodeKernel("PredictTracks"), rays_(k_table_side * k_table_side * 3) {
+    for (int y = 0; y < k_table_side; ++y) {
+      for (int x = 0; x < k_table_side; ++x) {
+        const Vector3 ray = Vector3((x - 11.5) * 0.004, (y - 11.5) * 0.004, 1).normalized();
+        float* at = &rays_[static_cast<std::size_t>(3 * (y * k_table_side + x))];
+        for (int i = 0; i < 3; ++i) at[i] = static_cast<float>(ray(i));
+      }
+    }
+  }
+  void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
+    Numbers numbers(kind, number);
+    start_.limits = limits;
+    start_.camera = {};
+    start_.camera.width = limits.width;
+    start_.camera.height = limits.height;
+    start_.camera.fx = start_.camera.fy = 250;
+    start_.camera.cx = limits.width / 2.0;
+    start_.camera.cy = limits.height / 2.0;
+    start_.camera.lens = Lens::rational;
+    start_.camera.distortion = {0.48, 0.19, 0.0008, -0.0001, 0.014, 0.82, 0.29, 0.062};
+    tracked_.fill(kind, numbers, limits);
+    if (limits.lens_steps > 0 && (at_its_worst(kind) || numbers.one_in(2))) look_beside_the_table();
+    rewind();
+  }
+  void run() noexcept override {
+    node_(tracked_.verdict, tracked_.head, tracked_.tools,
+          graph::Previous<Estimates>(tracked_.last), predictions_);
+  }
+
+ private:
+  // A table so narrow that every marker lies beside it: the search for its pixel never ends early.
+  void look_beside_the_table() {
+    start_.camera.lens = Lens::lut;
+    start_.camera.width = start_.camera.height = k_table_side;
+    start_.camera.cx = start_.camera.cy = 0.5 * k_table_side;
+    start_.camera.table = {k_table_side, k_table_side, rays_.data()};
+    const Pose aside{Quaternion::Identity(), Vector3(2.0, 1.5, 2.0)};
+    for (int t = 0; t < tracked_.set.count; ++t) {
+      Track& track = tracked_.last.tracks[t];
+      const Pose base = tracked_.head.valid ? tracked_.head.T_world_camera : Pose{};
+      track.newest.pose = base * aside;
+      track.previous.pose = base * aside;
+      track.T_camera_tool = aside;
+    }
+  }
+  std::vector<float> rays_;
+  Tracked tracked_;
+  Predictions predictions_;
+};
+
+class LocateRoisKernel final : public NodeKernel<LocateRois> {
+ public:
+  LocateRoisKernel() : NodeKernel("LocateRois") {}
+  void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
+    Numbers numbers(kind, number);
+    start_.limits = limits;
+    start_.camera.width = limits.width;
+    start_.camera.height = limits.height;
+    set_.count = at_its_worst(kind) ? limits.tools : 1 + numbers.below(limits.tools);
+    for (int t = 0; t < set_.count; ++t) {
+      Prediction& prediction = predictions_.tools[t];
+      prediction = {};
+      prediction.has_prior = at_its_worst(kind) || !numbers.one_in(20);
+      prediction.in_view = true;
+      if (kind == InputKind::worst && number % 2 == 0) {
+        place_in_a_chain(t, set_.count, prediction);
+      } else {
+        prediction.low_px = {numbers.within(0, limits.width - 40),
+                             numbers.within(0, limits.height - 40)};
+        prediction.high_px =
+            prediction.low_px + Vector2(numbers.within(10, 90), numbers.within(10, 90));
+      }
+    }
+    tools_.set(set_, 1, 0);
+    rewind();
+  }
+  void run() noexcept override { node_(verdict_, tools_, predictions_, rois_); }
+
+ private:
+  // Bars below each other, each reaching two columns into the next one's: the last box, as high as
+  // all of them, meets one bar, and only with that one's columns the next.
+  static void place_in_a_chain(int t, int count, Prediction& prediction) {
+    const bool last = t == count - 1;
+    const int from_right = count - 1 - t;
+    const double left = last ? 4.0 : 4.0 + 24.0 * from_right - 14.0;
+    prediction.low_px = {left, last ? 4.0 : 10.0 + 12.0 * t};
+    prediction.high_px = {left + (last ? 12.0 : 26.0), last ? 250.0 : 18.0 + 12.0 * t};
+  }
+  FrameVerdict verdict_ = admitted(2);
+  ToolSet set_;
+  graph::Latest<ToolSet> tools_;
+  Predictions predictions_;
+  Rois rois_;
+};
+
+class TrackToolsKernel final : public NodeKernel<TrackTools> {
+ public:
+  TrackToolsKernel() : NodeKernel("TrackTools") {}
+  void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
+    Numbers numbers(kind, number);
+    start_.limits = limits;
+    tracked_.fill(kind, numbers, limits);
+    for (int t = 0; t < tracked_.set.count; ++t) {
+      FittedTool& tool = fitted_[t % k_tool_slices].tools[t];
+      tool.reason = at_its_worst(kind) || !numbers.one_in(4) ? Reason::none : Reason::no_labeling;
+      tool.T_camera_tool = any_view(numbers);
+      tool.covariance = Matrix6::Identity() * 1e-6;
+    }
+    rewind();
+  }
+  void run() noexcept override {
+    node_(tracked_.verdict, tracked_.head, tracked_.tools, fitted_,
+          graph::Previous<Estimates>(tracked_.last), estimates_);
+  }
+
+ private:
+  Tracked tracked_;
+  graph::Parts<FittedTools, k_tool_slices> fitted_;
+  Estimates estimates_;
+};
+
+}  // namespace
+
+std::unique_ptr<MeasuredKernel> stamp_frame_kernel() { return std::make_unique<StampKernel>(); }
+std::unique_ptr<MeasuredKernel> check_frame_kernel() { return std::make_unique<CheckKernel>(); }
+std::unique_ptr<MeasuredKernel> predict_tracks_kernel() {
+  return std::make_unique<PredictTracksKernel>();
+}
+std::unique_ptr<MeasuredKernel> locate_rois_kernel() {
+  return std::make_unique<LocateRoisKernel>();
+}
+std::unique_ptr<MeasuredKernel> track_tools_kernel() {
+  return std::make_unique<TrackToolsKernel>();
+}
+
+}  // namespace glint::inputs

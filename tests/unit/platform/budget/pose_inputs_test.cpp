@@ -1,0 +1,107 @@
+// The pose and output kernels' inputs: what they may do, and that the worst one does all of it.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "platform/budget/measured_kernel.hpp"
+
+namespace glint {
+namespace {
+
+using Kernels = std::vector<std::unique_ptr<MeasuredKernel>>;
+
+Kernels kernels() {
+  Kernels kernels;
+  add_pose_kernels(kernels);
+  add_output_kernels(kernels);
+  add_background_kernels(kernels);
+  return kernels;
+}
+
+Limits five_tools() {
+  Limits limits;
+  limits.tools = 5;
+  limits.markers_per_tool = 5;
+  limits.blobs = 64;
+  limits.lens_steps = 0;
+  limits.pair_tests = 1024;
+  limits.search_steps = 768;
+  return limits;
+}
+
+Limits one_tool() {
+  Limits limits = five_tools();
+  limits.tools = 1;
+  limits.markers_per_tool = 4;
+  limits.lens_steps = k_lens_steps_max;
+  limits.background_steps = 100;
+  return limits;
+}
+
+const std::vector<Limits>& all_limits() {
+  static const std::vector<Limits> limits = {Limits{}, five_tools(), one_tool()};
+  return limits;
+}
+
+std::string shown(const MeasuredKernel& kernel, const graph::LoopCounts& counts) {
+  std::ostringstream text;
+  text << kernel.name();
+  for (std::size_t loop = 0; loop < kernel.loops().size(); ++loop) {
+    text << ' ' << kernel.loops()[loop] << '=' << counts[loop];
+  }
+  return text.str();
+}
+
+TEST(PoseInputs, WorstDrivesEveryLoopToItsMaximum) {
+  for (const auto& kernel : kernels()) {
+    for (const Limits& limits : all_limits()) {
+      kernel->set_input(InputKind::worst, 0, limits);
+      kernel->rewind();
+      kernel->run();
+      EXPECT_EQ(kernel->counts(), kernel->worst(limits))
+          << shown(*kernel, kernel->counts()) << "\nof " << shown(*kernel, kernel->worst(limits));
+    }
+  }
+}
+
+TEST(PoseInputs, NoInputRunsALoopMoreOftenThanItMay) {
+  constexpr InputKind k_kinds[] = {InputKind::typical, InputKind::recorded, InputKind::worst,
+                                   InputKind::searched};
+  for (const auto& kernel : kernels()) {
+    for (const Limits& limits : all_limits()) {
+      for (const InputKind kind : k_kinds) {
+        for (std::uint64_t number = 0; number < 24; ++number) {
+          kernel->set_input(kind, number, limits);
+          kernel->run();
+          ASSERT_TRUE(graph::within(kernel->counts(), kernel->worst(limits)))
+              << shown(*kernel, kernel->counts()) << " kind " << static_cast<int>(kind)
+              << " number " << number;
+        }
+      }
+    }
+  }
+}
+
+TEST(PoseInputs, AnInputDoesTheSameEachTimeItRuns) {
+  for (const auto& kernel : kernels()) {
+    for (std::uint64_t number = 0; number < 6; ++number) {
+      kernel->set_input(InputKind::searched, number, five_tools());
+      kernel->run();
+      const graph::LoopCounts once = kernel->counts();
+      kernel->rewind();
+      kernel->run();
+      EXPECT_EQ(kernel->counts(), once) << kernel->name();
+      kernel->set_input(InputKind::typical, 1, Limits{});
+      kernel->run();
+      kernel->set_input(InputKind::searched, number, five_tools());
+      kernel->run();
+      EXPECT_EQ(kernel->counts(), once) << kernel->name();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace glint
