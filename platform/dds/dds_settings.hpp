@@ -6,6 +6,7 @@
 
 #include "kernels/geometry.hpp"
 #include "kernels/units.hpp"
+#include "platform/rt/overrun_counters.hpp"
 
 namespace glint {
 
@@ -34,6 +35,10 @@ struct DdsSettings {
   Duration actuation_delay;                  // a pose is valid this long after its tick
   Duration unix_minus_board;                 // added to a PoseSample's times to stamp messages
   Duration poll_period = microseconds(500);  // of the ring, by the sink's thread
+  // What /diagnostics says beside the tools: what this machine spoils (empty: nothing), and the
+  // overruns so far (null: not counted; it outlives the sink).
+  std::string best_effort;
+  const OverrunCounters* overruns = nullptr;
 };
 
 }  // namespace glint

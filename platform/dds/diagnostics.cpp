@@ -46,10 +46,30 @@ void Diagnostics::add(std::string_view tool, const PoseSample& sample, const Sin
   value("written", std::to_string(figures.written));
   value("ring_dropped", std::to_string(figures.ring_dropped));
 
+  add_entry(state.level, keep("glint: " + std::string(tool)),
+            sample.reason == Reason::none ? keep(state.text) : keep(name_of(sample.reason)),
+            values);
+}
+
+void Diagnostics::add_timing(const OverrunCounters& overruns, std::string_view best_effort) {
+  const std::uint64_t frame = overruns.frame.load(std::memory_order_relaxed);
+  const std::uint64_t tick = overruns.tick.load(std::memory_order_relaxed);
+  std::vector<Value>& values = values_.emplace_back();
+  values.push_back({keep("overruns_frame"), keep(std::to_string(frame))});
+  values.push_back({keep("overruns_tick"), keep(std::to_string(tick))});
+  values.push_back({keep("best_effort"), keep(best_effort)});
+  const bool late = frame + tick > 0;
+  const char* const message = late ? "overruns" : best_effort.empty() ? "in time" : "best effort";
+  add_entry(late || !best_effort.empty() ? k_warn : k_ok, keep("glint: timing"), keep(message),
+            values);
+}
+
+void Diagnostics::add_entry(std::uint8_t level, char* name, char* message,
+                            std::vector<Value>& values) {
   Entry entry{};
-  entry.level = state.level;
-  entry.name = keep("glint: " + std::string(tool));
-  entry.message = sample.reason == Reason::none ? keep(state.text) : keep(name_of(sample.reason));
+  entry.level = level;
+  entry.name = name;
+  entry.message = message;
   entry.hardware_id = keep("glint");
   entry.values._length = entry.values._maximum = static_cast<std::uint32_t>(values.size());
   entry.values._buffer = values.data();

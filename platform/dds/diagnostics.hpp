@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "platform/dds/messages.hpp"
+#include "platform/rt/overrun_counters.hpp"
 
 namespace glint {
 
@@ -16,6 +17,8 @@ struct SinkFigures;
 class Diagnostics {
  public:
   void add(std::string_view tool, const PoseSample& sample, const SinkFigures& figures);
+  // Whether outputs are in time, and what this machine spoils.
+  void add_timing(const OverrunCounters& overruns, std::string_view best_effort);
   [[nodiscard]] DiagnosticsMessage message(Time unix_time);
 
  private:
@@ -23,6 +26,7 @@ class Diagnostics {
   using Value = diagnostic_msgs_msg_dds__KeyValue_;
 
   char* keep(std::string_view text);
+  void add_entry(std::uint8_t level, char* name, char* message, std::vector<Value>& values);
 
   std::deque<std::string> texts_;
   std::deque<std::vector<Value>> values_;

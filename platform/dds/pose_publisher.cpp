@@ -146,6 +146,7 @@ void PosePublisher::write_diagnostics(const SinkFigures& figures) {
   for (const ToolStream& stream : streams_) {
     if (stream.started) text.add(stream.name, stream.sample, figures);
   }
+  if (settings_.overruns != nullptr) text.add_timing(*settings_.overruns, settings_.best_effort);
   const DiagnosticsMessage message = text.message(Time{dds_time()});
   dds_write(diagnostics_, &message);
 }

@@ -37,7 +37,8 @@ Accuracy judge(const std::vector<FrameOutcome>& outcomes, const std::vector<sim:
   for (std::size_t f = 0; f < count; ++f) {
     const FrameOutcome& outcome = outcomes[f];
     const sim::SimTruth& truth = truths[f];
-    if (outcome.verdict != Reason::none) {
+    // A frame that was not in time counts as one that was not tracked, not as none at all.
+    if (outcome.verdict != Reason::none && !is_overrun(outcome.verdict)) {
       ++result.refused;
       continue;
     }

@@ -2,6 +2,10 @@
 
 namespace glint {
 
+FrameStamp overrun_stamp(const Frame& frame) {
+  return {frame.mid_exposure, frame.arrival, frame.sequence, Reason::none};
+}
+
 ChoiceRecord as_record(const graph::Choice& choice, std::int64_t unix_offset_ns) {
   ChoiceRecord record;
   record.group = static_cast<std::uint8_t>(choice.group);

@@ -12,29 +12,34 @@
 #include "platform/record/recorder.hpp"
 #include "platform/session/choices.hpp"
 #include "platform/session/frame_method.hpp"
+#include "platform/session/group_runner.hpp"
 
 namespace glint {
 
 using Clock = std::function<Time()>;
-using Activate = std::function<void(Tracker&)>;  // by one worker or by several: equal bytes
 
 class FrameGroup {
  public:
-  // `lane` may be null: nothing is recorded. `tool_set` outlives this. With a `method` it decides
-  // in the tracker's place.
-  FrameGroup(const Cell& cell, graph::TripleBuffer<ToolSet>& tool_set, Clock now, Activate activate,
-             RecorderLane* lane, std::unique_ptr<FrameMethod> method = nullptr);
+  // `lane` may be null: nothing is recorded. `tool_set` and `runner` outlive this. With a `method`
+  // it decides in the tracker's place, unwatched.
+  FrameGroup(const Cell& cell, graph::TripleBuffer<ToolSet>& tool_set, Clock now,
+             GroupRunner<Tracker>& runner, RecorderLane* lane,
+             std::unique_ptr<FrameMethod> method = nullptr);
 
-  // Estimates are published before anything is offered: latency first.
+  // Estimates are published before anything is offered: latency first. Of a frame that was not in
+  // time, what the policy says is published.
   void process(const ArrivedFrame& arrived) noexcept;
 
   [[nodiscard]] graph::TripleBuffer<Estimates>& estimates() noexcept { return estimates_; }
+  // The overruns that somebody has to tell the world: the tick group, by CAN.
+  [[nodiscard]] OverrunNotes& overrun_notes() noexcept { return notes_; }
   // What the last frame left.
   [[nodiscard]] const Estimates& newest() const noexcept { return *newest_; }
   [[nodiscard]] std::uint64_t activations() const noexcept { return group_.choice().activation; }
 
  private:
-  [[nodiscard]] const Estimates& estimate(const ArrivedFrame& arrived) noexcept;
+  void publish(const Estimates& estimates) noexcept;
+  void answer(const ArrivedFrame& arrived) noexcept;
   void record(const ArrivedFrame& arrived) noexcept;
 
   std::unique_ptr<Tracker> tracker_ = std::make_unique<Tracker>();
@@ -43,8 +48,13 @@ class FrameGroup {
   const Estimates* newest_;
   graph::TripleBuffer<Estimates> estimates_;
   Clock now_;
-  Activate activate_;
+  GroupRunner<Tracker>* runner_;
   RecorderLane* lane_;
+  Duration lost_after_;
+  graph::OverrunDecision overrun_;  // of the last frame
+  std::unique_ptr<Estimates> in_time_ = std::make_unique<Estimates>();
+  std::unique_ptr<Estimates> substitute_ = std::make_unique<Estimates>();
+  OverrunNotes notes_;
 };
 
 }  // namespace glint

@@ -6,8 +6,10 @@
 #include <memory>
 #include <vector>
 
+#include "graph/describe.hpp"
 #include "kernels/wire/output_record.hpp"
 #include "nodes/output.hpp"
+#include "nodes/overrun_effects.hpp"
 #include "nodes/tracker.hpp"
 #include "platform/input_error.hpp"
 #include "platform/record/sha256.hpp"
@@ -19,12 +21,29 @@
 namespace glint {
 namespace {
 
+// The last node of G that has run when `node` is the last one of Other that has; -1: none.
+template <class G, class Other>
+int same_place(int node) {
+  int last = -1;
+  int number = 0;
+  for (const graph::NodeInfo& one : graph::Description<G>::nodes) {
+    for (int other = 0; other <= node && other < Other::node_count; ++other) {
+      const graph::NodeInfo& theirs =
+          graph::Description<Other>::nodes[static_cast<std::size_t>(other)];
+      if (theirs.name == one.name && theirs.copy == one.copy) last = number;
+    }
+    ++number;
+  }
+  return last;
+}
+
 class Replayer {
  public:
   Replayer(const Cell& cell, Duration tick_period, int workers, ReplayResult& result)
       : result_(result),
         tick_period_(tick_period),
         executor_(workers),
+        lost_after_(cell.lost_after),
         robot_(declared_robot_frame(cell)) {
     configure(cell, *tracker_);
     configure(cell, *marker_tracker_);
@@ -37,24 +56,31 @@ class Replayer {
   void on(const DroppedInput&) {}  // said beside the frame, which is there as well
 
   void on(const FrameMessage& frame) {
-    tracker_->input<Frame>() = frame.view();
+    const Frame view = frame.view();
+    tracker_->input<Frame>() = view;
     tracker_->input<HeadPose>() = head_;
-    executor_.activate(*tracker_);
-    remember(tracker_->output<Estimates>());
+    const graph::OverrunDecision overrun = overrun_of_frame();
+    estimate(*tracker_, overrun, overrun.after_node, overrun_stamp(view));
   }
 
   void on(const MarkerFrame& frame) {
-    marker_tracker_->input<FrameStamp>() = {frame.mid_exposure, frame.arrival, frame.sequence,
-                                            frame.reason};
+    const FrameStamp stamp{frame.mid_exposure, frame.arrival, frame.sequence, frame.reason};
+    marker_tracker_->input<FrameStamp>() = stamp;
     marker_tracker_->input<Markers>() = frame.markers;
     marker_tracker_->input<HeadPose>() = head_;
-    executor_.activate(*marker_tracker_);
-    remember(marker_tracker_->output<Estimates>());
+    const graph::OverrunDecision overrun = overrun_of_frame();
+    estimate(*marker_tracker_, overrun, same_place<MarkerTracker, Tracker>(overrun.after_node),
+             {stamp.mid_exposure, stamp.arrival, stamp.sequence, Reason::none});
   }
 
-  // A tick is decided as soon as the estimates that it read are there: its choice may stand in
-  // front of the frame, which is offered to the recorder only after its estimates are published.
+  // A frame's choice stands in front of it. A tick is decided as soon as the estimates that it read
+  // are there: its choice may stand in front of the frame, which is offered to the recorder only
+  // after its estimates are published.
   void on(const ChoiceRecord& choice) {
+    if (choice.group == k_frame_group) {
+      frame_choice_ = choice;
+      return;
+    }
     if (choice.group != k_tick_group) return;
     waiting_.push_back(choice);
     run_ready();
@@ -74,10 +100,37 @@ class Replayer {
  private:
   using Record = std::vector<std::uint8_t>;
 
-  void remember(const Estimates& estimates) {
+  [[nodiscard]] graph::OverrunDecision overrun_of_frame() const {
+    return frame_choice_.activation == version_ + 1 ? frame_choice_.overrun
+                                                    : graph::OverrunDecision{};
+  }
+
+  // `last`: the node after which this activation ended; -1 where none of this graph's had run.
+  template <class AnyTracker>
+  void estimate(AnyTracker& tracker, const graph::OverrunDecision& overrun, int last,
+                const FrameStamp& stamp) {
     ++result_.frames;
-    estimates_[++version_] = std::make_unique<Estimates>(estimates);
+    ++version_;
+    if (!overrun.happened()) {
+      executor_.activate(tracker);
+      *in_time_ = tracker.template output<Estimates>();
+      estimates_[version_] = std::make_unique<Estimates>(*in_time_);
+    } else {
+      ++result_.overruns;
+      if (last >= 0) run_until(tracker, overrun, last);
+      auto out = std::make_unique<Estimates>();
+      const OverrunFrame frame{stamp, head_, lost_after_};
+      if (substitute(overrun.policy, frame, *in_time_, *out)) estimates_[version_] = std::move(out);
+    }
     run_ready();
+  }
+
+  template <class G>
+  static void run_until(G& graph, graph::OverrunDecision overrun, int last) {
+    overrun.after_node = static_cast<std::uint8_t>(last);
+    graph::NoTrace trace;
+    graph::RecordedBoundary boundary(overrun);
+    (void)graph.activate_until(trace, boundary);
   }
 
   void run_ready() {
@@ -106,9 +159,8 @@ class Replayer {
     const auto number =
         static_cast<std::uint32_t>(choice.nominal.nanoseconds / tick_period_.nanoseconds);
     output_->input<Now>() = {choice.nominal, number, choice.unix_offset_ns};
-    output_->activate();
     ++result_.ticks;
-    const PoseSamples& samples = output_->output<PoseSamples>();
+    const PoseSamples& samples = run_tick(choice);
     for (int t = 0; t < samples.count; ++t) {
       Record record(k_output_record_bytes);
       encode(samples.items[static_cast<std::size_t>(t)],
@@ -118,6 +170,22 @@ class Replayer {
       decided_.push_back(std::move(record));
     }
     compare();
+  }
+
+  // What left at this tick.
+  const PoseSamples& run_tick(const ChoiceRecord& choice) {
+    if (!choice.overrun.happened()) {
+      output_->activate();
+      *samples_in_time_ = output_->output<PoseSamples>();
+      return *samples_in_time_;
+    }
+    ++result_.overruns;
+    run_until(*output_, choice.overrun, choice.overrun.after_node);
+    const Now& now = output_->input<Now>();
+    if (!substitute(choice.overrun.policy, now, lost_after_, *samples_in_time_, *substitute_)) {
+      substitute_->count = 0;
+    }
+    return *substitute_;
   }
 
   void compare() {
@@ -134,6 +202,11 @@ class Replayer {
   ReplayResult& result_;
   Duration tick_period_;
   TrackerExecutor executor_;
+  Duration lost_after_;
+  ChoiceRecord frame_choice_;  // of the newest frame
+  std::unique_ptr<Estimates> in_time_ = std::make_unique<Estimates>();
+  std::unique_ptr<PoseSamples> samples_in_time_ = std::make_unique<PoseSamples>();
+  std::unique_ptr<PoseSamples> substitute_ = std::make_unique<PoseSamples>();
   RobotFrame robot_;
   HeadPose head_;
   std::unique_ptr<Tracker> tracker_ = std::make_unique<Tracker>();

@@ -22,6 +22,7 @@ struct ReplayResult {
   std::int64_t ticks = 0;
   std::int64_t records = 0;
   std::int64_t records_recorded = 0;
+  std::int64_t overruns = 0;          // decisions about them, taken from the recording
   std::int64_t mismatches = 0;        // records that differ from the recorded ones
   std::int64_t first_mismatch = -1;   // its number
   std::int64_t versions_missing = 0;  // ticks that read estimates which the recording lacks

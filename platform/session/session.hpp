@@ -8,8 +8,11 @@
 #include <vector>
 
 #include "platform/cells/cell.hpp"
+#include "platform/rt/machine_check.hpp"
 #include "platform/session/accuracy.hpp"
+#include "platform/session/group_runner.hpp"
 #include "platform/session/latency.hpp"
+#include "platform/session/run_plan.hpp"
 #include "platform/session/sink_outcome.hpp"
 
 namespace glint {
@@ -17,10 +20,14 @@ namespace glint {
 struct SessionOptions : SinkOptions {
   std::function<void(double done_s, double all_s)> progress;
   const std::atomic<bool>* stop = nullptr;  // set: the run ends here, whole as far as it went
+  RunPlan plan;                             // who runs what, and the bounds; made without a board
+  std::vector<Injection> injections;        // delays, to see what is done about them
+  bool trace = false;                       // trace.spans in `out`
 };
 
 struct SessionResult : SinkOutcome {
   Accuracy accuracy;
+  std::vector<FrameOutcome> outcomes;  // one for each frame delivered
   std::vector<FrameToCan> latencies;
   std::int64_t frames = 0;
   std::int64_t ticks = 0;
@@ -29,7 +36,11 @@ struct SessionResult : SinkOutcome {
   double duration_s = 0;
   std::uint64_t heap_allocations_after_start = 0;
   bool heap_counted = false;
-  std::uint64_t worker_overruns = 0;
+  std::uint64_t worker_overruns = 0;  // waits for another worker beyond their declared spins
+  OverrunCounts frame_overruns, tick_overruns;
+  std::uint64_t page_faults_after_start = 0;  // of the frame and tick threads
+  MachineCheck machine;                       // what spoils a live run's timing
+  std::uint64_t trace_spans = 0, trace_dropped = 0;
   std::uint64_t can_frames = 0;
 };
 

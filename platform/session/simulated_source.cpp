@@ -37,6 +37,7 @@ void SimulatedSource::render_all() {
     truths_[static_cast<std::size_t>(i)] = frame.truth;  // here, for it allocates
     (void)rendered_.push(slot);  // cannot be full: it holds more than there are slots
     ++rendered_count_;
+    is_rendered_.post();
   }
 }
 
@@ -48,12 +49,10 @@ void SimulatedSource::fill() {
 bool SimulatedSource::wait(ArrivedFrame& arrived) {
   if (delivered_ == simulator_.frame_count()) return false;
   if (sleep_until_) sleep_until_(simulator_.timing(delivered_).arrival);
+  const bool late = rendered_count_ <= delivered_;
+  is_rendered_.wait();
   int slot = -1;
-  bool late = false;
-  while (!rendered_.pop(slot)) {
-    late = true;
-    std::this_thread::sleep_for(k_poll);
-  }
+  (void)rendered_.pop(slot);  // it is there: it was posted
   const sim::SimFrame& frame = *slots_[static_cast<std::size_t>(slot)];
   Time arrival = frame.arrival;
   if (sleep_until_ && late) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "graph/ring.hpp"
+#include "platform/rt/release.hpp"
 #include "platform/session/frame_source.hpp"
 #include "platform/sim/simulator.hpp"
 
@@ -52,6 +53,7 @@ class SimulatedSource final : public FrameSource {
   int delivered_ = 0;
   int late_renders_ = 0;
   std::atomic<int> rendered_count_{0};
+  Release is_rendered_;  // once for each frame
   std::atomic<bool> stop_{false};
   std::thread renderer_;
 };

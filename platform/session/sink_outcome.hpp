@@ -13,8 +13,9 @@
 namespace glint {
 
 struct SinkOptions {
-  std::string out = "out";  // folder of all files that the cell names relatively
-  bool with_reader = true;  // a DDS reader process of its own counts what arrives
+  std::string out = "out";               // folder of all files that the cell names relatively
+  bool with_reader = true;               // a DDS reader process of its own counts what arrives
+  std::vector<std::string> best_effort;  // what this machine spoils: said in every output
 };
 
 struct SinkOutcome {

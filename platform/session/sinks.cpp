@@ -25,6 +25,12 @@ std::vector<std::string> names_of(const ToolSet& tools) {
   return names;
 }
 
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += (text.empty() ? "" : "\n") + line;
+  return text;
+}
+
 Duration tick_period(const Cell& cell) { return {static_cast<std::int64_t>(1e9 / cell.tick_hz)}; }
 
 double checked_bus_load(const Cell& cell) {
@@ -72,7 +78,9 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     info.nominal_tick = tick_period(cell);
     info.unix_offset = {unix_offset_ns};
     info.tool_names = names_of(cell.tools);
-    info.facts = {{"compiler", __VERSION__}, {"cell", cell.file}};
+    info.facts = {{"compiler", __VERSION__},
+                  {"cell", cell.file},
+                  {"best_effort", joined(options.best_effort)}};
     info.attachments = attachments_of(cell);
     RecorderSettings settings;
     settings.when_full = can.when_full;
@@ -87,7 +95,9 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
 
   // A simulated run that does not keep real time would only overrun its DDS readers.
   if (cell.dds.on && cell.realtime) {
-    const DdsSettings settings = dds_settings(cell, unix_offset_ns);
+    DdsSettings settings = dds_settings(cell, unix_offset_ns);
+    settings.best_effort = joined(options.best_effort);
+    settings.overruns = &overruns_;
     dds_ = std::make_unique<DdsSink>(settings);
     if (options.with_reader) {
       reader_ = std::make_unique<ReaderProcess>(settings, in_folder(out_, "dds_reader.json"));

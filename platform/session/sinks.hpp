@@ -9,6 +9,7 @@
 #include "platform/dds/dds_sink.hpp"
 #include "platform/dds/reader_process.hpp"
 #include "platform/record/recorder.hpp"
+#include "platform/rt/overrun_counters.hpp"
 #include "platform/session/file_sink.hpp"
 #include "platform/session/sink_outcome.hpp"
 
@@ -25,12 +26,16 @@ class Sinks {
   [[nodiscard]] Recorder* recorder() noexcept { return recorder_.get(); }
   [[nodiscard]] FileSink* files() noexcept { return files_.get(); }
 
+  // For whoever counts overruns; DDS diagnostics tell them.
+  [[nodiscard]] OverrunCounters& overruns() noexcept { return overruns_; }
+
   // After the last offer: everything is written, and what became of it stands in the result.
   void close(SinkOutcome& result);
 
  private:
   std::string out_;
   double can_bus_load_ = 0;
+  OverrunCounters overruns_;
   std::unique_ptr<CanSink> can_;
   std::unique_ptr<ReaderProcess> reader_;  // started before the sink, ended after it
   std::unique_ptr<DdsSink> dds_;

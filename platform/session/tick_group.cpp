@@ -3,17 +3,26 @@
 #include <array>
 #include <utility>
 
+#include "kernels/wire/node_frames.hpp"
 #include "kernels/wire/output_record.hpp"
+#include "nodes/overrun_effects.hpp"
 #include "platform/session/pipeline.hpp"
 
 namespace glint {
 
 TickGroup::TickGroup(const Cell& cell, graph::TripleBuffer<Estimates>& estimates,
                      graph::TripleBuffer<RobotFrame>& robot, Clock now, TickSinks sinks,
-                     std::int64_t unix_offset_ns, std::size_t latency_entries)
+                     std::int64_t unix_offset_ns, std::size_t latency_entries,
+                     GroupRunner<Output>& runner, OverrunNotes& frame_notes)
     : group_(*output_, k_tick_group),
       now_(std::move(now)),
       sinks_(sinks),
+      runner_(&runner),
+      frame_notes_(&frame_notes),
+      node_(static_cast<unsigned>(cell.can.node)),
+      lost_after_(cell.lost_after),
+      samples_(&output_->output<PoseSamples>()),
+      frames_(&output_->output<CanFrames>()),
       unix_offset_ns_(unix_offset_ns),
       latencies_(latency_entries) {
   configure(cell, *output_);
@@ -22,18 +31,50 @@ TickGroup::TickGroup(const Cell& cell, graph::TripleBuffer<Estimates>& estimates
 }
 
 void TickGroup::tick(std::uint32_t number, Time nominal, Time woken) noexcept {
-  output_->input<Now>() = {nominal, number, unix_offset_ns_};
+  const Now now{nominal, number, unix_offset_ns_};
+  output_->input<Now>() = now;
   (void)group_.release(nominal.nanoseconds);
-  group_.activate();
-  send(woken);
+  // What PackCan remembers of what it sent: taken back where that does not leave.
+  const PackCan remembered = output_->node<PackCan>();
+  overrun_ = runner_->run(*output_,
+                          {group_.choice().activation, number, nominal, woken, carried_sequence()});
+  skipped_ = false;
+  if (overrun_.happened()) {
+    output_->node<PackCan>() = remembered;
+    answer(now);
+  } else {
+    samples_ = &output_->output<PoseSamples>();
+    frames_ = &output_->output<CanFrames>();
+  }
+  if (!skipped_) send(woken);
+  runner_->settle(*output_);
+  if (!overrun_.happened()) *in_time_ = *samples_;
 
   if (sinks_.lane != nullptr) {
-    (void)sinks_.lane->offer_choice(as_record(group_.choice(), unix_offset_ns_));
+    ChoiceRecord choice = as_record(group_.choice(), unix_offset_ns_);
+    choice.overrun = overrun_;
+    (void)sinks_.lane->offer_choice(choice);
   }
-  const PoseSamples& samples = output_->output<PoseSamples>();
+  offer_samples();
+}
+
+void TickGroup::answer(const Now& now) noexcept {
+  (void)own_notes_.push({k_tick_group, overrun_});
+  samples_ = substitute_.get();
+  frames_ = substitute_frames_.get();
+  substitute_frames_->count = 0;
+  skipped_ = !substitute(overrun_.policy, now, lost_after_, *in_time_, *substitute_);
+  if (skipped_) {
+    substitute_->count = 0;
+    return;
+  }
+  output_->node<PackCan>()(now, *substitute_, *substitute_frames_);
+}
+
+void TickGroup::offer_samples() noexcept {
   std::array<std::uint8_t, k_output_record_bytes> record;
-  for (int t = 0; t < samples.count; ++t) {
-    const PoseSample& sample = samples.items[static_cast<std::size_t>(t)];
+  for (int t = 0; t < samples_->count; ++t) {
+    const PoseSample& sample = samples_->items[static_cast<std::size_t>(t)];
     encode(sample, record);
     hash_.add(record);
     ++records_;
@@ -43,16 +84,20 @@ void TickGroup::tick(std::uint32_t number, Time nominal, Time woken) noexcept {
   }
 }
 
+std::uint32_t TickGroup::carried_sequence() const noexcept {
+  return std::as_const(*output_).token<graph::Latest<Estimates>>().value().verdict.stamp.sequence;
+}
+
 void TickGroup::send(Time woken) noexcept {
   const auto& estimates = std::as_const(*output_).token<graph::Latest<Estimates>>();
-  const bool first_carried =
-      estimates.version() != carried_version_ && estimates.value().verdict.usable();
-  carried_version_ = estimates.version();
+  // A substitute of this tick carries older estimates: the newest ones wait for the next tick.
+  const bool first_carried = !overrun_.happened() && estimates.version() != carried_version_ &&
+                             estimates.value().verdict.usable();
+  if (!overrun_.happened()) carried_version_ = estimates.version();
 
   bool first = true;
-  for (const CanFrame& frame : output_->output<CanFrames>().frames()) {
-    if (sinks_.can != nullptr) sinks_.can->send(frame, now_());
-    ++can_frames_;
+  for (const CanFrame& frame : frames_->frames()) {
+    send_one(frame);
     if (first && first_carried) {
       const Time published{estimates.time_ns()};
       latencies_.add(
@@ -60,6 +105,22 @@ void TickGroup::send(Time woken) noexcept {
     }
     first = false;
   }
+  tell_overrun();
+  runner_->add_span(k_span_sent, woken, now_());
+}
+
+// One emergency a tick, the frame group's first; what waits is told at the ticks after.
+void TickGroup::tell_overrun() noexcept {
+  OverrunNote note;
+  if (!frame_notes_->pop(note) && !own_notes_.pop(note)) return;
+  const graph::OverrunDecision& decision = note.decision;
+  send_one(overrun_frame(node_, {note.group, static_cast<std::uint8_t>(decision.kind),
+                                 reason_of(decision.policy), decision.after_node}));
+}
+
+void TickGroup::send_one(const CanFrame& frame) noexcept {
+  if (sinks_.can != nullptr) sinks_.can->send(frame, now_());
+  ++can_frames_;
 }
 
 std::string TickGroup::output_sha256() const { return hash_.hex(); }

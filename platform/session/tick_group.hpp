@@ -31,27 +31,45 @@ class TickGroup {
  public:
   TickGroup(const Cell& cell, graph::TripleBuffer<Estimates>& estimates,
             graph::TripleBuffer<RobotFrame>& robot, Clock now, TickSinks sinks,
-            std::int64_t unix_offset_ns, std::size_t latency_entries);
+            std::int64_t unix_offset_ns, std::size_t latency_entries, GroupRunner<Output>& runner,
+            OverrunNotes& frame_notes);
 
-  // Tick `number` at its nominal time; `woken` is when it really began.
+  // Tick `number` at its nominal time; `woken` is when it really began. Of a tick that was not in
+  // time, what the policy says leaves.
   void tick(std::uint32_t number, Time nominal, Time woken) noexcept;
 
   [[nodiscard]] const LatencyLog& latencies() const noexcept { return latencies_; }
   [[nodiscard]] std::uint64_t can_frames() const noexcept { return can_frames_; }
   [[nodiscard]] std::uint64_t records() const noexcept { return records_; }
-  [[nodiscard]] const PoseSamples& samples() const noexcept {
-    return output_->output<PoseSamples>();
-  }
+  // What left at the last tick; none where it was skipped.
+  [[nodiscard]] const PoseSamples& samples() const noexcept { return *samples_; }
   // Over all output records so far, lower-case hex.
   [[nodiscard]] std::string output_sha256() const;
 
  private:
+  void answer(const Now& now) noexcept;
   void send(Time woken) noexcept;
+  void tell_overrun() noexcept;
+  [[nodiscard]] std::uint32_t carried_sequence() const noexcept;
+  void send_one(const CanFrame& frame) noexcept;
+  void offer_samples() noexcept;
 
   std::unique_ptr<Output> output_ = std::make_unique<Output>();
   graph::RateGroup<Output> group_;
   Clock now_;
   TickSinks sinks_;
+  GroupRunner<Output>* runner_;
+  OverrunNotes* frame_notes_;
+  OverrunNotes own_notes_;
+  unsigned node_;
+  Duration lost_after_;
+  graph::OverrunDecision overrun_;  // of the last tick
+  bool skipped_ = false;            // and nothing left at it
+  const PoseSamples* samples_;
+  const CanFrames* frames_;
+  std::unique_ptr<PoseSamples> in_time_ = std::make_unique<PoseSamples>();
+  std::unique_ptr<PoseSamples> substitute_ = std::make_unique<PoseSamples>();
+  std::unique_ptr<CanFrames> substitute_frames_ = std::make_unique<CanFrames>();
   std::int64_t unix_offset_ns_;
   LatencyLog latencies_;
   Sha256 hash_;

@@ -1,0 +1,90 @@
+// What tracing adds to a node: two looks at the CPU's counter and one entry in a ring.
+//
+// One object for each worker of a group, since each ring has one producer. A node's span is pushed
+// when the worker goes on, so that what was decided after the node can still be noted on it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "graph/ring.hpp"
+#include "platform/rt/cycle_clock.hpp"
+#include "platform/rt/trace_span.hpp"
+
+namespace glint {
+
+// 8192 spans are 400 ticks and 9 frames of one worker: far more than its writer lets gather.
+using SpanRing = graph::Ring<TraceSpan, 8192>;
+
+class NodeTrace {
+ public:
+  // `bounds_ns` by node, or empty; it and the ring outlive this.
+  NodeTrace(SpanRing& ring, std::uint8_t group, std::uint8_t worker,
+            std::span<const std::int64_t> bounds_ns = {}) noexcept
+      : ring_(&ring), bounds_ns_(bounds_ns), ns_per_cycle_(ns_per_cycle()) {
+    span_.group = group;
+    span_.worker = worker;
+  }
+
+  // `now_ns` by the session's clock, read when the CPU counted `cycles`.
+  void begin_activation(std::uint64_t activation, std::uint32_t frame_sequence, std::int64_t now_ns,
+                        std::uint64_t cycles) noexcept {
+    span_.activation = activation;
+    span_.frame_sequence = frame_sequence;
+    anchor_ns_ = now_ns;
+    anchor_cycles_ = cycles;
+  }
+  void on_node_begin(int /*node*/) noexcept {
+    flush();
+    begin_cycles_ = cycle_count();
+  }
+  void on_node_end(int node) noexcept {
+    const std::uint64_t end_cycles = cycle_count();
+    const auto i = static_cast<std::size_t>(node);
+    span_.begin_ns = at(begin_cycles_);
+    span_.end_ns = at(end_cycles);
+    span_.node = static_cast<std::uint8_t>(node);
+    span_.flags = 0;
+    span_.bound_ns = i < bounds_ns_.size() ? bounds_ns_[i] : 0;
+    waiting_ = true;
+  }
+  // On the span of the node that ended last.
+  void note(TraceFlag flag) noexcept {
+    span_.flags = static_cast<std::uint8_t>(span_.flags | flag);
+  }
+  // Something that is no node: a release, or what was sent.
+  void add(TraceFlag kind, std::int64_t begin_ns, std::int64_t end_ns) noexcept {
+    flush();
+    TraceSpan span = span_;
+    span.node = 0;
+    span.flags = kind;
+    span.bound_ns = 0;
+    span.begin_ns = begin_ns;
+    span.end_ns = end_ns;
+    (void)ring_->push(span);
+  }
+  void end_activation() noexcept { flush(); }
+
+ private:
+  void flush() noexcept {
+    if (!waiting_) return;
+    (void)ring_->push(span_);
+    waiting_ = false;
+  }
+  [[nodiscard]] std::int64_t at(std::uint64_t cycles) const noexcept {
+    return anchor_ns_ + static_cast<std::int64_t>(static_cast<double>(static_cast<std::int64_t>(
+                                                      cycles - anchor_cycles_)) *
+                                                  ns_per_cycle_);
+  }
+
+  SpanRing* ring_;
+  std::span<const std::int64_t> bounds_ns_;
+  double ns_per_cycle_;
+  TraceSpan span_;
+  std::int64_t anchor_ns_ = 0;
+  std::uint64_t anchor_cycles_ = 0;
+  std::uint64_t begin_cycles_ = 0;
+  bool waiting_ = false;
+};
+
+}  // namespace glint

@@ -1,0 +1,13 @@
+// Overruns so far, for whoever reports them from another thread.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+namespace glint {
+
+struct OverrunCounters {
+  std::atomic<std::uint64_t> frame{0}, tick{0};
+};
+
+}  // namespace glint

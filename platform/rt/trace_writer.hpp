@@ -1,0 +1,46 @@
+// Spans from their rings to a trace file, in a thread of its own.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "platform/rt/node_trace.hpp"
+
+namespace glint {
+
+class TraceWriter {
+ public:
+  // `header` is the file's first line (trace_span.hpp). Throws InputError where it cannot be made.
+  TraceWriter(const std::string& path, const std::string& header);
+  ~TraceWriter() { (void)close(); }
+  TraceWriter(const TraceWriter&) = delete;
+  TraceWriter& operator=(const TraceWriter&) = delete;
+
+  // A ring for one producer. Before start().
+  [[nodiscard]] SpanRing& add_ring();
+  void start();
+
+  // After the last span: writes what waits and closes. The first line that says what went wrong.
+  std::string close();
+  [[nodiscard]] std::uint64_t written() const noexcept { return written_; }
+  [[nodiscard]] std::uint64_t dropped() const noexcept;
+
+ private:
+  void run();
+  void write_waiting();
+
+  std::string path_;
+  std::FILE* file_ = nullptr;
+  std::vector<std::unique_ptr<SpanRing>> rings_;
+  std::uint64_t written_ = 0;
+  bool failed_ = false;
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+};
+
+}  // namespace glint

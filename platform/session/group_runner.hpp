@@ -1,0 +1,165 @@
+// Runs one group's activations as its plan says, and notices the one that is not in time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "graph/graph.hpp"
+#include "graph/overrun.hpp"
+#include "platform/rt/planned_executor.hpp"
+#include "platform/rt/trace_writer.hpp"
+#include "platform/session/node_probe.hpp"
+
+namespace glint {
+
+struct WatchSettings {
+  bool on = false;
+  Duration deadline;  // from the nominal release
+  graph::OverrunPolicy policy = graph::OverrunPolicy::predict;
+  std::vector<std::int64_t> remaining_ns;  // by node: from its end to the group's, at worst
+};
+
+template <class G>
+struct RunnerSettings {
+  graph::PlanTables<G> plan = graph::plan_by_rule<G>(1);
+  std::vector<ThreadSettings> others;  // one for each worker of the plan beyond the first
+  WatchSettings watch;
+  std::vector<Injection> injections;
+  std::vector<std::int64_t> bounds_ns;  // by node, for the trace; empty: no board
+  std::uint8_t group = 0;
+  bool live = true;
+  TraceWriter* trace = nullptr;  // not yet started
+};
+
+// When an activation began.
+struct ActivationStart {
+  std::uint64_t activation = 0;
+  std::uint32_t at = 0;  // the frame's sequence number, or the tick's
+  Time nominal, now;     // of the session's clock: the release as planned, and as it came
+  std::uint32_t frame_sequence = 0;
+};
+
+struct OverrunCounts {
+  std::uint64_t will_miss = 0, missed = 0;
+  std::array<std::uint64_t, 4> by_policy{};
+  [[nodiscard]] std::uint64_t total() const { return will_miss + missed; }
+};
+
+template <class G>
+class GroupRunner {
+ public:
+  // A wait for another worker beyond this many spins counts: some milliseconds.
+  static constexpr std::uint32_t k_spins_max = 100'000;
+
+  explicit GroupRunner(RunnerSettings<G> settings = {})
+      : settings_(std::move(settings)), clock_(settings_.live) {
+    const auto workers = static_cast<std::size_t>(settings_.plan.workers);
+    if (settings_.trace != nullptr) {
+      for (std::size_t w = 0; w < workers; ++w) {
+        traces_.push_back(std::make_unique<NodeTrace>(settings_.trace->add_ring(), settings_.group,
+                                                      static_cast<std::uint8_t>(w),
+                                                      settings_.bounds_ns));
+      }
+    }
+    for (std::size_t w = 0; w < workers; ++w) {
+      probes_.emplace_back(clock_, settings_.injections,
+                           traces_.empty() ? nullptr : traces_[w].get());
+    }
+    if (workers > 1) {
+      executor_ =
+          std::make_unique<PlannedExecutor<G>>(settings_.plan, settings_.others, k_spins_max);
+    }
+  }
+
+  GroupRunner(const GroupRunner&) = delete;  // its probes point into it
+  GroupRunner& operator=(const GroupRunner&) = delete;
+
+  // What was decided about this activation; {}: it was in time. settle() has to follow.
+  [[nodiscard]] graph::OverrunDecision run(G& graph, const ActivationStart& start) noexcept {
+    if (!settings_.watch.on && traces_.empty() && settings_.injections.empty()) {
+      run_plain(graph);
+      return {};
+    }
+    begin(start);
+    const Duration deadline = settings_.watch.on ? settings_.watch.deadline : k_never;
+    graph::DeadlineWatch<ElapsedClock> watch(clock_, deadline.nanoseconds,
+                                             settings_.watch.remaining_ns, settings_.watch.policy);
+    const int last = executor_ != nullptr
+                         ? executor_->execute(graph, std::span<NodeProbe>(probes_), watch)
+                         : graph.activate_until(probes_[0], watch);
+    graph::OverrunDecision decision = watch.decision();
+    if (decision.happened()) {
+      decision.after_node = static_cast<std::uint8_t>(last);
+      count(decision);
+    }
+    if (NodeTrace* const trace = probes_[0].trace()) {
+      if (decision.happened()) {
+        trace->note(decision.kind == graph::OverrunKind::missed ? k_span_overran
+                                                                : k_span_will_miss);
+      }
+      trace->end_activation();
+    }
+    return decision;
+  }
+
+  // After the output has left: when this returns, no worker is inside the graph any more.
+  void settle(G& graph) noexcept {
+    if (executor_ == nullptr) return;
+    executor_->settle(graph);
+    for (std::size_t w = 1; w < traces_.size(); ++w) traces_[w]->end_activation();
+  }
+
+  // What the group did around its nodes, by the session's clock.
+  void add_span(TraceFlag kind, Time begin, Time end) noexcept {
+    if (!traces_.empty()) traces_[0]->add(kind, begin.nanoseconds, end.nanoseconds);
+  }
+
+  [[nodiscard]] const OverrunCounts& overruns() const noexcept { return counts_; }
+  [[nodiscard]] std::uint64_t late_waits() const noexcept {
+    return executor_ == nullptr ? 0 : executor_->overruns();
+  }
+  [[nodiscard]] std::vector<ThreadReport> reports() const {
+    return executor_ == nullptr ? std::vector<ThreadReport>{} : executor_->reports();
+  }
+
+ private:
+  static constexpr Duration k_never{std::numeric_limits<std::int64_t>::max() / 2};
+
+  void run_plain(G& graph) noexcept {
+    if (executor_ == nullptr) {
+      graph.activate();
+      return;
+    }
+    std::array<graph::NoTrace, graph::k_plan_workers_max> none;
+    graph::NoBoundary always;
+    (void)executor_->execute(graph, std::span<graph::NoTrace>(none), always);
+  }
+
+  void begin(const ActivationStart& start) noexcept {
+    const std::uint64_t cycles = settings_.live ? cycle_count() : 0;
+    clock_.begin(start.now - start.nominal, cycles);
+    for (NodeProbe& probe : probes_) probe.begin(start.at);
+    for (auto& trace : traces_) {
+      trace->begin_activation(start.activation, start.frame_sequence, start.now.nanoseconds,
+                              cycles);
+    }
+    add_span(k_span_release, start.nominal, start.now);
+  }
+
+  void count(const graph::OverrunDecision& decision) noexcept {
+    ++(decision.kind == graph::OverrunKind::missed ? counts_.missed : counts_.will_miss);
+    ++counts_.by_policy[static_cast<std::size_t>(decision.policy)];
+  }
+
+  RunnerSettings<G> settings_;
+  ElapsedClock clock_;
+  std::vector<std::unique_ptr<NodeTrace>> traces_;
+  std::vector<NodeProbe> probes_;
+  std::unique_ptr<PlannedExecutor<G>> executor_;
+  OverrunCounts counts_;
+};
+
+}  // namespace glint

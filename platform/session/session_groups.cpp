@@ -1,0 +1,123 @@
+#include "platform/session/session_groups.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "graph/describe.hpp"
+#include "platform/session/pipeline.hpp"
+#include "platform/session/seed_method.hpp"
+
+namespace glint {
+namespace {
+
+std::unique_ptr<FrameMethod> method_of(const Cell& cell) {
+  if (cell.method == Method::seed) return std::make_unique<SeedMethod>(cell);
+  return nullptr;  // the tracker
+}
+
+template <class G>
+RunnerSettings<G> runner_settings(const GroupPlan<G>& plan, std::uint8_t group, const Cell& cell,
+                                  const SessionOptions& options, TraceWriter* trace) {
+  RunnerSettings<G> settings;
+  settings.plan = plan.tables;
+  settings.group = group;
+  settings.live = cell.realtime;
+  settings.bounds_ns = plan.bounds_ns;
+  settings.trace = trace;
+  for (std::size_t w = 1; w < plan.cores.size(); ++w) {
+    settings.others.push_back({"glint-worker", plan.cores[w], plan.priority});
+  }
+  const bool is_tick = group == k_tick_group;
+  for (const Injection& injection : options.injections) {
+    if (injection.in_tick == is_tick) settings.injections.push_back(injection);
+  }
+  settings.watch.deadline = is_tick ? cell.deadlines.tick : cell.deadlines.frame;
+  settings.watch.policy = is_tick ? cell.overrun.tick : cell.overrun.frame;
+  settings.watch.remaining_ns = plan.remaining_ns;
+  settings.watch.on = cell.overrun.watch && (cell.realtime || !settings.injections.empty());
+  if (!cell.realtime && settings.watch.on) {
+    // Time stands still but for what is injected: one worker, so that each run decides alike.
+    settings.plan = graph::plan_by_rule<G>(1);
+    settings.others.clear();
+    std::int64_t after_ns = 0;
+    for (std::size_t node = settings.watch.remaining_ns.size(); node-- > 0;) {
+      settings.watch.remaining_ns[node] = after_ns;
+      after_ns += plan.bounds_ns[node];
+    }
+  }
+  return settings;
+}
+
+template <class G>
+nlohmann::ordered_json group_json(const char* name, const GroupPlan<G>& plan) {
+  nlohmann::ordered_json nodes = nlohmann::ordered_json::array(), cores = nodes;
+  int number = 0;
+  for (const graph::NodeInfo& node : graph::Description<G>::nodes) {
+    std::string text(node.name);
+    if (node.copies > 1) text.append("#").append(std::to_string(node.copy));
+    nodes.push_back(text);
+    const auto worker = plan.tables.worker[static_cast<std::size_t>(number++)];
+    cores.push_back(plan.cores[worker]);
+  }
+  return {{"name", name}, {"nodes", nodes}, {"cores", cores}};
+}
+
+}  // namespace
+
+SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, std::size_t frames,
+                             Sinks& sinks, TraceWriter* trace, const Clock& now,
+                             std::int64_t unix_offset_ns)
+    : frame_runner_(runner_settings(options.plan.frame, k_frame_group, cell, options, trace)),
+      tick_runner_(runner_settings(options.plan.tick, k_tick_group, cell, options, trace)),
+      counters_(&sinks.overruns()),
+      frame_(cell, tool_set_, now, frame_runner_,
+             sinks.recorder() != nullptr ? &sinks.recorder()->frame_lane() : nullptr,
+             method_of(cell)),
+      tick_(cell, frame_.estimates(), robot_, now,
+            {sinks.can(), sinks.dds(), sinks.files(),
+             sinks.recorder() != nullptr ? &sinks.recorder()->tick_lane() : nullptr},
+            unix_offset_ns, frames, tick_runner_, frame_.overrun_notes()) {
+  tool_set_.write_slot() = cell.tools;
+  tool_set_.publish(1, 0);
+  robot_.write_slot() = declared_robot_frame(cell);
+  robot_.publish(1, 0);
+  outcomes_.resize(frames);
+}
+
+void SessionGroups::process(const ArrivedFrame& arrived) noexcept {
+  frame_.process(arrived);
+  counters_->frame.store(frame_runner_.overruns().total(), std::memory_order_relaxed);
+  if (processed_ < outcomes_.size()) outcomes_[processed_++] = outcome_of(frame_.newest());
+}
+
+void SessionGroups::tick(std::uint32_t number, Time nominal, Time woken) noexcept {
+  tick_.tick(number, nominal, woken);
+  counters_->tick.store(tick_runner_.overruns().total(), std::memory_order_relaxed);
+}
+
+void SessionGroups::report(SessionResult& result) {
+  outcomes_.resize(processed_);
+  result.outcomes = std::move(outcomes_);
+  result.frames = static_cast<std::int64_t>(processed_);
+  result.latencies = tick_.latencies().entries();
+  result.worker_overruns = frame_runner_.late_waits() + tick_runner_.late_waits();
+  result.frame_overruns = frame_runner_.overruns();
+  result.tick_overruns = tick_runner_.overruns();
+  result.can_frames = tick_.can_frames();
+  result.output_sha256 = tick_.output_sha256();
+  for (const auto& reports : {frame_runner_.reports(), tick_runner_.reports()}) {
+    for (const ThreadReport& report : reports) {
+      if (!report.refused.empty()) result.refused.push_back(report.name + ": " + report.refused);
+    }
+  }
+}
+
+std::string trace_header(const Cell& cell, const RunPlan& plan, std::int64_t epoch_unix_ns) {
+  return nlohmann::ordered_json{
+      {"groups", {group_json("frame", plan.frame), group_json("tick", plan.tick)}},
+      {"epoch_unix_ns", epoch_unix_ns},
+      {"board", plan.board},
+      {"cell", cell.file}}
+      .dump();
+}
+
+}  // namespace glint

@@ -1,0 +1,46 @@
+// What a live run and one in order have in common: the groups, what they exchange, how they are
+// run and watched, and where their output goes.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "platform/rt/trace_writer.hpp"
+#include "platform/session/accuracy.hpp"
+#include "platform/session/frame_group.hpp"
+#include "platform/session/session.hpp"
+#include "platform/session/sinks.hpp"
+#include "platform/session/tick_group.hpp"
+
+namespace glint {
+
+class SessionGroups {
+ public:
+  // `trace` may be null; it is not yet started.
+  SessionGroups(const Cell& cell, const SessionOptions& options, std::size_t frames, Sinks& sinks,
+                TraceWriter* trace, const Clock& now, std::int64_t unix_offset_ns);
+
+  void process(const ArrivedFrame& arrived) noexcept;
+  void tick(std::uint32_t number, Time nominal, Time woken) noexcept;
+
+  // When both groups have ended.
+  void report(SessionResult& result);
+
+ private:
+  GroupRunner<Tracker> frame_runner_;
+  GroupRunner<Output> tick_runner_;
+  OverrunCounters* counters_;
+  graph::TripleBuffer<ToolSet> tool_set_;
+  graph::TripleBuffer<RobotFrame> robot_;
+  FrameGroup frame_;
+  TickGroup tick_;
+  std::vector<FrameOutcome> outcomes_;
+  std::size_t processed_ = 0;
+};
+
+// The trace file's first line.
+[[nodiscard]] std::string trace_header(const Cell& cell, const RunPlan& plan,
+                                       std::int64_t epoch_unix_ns);
+
+}  // namespace glint
