@@ -11,10 +11,12 @@ namespace {
 
 struct ExportArguments {
   std::string trace, format = "perfetto", out;
+  std::uint32_t frame = 0;  // 0: all of them
 };
 
 int export_trace(const ExportArguments& arguments) {
-  const TraceFile trace = read_trace(arguments.trace);
+  TraceFile trace = read_trace(arguments.trace);
+  if (arguments.frame > 0) trace = around_frame(trace, arguments.frame);
   write_text(arguments.out, exported(trace, trace_format_of(arguments.format)));
   std::printf("%zu spans of %zu groups as %s: %s\n", trace.spans.size(), trace.groups.size(),
               arguments.format.c_str(), arguments.out.c_str());
@@ -33,6 +35,7 @@ void add_budget_export(CLI::App& budget, int& exit_code) {
   command->add_option("--trace", arguments->trace, "a trace.spans of glint run")->required();
   command->add_option("--format", arguments->format, "perfetto, chrome, btf or csv")
       ->capture_default_str();
+  command->add_option("--frame", arguments->frame, "only what ran about this frame");
   command->add_option("--out", arguments->out, "the file to write")->required();
   command->callback([arguments, &exit_code] { exit_code = export_trace(*arguments); });
 }

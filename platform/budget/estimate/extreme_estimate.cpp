@@ -15,7 +15,7 @@ using Values = std::vector<double>;
 
 std::string p_text(double p) {
   char text[32];
-  std::snprintf(text, sizeof text, p < 1e-4 ? "%.1e" : "%.4f", p);
+  std::snprintf(text, sizeof text, p == 0 ? "0" : p < 1e-4 ? "%.1e" : "%.4f", p);
   return text;
 }
 
@@ -101,6 +101,18 @@ void add_interval(const ExtremeSettings& settings, ExtremeEstimate& estimate, Fi
   };
   estimate.low = std::min(at((1 - settings.interval) / 2), estimate.level);
   estimate.high = std::max(at((1 + settings.interval) / 2), estimate.level);
+  char text[120];
+  if (estimate.distribution.shape >= settings.shape_most) {
+    std::snprintf(text, sizeof text, "the tail is too heavy for the fit (shape %.2f, at most %.2f)",
+                  estimate.distribution.shape, settings.shape_most);
+    estimate.why = text;
+  } else if (!(estimate.high <= settings.widest * estimate.low)) {
+    std::snprintf(text, sizeof text,
+                  "the values seen leave the level open: its interval is %.4g to %.4g",
+                  estimate.low, estimate.high);
+    estimate.why = text;
+  }
+  estimate.applicable = estimate.why.empty();
 }
 
 Values block_maxima(std::span<const double> series, int block) {
@@ -135,7 +147,6 @@ ExtremeEstimate estimate_by_maxima(std::span<const double> series,
   };
   estimate.level = level(estimate.distribution);
   add_interval(settings, estimate, fit_maxima, level);
-  estimate.applicable = true;
   return estimate;
 }
 
@@ -173,7 +184,6 @@ ExtremeEstimate estimate_by_exceedances(std::span<const double> series,
   add_interval(
       settings, estimate, [&](const Values& values) { return fit_exceedances(values, threshold); },
       level);
-  estimate.applicable = true;
   return estimate;
 }
 

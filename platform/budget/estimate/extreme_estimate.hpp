@@ -21,6 +21,10 @@ struct ExtremeSettings {
   double exceedance = 1e-6;  // per activation, of the level that is given
   int resamples = 400;       // of the parametric bootstrap of the level's interval
   double interval = 0.95;    // its coverage
+  // From here on the fit's moments have no limit distribution. Hosking, Wallis and Wood 1985,
+  // section 4: their k > -0.5.
+  double shape_most = 0.5;
+  double widest = 2;  // high over low of an interval that still says something
 };
 
 struct TestResult {

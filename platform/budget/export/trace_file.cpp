@@ -1,5 +1,6 @@
 #include "platform/budget/export/trace_file.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <fstream>
@@ -65,6 +66,26 @@ TraceFile read_trace(const std::string& path) {
     trace.spans.push_back(span);
   }
   return trace;
+}
+
+TraceFile around_frame(const TraceFile& trace, std::uint32_t frame) {
+  constexpr std::uint8_t frame_group = 0;
+  std::int64_t begin = 0, end = -1, sent = -1;
+  for (const TraceSpan& span : trace.spans) {
+    if (span.frame_sequence != frame) continue;
+    if (span.group == frame_group) {
+      begin = end < 0 ? span.begin_ns : std::min(begin, span.begin_ns);
+      end = std::max(end, span.end_ns);
+    } else if ((span.flags & k_span_sent) != 0) {
+      sent = sent < 0 ? span.end_ns : std::min(sent, span.end_ns);
+    }
+  }
+  if (end < 0) throw InputError("--frame " + std::to_string(frame) + ": the trace has none such");
+  TraceFile part = trace;
+  std::erase_if(part.spans, [&](const TraceSpan& span) {
+    return span.end_ns < begin || span.begin_ns > std::max(end, sent);
+  });
+  return part;
 }
 
 void write_trace(const std::string& path, const TraceFile& trace) {

@@ -38,6 +38,10 @@ struct TraceFile {
 // A cut last span is left out: a run that was ended early leaves one.
 [[nodiscard]] TraceFile read_trace(const std::string& path);
 
+// What ran from the release of the activation that decided this frame until it left: spans of all
+// groups in that time. Throws InputError where no span is of that frame.
+[[nodiscard]] TraceFile around_frame(const TraceFile& trace, std::uint32_t frame);
+
 void write_trace(const std::string& path, const TraceFile& trace);
 
 }  // namespace glint

@@ -63,13 +63,16 @@ struct BlockHtml {
   std::string operator()(const Figure& figure) const { return figure_html(figure); }
   std::string operator()(const FigureGrid& grid) const {
     std::string html = "<div class=\"grid\">\n";
-    for (const Figure& figure : grid.figures) html += figure_html(figure);
+    // What a small figure's caption says stands in its drawing; a pointer or a voice reads it out.
+    for (const Figure& figure : grid.figures) {
+      html += "<figure id=\"figure-" + figure.name + "\">" + figure.svg + "</figure>\n";
+    }
     return html + "</div>\n";
   }
   std::string operator()(const Table& table) const {
-    std::string html = "<div class=\"scroll\"><table>";
-    if (!table.caption.empty()) html += "<caption>" + rich(table.caption) + "</caption>";
-    html += "\n<thead><tr>";
+    std::string html;
+    if (!table.caption.empty()) html += "<p class=\"caption\">" + rich(table.caption) + "</p>\n";
+    html += "<div class=\"scroll\"><table>\n<thead><tr>";
     for (const Column& column : table.columns) {
       html += "<th scope=\"col\"" +
               classes(column.is_number ? "number" : "", class_of(column.kind)) + '>' +

@@ -44,7 +44,7 @@ Figure stages_figure(const std::string& name, const std::string& caption,
 }
 
 Figure slack_figure(const std::string& name, const std::string& caption,
-                    const std::vector<SlackBar>& bars, double wanted_percent) {
+                    const std::vector<SlackBar>& bars) {
   constexpr double width = 1080, left = 250, right = 90, row = 20;
   double least = 0;
   for (const SlackBar& bar : bars) least = std::min(least, bar.percent);
@@ -58,11 +58,10 @@ Figure slack_figure(const std::string& name, const std::string& caption,
     drawing.line(x, 4, x, height + 8, percent == 0 ? "axis" : "grid");
     drawing.text(x, height + 22, number_text(percent, 0) + " %", "faint small middle");
   }
-  drawing.text(width - right, height + 38, "slack: what is left of the deadline",
-               "faint small end");
+  drawing.text(width - right, height + 38, "left of the deadline", "faint small end");
   double y = 8;
   for (const SlackBar& bar : bars) {
-    const bool short_of = bar.percent < wanted_percent;
+    const bool short_of = bar.percent < 0;
     const double end = zero + std::max(bar.percent, least) * scale;
     drawing.text(left - 8, y + 11, fitting(bar.name, left - 12), "end");
     drawing.box({std::min(zero, end), y, std::abs(end - zero), row - 7},
@@ -71,10 +70,6 @@ Figure slack_figure(const std::string& name, const std::string& caption,
                  number_text(bar.percent, 1) + " %" + (bar.percent < 0 ? " over" : ""),
                  short_of ? "bad small" : "small");
     y += row;
-  }
-  if (wanted_percent > 0) {
-    const double x = zero + wanted_percent * scale;
-    drawing.line(x, 0, x, height + 8, "deadline");
   }
   return {name, caption, drawing.finished()};
 }
@@ -130,8 +125,9 @@ Figure histogram_figure(const NodeTimes& node) {
   return {"histogram-" + file, caption, drawing.finished()};
 }
 
-Figure quantile_figure(const std::string& name, const ExtremeEstimate& estimate) {
-  constexpr double width = 340, height = 260, left = 58, top = 14, size = 200;
+Figure quantile_figure(const std::string& name, const std::string& title,
+                       const ExtremeEstimate& estimate) {
+  constexpr double width = 340, height = 280, left = 62, top = 30, size = 200;
   const std::vector<double>& judged = estimate.judged_values;
   const auto n = static_cast<double>(judged.size());
   std::vector<double> expected;
@@ -141,9 +137,11 @@ Figure quantile_figure(const std::string& name, const ExtremeEstimate& estimate)
   const double low = std::min(judged.front(), expected.front());
   const double high = std::max({judged.back(), expected.back(), low + 1e-9});
   const auto place = [&](double value) { return (value - low) / (high - low) * size; };
-  const std::string caption = "The half that was not fitted (" + std::to_string(judged.size()) +
+  const std::string caption = title + ": the half that was not fitted (" +
+                              std::to_string(judged.size()) +
                               " extremes) over the fit's quantiles: on the line where both agree.";
   Drawing drawing(width, height, caption);
+  drawing.text(0, 14, title, "strong");
   drawing.box({left, top, size, size}, "lane");
   drawing.line(left, top + size, left + size, top, "axis");
   for (std::size_t i = 0; i < judged.size(); ++i) {

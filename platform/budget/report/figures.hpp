@@ -46,13 +46,14 @@ struct SlackBar {
   double percent = 0;  // negative: overshoot
 };
 [[nodiscard]] Figure slack_figure(const std::string& name, const std::string& caption,
-                                  const std::vector<SlackBar>& bars, double wanted_percent);
+                                  const std::vector<SlackBar>& bars);
 
 // How often a node took how long, with its bound; counts on a logarithmic scale, since the rare
 // ones are the ones that matter.
 [[nodiscard]] Figure histogram_figure(const NodeTimes& node);
 
 // The judged half's values over what the fit says they should be.
-[[nodiscard]] Figure quantile_figure(const std::string& name, const ExtremeEstimate& estimate);
+[[nodiscard]] Figure quantile_figure(const std::string& name, const std::string& title,
+                                     const ExtremeEstimate& estimate);
 
 }  // namespace glint

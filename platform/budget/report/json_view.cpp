@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include "platform/input_error.hpp"
@@ -66,6 +67,10 @@ std::string JsonView::text_or(const char* key, const std::string& otherwise) con
 
 double JsonView::number_or(const char* key, double otherwise) const {
   return has(key) ? number(key) : otherwise;
+}
+
+double JsonView::number_or_none(const char* key) const {
+  return number_or(key, std::numeric_limits<double>::quiet_NaN());
 }
 
 std::string JsonView::as_text() const {

@@ -25,6 +25,8 @@ class JsonView {
   // The same, where a file may leave the key out.
   [[nodiscard]] std::string text_or(const char* key, const std::string& otherwise) const;
   [[nodiscard]] double number_or(const char* key, double otherwise) const;
+  // Where null or nothing stands for "there is none": not a number.
+  [[nodiscard]] double number_or_none(const char* key) const;
 
   // Of the value itself: its key in the object it was listed from, its text or number.
   [[nodiscard]] const std::string& key() const { return key_; }

@@ -9,7 +9,7 @@ namespace {
 
 std::string p_text(double p) {
   char text[32];
-  std::snprintf(text, sizeof text, p < 1e-3 ? "%.1e" : "%.3f", p);
+  std::snprintf(text, sizeof text, p == 0 ? "0" : p < 1e-3 ? "%.1e" : "%.3f", p);
   return text;
 }
 
@@ -44,9 +44,8 @@ void add_series(const std::string& what, const std::vector<double>& series,
            {test.passed ? "passes" : "refused", test.passed ? Tone::good : Tone::bad}});
     }
     if (estimate.applicable) {
-      grid.figures.push_back(
-          quantile_figure("quantiles-" + std::to_string(grid.figures.size()), estimate));
-      grid.figures.back().caption = what + ", " + name + ". " + grid.figures.back().caption;
+      grid.figures.push_back(quantile_figure("quantiles-" + std::to_string(grid.figures.size()),
+                                             what + ", " + name, estimate));
     }
   }
 }
@@ -88,7 +87,12 @@ Section estimates_section(const ReportSources& sources) {
   for (const FrameLatency& frame : sources.run.frames) to_can.push_back(frame.us);
   if (!to_can.empty()) add_series("frame to CAN", to_can, settings, levels, tests, grid);
   section.blocks.push_back(levels);
-  if (!grid.figures.empty()) section.blocks.push_back(grid);
+  if (!grid.figures.empty()) {
+    section.blocks.push_back(Sentence{
+        "The half that was not fitted, over what the fit says it should be: on the line where both "
+        "agree."});
+    section.blocks.push_back(grid);
+  }
   if (!tests.rows.empty()) section.blocks.push_back(tests);
   return section;
 }

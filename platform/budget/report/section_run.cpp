@@ -161,7 +161,7 @@ Section worst_frames_section(const ReportSources& sources, std::size_t frames) {
                {"Noticed"},
                {"Again"}},
               {}};
-  const std::string recording = sources.run_folder + "/run.mcap";
+  const std::string trace = sources.run_folder + "/trace.spans";
   for (const Activation* a : order) {
     const auto longest = std::max_element(a->nodes.begin(), a->nodes.end(),
                                           [](const TraceSpan& x, const TraceSpan& y) {
@@ -182,15 +182,14 @@ Section worst_frames_section(const ReportSources& sources, std::size_t frames) {
          {std::string(sources.trace->node_name(*longest))},
          {us_text(static_cast<double>(longest->end_ns - longest->begin_ns) * 1e-3)},
          {noticed.empty() ? "-" : noticed.substr(0, noticed.size() - 1)},
-         {"`glint replay " + recording + " --frame " + std::to_string(a->frame) + "`"}});
+         {"`glint budget export --trace " + trace + " --frame " + std::to_string(a->frame) +
+          " --out frame-" + std::to_string(a->frame) + ".pftrace`"}});
   }
   section.blocks.push_back(table);
   section.blocks.push_back(Sentence{
-      "A replay decides the recording again, byte for byte, and shows what was decided at that "
-      "frame. Times are not replayed: `glint budget export --trace " +
-      sources.run_folder +
-      "/trace.spans --format perfetto --out trace.pftrace` shows when "
-      "everything ran."});
+      "Each of these shows what ran about that frame, to open in ui.perfetto.dev. What was decided "
+      "at every frame, these among them, byte for byte:"});
+  section.blocks.push_back(Command{"glint replay " + sources.run_folder + "/run.mcap"});
   return section;
 }
 

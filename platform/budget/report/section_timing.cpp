@@ -1,5 +1,6 @@
 // What the analysis says: chains, slack, response times, the bus; beside each what was observed.
 #include <algorithm>
+#include <cstdio>
 
 #include "platform/budget/report/figures.hpp"
 #include "platform/budget/report/sections.hpp"
@@ -59,17 +60,18 @@ Section chains_section(const ReportSources& sources) {
   if (!sources.check) {
     section.blocks.push_back(not_given("--check F", k_check_command));
   } else {
-    const double wanted = sources.check->number_or("margin_percent", 0);
     Table table{
-        "In \u00b5s. A chain's figure is the sum of its stages; what of it is computed, "
-        "declared by a data sheet or measured stands beside it.",
+        "In \u00b5s. What the analysis computes, what a data sheet or the cell declares and what "
+        "was "
+        "measured stand apart; their sum is what the deadline is held against.",
         {{"Chain"},
+         {"Computed", NumberKind::bound, true},
+         {"Declared", NumberKind::none, true},
+         {"Measured", NumberKind::estimate, true},
+         {"Sum", NumberKind::none, true},
          {"Deadline", NumberKind::none, true},
-         {"Whole", NumberKind::bound, true},
-         {"of it computed", NumberKind::bound, true},
-         {"declared", NumberKind::none, true},
-         {"measured", NumberKind::estimate, true},
-         {"Slack", NumberKind::none, true},
+         {"Left of it", NumberKind::none, true},
+         {"May grow by", NumberKind::none, true},
          {"Max. reaction", NumberKind::bound, true},
          {"Max. data age", NumberKind::bound, true},
          {"Jitter", NumberKind::bound, true}},
@@ -78,25 +80,27 @@ Section chains_section(const ReportSources& sources) {
     for (const JsonView& chain : sources.check->list("chains")) {
       const std::string name = chain.text("name");
       const Shares shares = shares_of(chain);
-      const double slack = chain.number("slack_percent"), deadline = chain.number("deadline_us");
+      const double sum = chain.number_or_none("bound_us"), deadline = chain.number("deadline_us");
+      const double left = left_percent(sum, deadline);
       table.rows.push_back({{name},
-                            {us_text(deadline)},
-                            {us_text(chain.number("bound_us")), tone_of_slack(slack, wanted)},
                             {us_text(shares.bound)},
                             {us_text(shares.declared)},
                             {us_text(shares.estimate)},
-                            {percent_text(slack), tone_of_slack(slack, wanted)},
-                            {us_text(chain.number_or("maximum_reaction_time_us", 0 / 0.0))},
-                            {us_text(chain.number_or("maximum_data_age_us", 0 / 0.0))},
-                            {us_text(chain.number_or("jitter_us", 0 / 0.0))}});
+                            {us_text(sum), tone_of_left(left)},
+                            {us_text(deadline)},
+                            {percent_text(left), tone_of_left(left)},
+                            {percent_text(chain.number_or_none("slack_percent"))},
+                            {us_text(chain.number_or_none("maximum_reaction_time_us"))},
+                            {us_text(chain.number_or_none("maximum_data_age_us"))},
+                            {us_text(chain.number_or_none("jitter_us"))}});
       std::vector<StageBar> stages;
       for (const JsonView& stage : chain.list("stages")) {
         stages.push_back({stage.text("name"), stage.text("kind"), stage.number("us")});
       }
       if (stages.empty()) continue;
       figures.push_back(stages_figure("chain-" + name,
-                                      "Chain `" + name + "`: " + us_text(chain.number("bound_us")) +
-                                          " \u00b5s of " + us_text(deadline) +
+                                      "Chain `" + name + "`: " + us_text(sum) + " \u00b5s of " +
+                                          us_text(deadline) +
                                           " \u00b5s. Each bar begins where the one before it ends.",
                                       stages, deadline));
     }
@@ -116,54 +120,52 @@ Section slack_section(const ReportSources& sources) {
     return section;
   }
   const JsonView& check = *sources.check;
-  const double wanted = check.number_or("margin_percent", 0);
   std::vector<SlackBar> bars;
+  const auto add = [&](const std::string& name, const JsonView& item, const char* bound) {
+    const double left = left_percent(item.number_or_none(bound), item.number("deadline_us"));
+    if (left == left) bars.push_back({name, left});
+  };
   for (const JsonView& chain : check.list("chains")) {
-    bars.push_back({"chain " + chain.text("name"), chain.number("slack_percent")});
+    add("chain " + chain.text("name"), chain, "bound_us");
   }
   for (const JsonView& group : check.list("groups")) {
-    bars.push_back({"group " + group.text("name"), group.number("slack_percent")});
+    add("group " + group.text("name"), group, "response_us");
   }
-  if (check.has("system_slack_percent")) {
-    bars.push_back({"system", check.number("system_slack_percent")});
+  section.blocks.push_back(
+      slack_figure("slack", "What every chain and group leaves of its deadline.", bars));
+  std::string words = "All bounds together may grow by " +
+                      percent_text(check.number_or_none("system_slack_percent")) +
+                      " before a deadline is missed; asked for: " +
+                      percent_text(check.number_or("margin_percent", 0)) + ". ";
+  if (check.has("break_even_clock")) {
+    words += "Break-even clock: " + us_text(check.number("break_even_clock")) +
+             " of the one that the table was made at. ";
   }
-  section.blocks.push_back(slack_figure(
-      "slack",
-      "Slack of every chain and group" +
-          (wanted > 0 ? "; the dashed line is the margin asked for, " + percent_text(wanted) : "") +
-          ".",
-      bars, wanted));
+  if (check.has("largest")) {
+    const JsonView largest = check.at("largest");
+    words += "Still fits: " + count_text(largest.number_or_none("roi_pixels")) +
+             " searched pixels, or " + count_text(largest.number_or_none("tools")) + " tools.";
+  }
+  section.blocks.push_back(Sentence{words});
   Table table{
-      "How much each node may grow, all others at their bounds, before a deadline is missed.",
+      "How far each node may grow, all others at their bounds, before a deadline is missed.",
       {{"Group"},
        {"Node"},
        {"Core", NumberKind::none, true},
        {"Bound, \u00b5s", NumberKind::bound, true},
-       {"Slack", NumberKind::none, true},
-       {"May grow by", NumberKind::none, true}},
+       {"This copy may grow by", NumberKind::none, true},
+       {"All its copies by", NumberKind::none, true}},
       {}};
   const std::vector<JsonView> nodes = check.list("nodes");
   for (const JsonView& node : nodes) {
-    const double slack = node.number_or("slack_percent", 0);
     table.rows.push_back({{node.text("group")},
                           {node_label(node, nodes)},
-                          {count_text(node.number_or("core", 0))},
-                          {us_text(node.number("bound_us"))},
-                          {percent_text(slack), tone_of_slack(slack, 0)},
-                          {percent_text(node.number_or("may_grow_percent", 0))}});
+                          {count_text(node.number_or_none("core"))},
+                          {us_text(node.number_or_none("bound_us"))},
+                          {percent_text(node.number_or_none("slack_percent"))},
+                          {percent_text(node.number_or_none("may_grow_percent"))}});
   }
   section.blocks.push_back(table);
-  std::string words;
-  if (check.has("break_even_clock")) {
-    words += "Break-even clock: " + us_text(check.number("break_even_clock")) +
-             " of the clock that the table was made at. ";
-  }
-  if (check.has("largest")) {
-    const JsonView largest = check.at("largest");
-    words += "Still fits: an ROI of " + count_text(largest.number_or("roi_pixels", 0)) +
-             " pixels, or " + count_text(largest.number_or("tools", 0)) + " tools.";
-  }
-  if (!words.empty()) section.blocks.push_back(Sentence{words});
   return section;
 }
 
@@ -182,16 +184,17 @@ Section groups_section(const ReportSources& sources) {
        {"Blocking", NumberKind::bound, true},
        {"Response", NumberKind::bound, true},
        {"Deadline", NumberKind::none, true},
-       {"Slack", NumberKind::none, true},
+       {"Left of it", NumberKind::none, true},
        {"n", NumberKind::none, true},
        {"p50", NumberKind::observed, true},
        {"p99.9", NumberKind::observed, true},
        {"max", NumberKind::observed, true}},
       {}};
-  const double wanted = sources.check->number_or("margin_percent", 0);
   for (const JsonView& group : sources.check->list("groups")) {
     const std::string name = group.text("name");
-    const double slack = group.number("slack_percent"), bound = group.number("response_us");
+    const double bound = group.number_or_none("response_us"),
+                 deadline = group.number("deadline_us");
+    const double left = left_percent(bound, deadline);
     std::vector<double> seen;
     for (std::size_t g = 0; sources.trace && g < sources.trace->groups.size(); ++g) {
       if (sources.trace->groups[g].name != name) continue;
@@ -203,12 +206,12 @@ Section groups_section(const ReportSources& sources) {
     };
     table.rows.push_back(
         {{name},
-         {count_text(group.number_or("priority", 0))},
-         {us_text(group.number("makespan_us"))},
+         {count_text(group.number_or_none("priority"))},
+         {us_text(group.number_or_none("makespan_us"))},
          {us_text(group.number_or("blocking_us", 0))},
          {us_text(bound)},
-         {us_text(group.number("deadline_us"))},
-         {percent_text(slack), tone_of_slack(slack, wanted)},
+         {us_text(deadline)},
+         {percent_text(left), tone_of_left(left)},
          {count_text(static_cast<double>(seen.size()))},
          part(0.5),
          part(0.999),
@@ -229,20 +232,21 @@ Section can_section(const ReportSources& sources) {
                {"Identifier"},
                {"Response", NumberKind::bound, true},
                {"Deadline", NumberKind::none, true},
-               {"Slack", NumberKind::none, true}},
+               {"Left of it", NumberKind::none, true}},
               {}};
   for (const JsonView& message : sources.check->list("can")) {
-    const double response = message.number("response_us"), deadline = message.number("deadline_us");
-    const double slack = deadline > 0 ? 100 * (1 - response / deadline) : 0;
+    const double response = message.number_or_none("response_us");
+    const double deadline = message.number("deadline_us");
+    const double left = left_percent(response, deadline);
     const JsonView identifier = message.at("identifier");
     char hex[16];
     std::snprintf(hex, sizeof hex, "0x%03X",
                   identifier.is_number() ? static_cast<unsigned>(identifier.as_number()) : 0U);
     table.rows.push_back({{message.text("name")},
                           {identifier.is_number() ? hex : identifier.as_text()},
-                          {us_text(response), tone_of_slack(slack, 0)},
+                          {us_text(response), tone_of_left(left)},
                           {us_text(deadline)},
-                          {percent_text(slack), tone_of_slack(slack, 0)}});
+                          {percent_text(left), tone_of_left(left)}});
   }
   section.blocks.push_back(table);
   section.blocks.push_back(Sentence{

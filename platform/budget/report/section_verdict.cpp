@@ -27,10 +27,27 @@ std::vector<std::string> nodes_above(const RunObservations& run) {
   return above;
 }
 
+// The chain's sum holds more than what is computed: said beside it.
+std::string shares_text(const ReportSources& sources) {
+  if (!sources.check) return "";
+  for (const JsonView& chain : sources.check->list("chains")) {
+    if (chain.text("name") != "frame_to_can") continue;
+    double computed = 0, declared = 0, measured = 0;
+    for (const JsonView& stage : chain.list("stages")) {
+      const std::string kind = stage.text("kind");
+      (kind == "bound" ? computed : kind == "estimate" ? measured : declared) += stage.number("us");
+    }
+    return "; " + us_text(computed) + " computed + " + us_text(declared) + " declared + " +
+           us_text(measured) + " estimate";
+  }
+  return "";
+}
+
 Headline bound_headline(const ReportSources& sources) {
   const double bound = sources.bound_frame_to_can_us();
   Headline headline{NumberKind::bound, "not given", "Frame to CAN at worst", board_of(sources)};
   if (bound > 0) headline.value = us_text(bound) + " \u00b5s";
+  headline.provenance += shares_text(sources);
   if (sources.summary && sources.summary->has("budget") && headline.provenance.empty()) {
     headline.provenance = "board " + sources.summary->at("budget").text_or("board", "unnamed");
   }

@@ -7,14 +7,15 @@
 namespace glint {
 
 std::string us_text(double us) {
+  if (!std::isfinite(us)) return "none";
   const double size = std::abs(us);
-  const int decimals = size < 10 ? 3 : size < 100 ? 2 : size < 1000 ? 1 : 0;
-  return size >= 10'000 && std::isfinite(us) ? count_text(us) : number_text(us, decimals);
+  if (size >= 1000) return count_text(us);
+  return number_text(us, size < 10 ? 3 : size < 100 ? 2 : 1);
 }
 
 std::string count_text(double n) {
+  if (!std::isfinite(n)) return "none";
   std::string digits = number_text(std::abs(n), 0);
-  if (!std::isfinite(n)) return "-";
   for (std::size_t place = digits.size(); place > 3;) {
     place -= 3;
     digits.insert(place, "\u2009");
@@ -22,11 +23,16 @@ std::string count_text(double n) {
   return (n < 0 ? "-" : "") + digits;
 }
 
-std::string percent_text(double percent) { return number_text(percent, 1) + " %"; }
-
-Tone tone_of_slack(double percent, double wanted) {
-  return percent < std::max(0.0, wanted) ? Tone::bad : Tone::plain;
+std::string percent_text(double percent) {
+  if (!std::isfinite(percent)) return "none";
+  return (percent >= 1000 ? count_text(percent) : number_text(percent, 1)) + " %";
 }
+
+double left_percent(double bound_us, double deadline_us) {
+  return deadline_us > 0 ? 100 * (1 - bound_us / deadline_us) : std::nan("");
+}
+
+Tone tone_of_left(double percent) { return percent >= 0 ? Tone::plain : Tone::bad; }
 
 std::string node_label(const JsonView& node, const std::vector<JsonView>& all) {
   const std::string name = node.text("name");

@@ -27,10 +27,12 @@ void judge(const ReportSources& sources, Document& document);
 [[nodiscard]] Section inputs_section(const ReportSources& sources);
 
 // Words shared by them.
-[[nodiscard]] std::string us_text(double us);    // "12.34", "-" where it is not finite
+[[nodiscard]] std::string us_text(double us);    // "12.34"; "none" where it is not finite
 [[nodiscard]] std::string count_text(double n);  // "12 345", with thin spaces
 [[nodiscard]] std::string percent_text(double percent);
-[[nodiscard]] Tone tone_of_slack(double percent, double wanted);
+// What is left of a deadline, in percent of it; not a number where there is no bound.
+[[nodiscard]] double left_percent(double bound_us, double deadline_us);
+[[nodiscard]] Tone tone_of_left(double percent);
 // A node of check.json with the number of its copy, where its group has more than one of it.
 [[nodiscard]] std::string node_label(const JsonView& node, const std::vector<JsonView>& all);
 [[nodiscard]] Sentence not_given(const std::string& option, const std::string& command);

@@ -63,6 +63,22 @@ TEST(TraceFile, RefusesASpanOfANodeThatTheHeaderDoesNotName) {
   EXPECT_THROW((void)read_trace(path), InputError);
 }
 
+TEST(TraceFile, KeepsOfOneFrameWhatRanUntilItLeft) {
+  const TraceFile trace = sample_trace({.frames = 20});
+  const TraceFile part = around_frame(trace, 7);
+  std::size_t nodes = 0, sent = 0;
+  for (const TraceSpan& span : part.spans) {
+    if (span.group == 0 && is_node(span)) {
+      EXPECT_EQ(span.frame_sequence, 7U);
+      ++nodes;
+    }
+    sent += (span.flags & k_span_sent) != 0 && span.frame_sequence == 7 ? 1 : 0;
+  }
+  EXPECT_EQ(nodes, 14U);
+  EXPECT_EQ(sent, 1U);
+  EXPECT_THROW((void)around_frame(trace, 99), InputError);
+}
+
 // Source: Protocol Buffers, Encoding: its own examples, 150 and "testing".
 TEST(ProtobufWriter, WritesTheFormatsOwnExamples) {
   ProtobufWriter writer;

@@ -90,27 +90,32 @@ TEST_F(BudgetReport, KeepsBoundEstimateAndObservedInColumnsOfTheirOwn) {
   const Document document = report({});
   ASSERT_EQ(document.headlines.size(), 3U);
   EXPECT_EQ(document.headlines[0].kind, NumberKind::bound);
-  EXPECT_EQ(document.headlines[0].value, "4474 \u00b5s");
+  EXPECT_EQ(document.headlines[0].value, "4\u2009474 \u00b5s");
+  EXPECT_NE(
+      document.headlines[0].provenance.find("371 computed + 4\u2009000 declared + 103 estimate"),
+      std::string::npos);
   EXPECT_EQ(document.headlines[1].kind, NumberKind::estimate);
   EXPECT_EQ(document.headlines[1].value, "103 \u00b5s");
   EXPECT_EQ(document.headlines[2].kind, NumberKind::observed);
-  // A chain's computed, declared and measured shares add up to its whole.
+  // A chain's computed, declared and measured shares add up to its sum.
   const Table& chains = table(section(document, "chains"));
-  EXPECT_EQ(chains.columns[2].kind, NumberKind::bound);
-  EXPECT_EQ(chains.columns[5].kind, NumberKind::estimate);
-  EXPECT_EQ(chains.rows[0][2].text, "4474");
-  EXPECT_EQ(chains.rows[0][3].text, "371");
-  EXPECT_EQ(chains.rows[0][4].text, "4000");
-  EXPECT_EQ(chains.rows[0][5].text, "103");
+  EXPECT_EQ(chains.columns[1].kind, NumberKind::bound);
+  EXPECT_EQ(chains.columns[3].kind, NumberKind::estimate);
+  EXPECT_EQ(chains.columns[4].kind, NumberKind::none);
+  EXPECT_EQ(chains.rows[0][1].text, "371");
+  EXPECT_EQ(chains.rows[0][2].text, "4\u2009000");
+  EXPECT_EQ(chains.rows[0][3].text, "103");
+  EXPECT_EQ(chains.rows[0][4].text, "4\u2009474");
 }
 
-TEST_F(BudgetReport, ListsTheWorstFrameFirstWithTheCommandThatReplaysIt) {
+TEST_F(BudgetReport, ListsTheWorstFrameFirstWithTheCommandThatShowsIt) {
   const Document document = report({});
   const Table& worst = table(section(document, "worst-frames"));
   ASSERT_EQ(worst.rows.size(), 10U);
   EXPECT_EQ(worst.rows[0][0].text, "1234");
   EXPECT_EQ(worst.rows[0][4].text, "FindBlobs");
-  EXPECT_EQ(worst.rows[0][7].text, "`glint replay " + path("run") + "/run.mcap --frame 1234`");
+  EXPECT_EQ(worst.rows[0][7].text, "`glint budget export --trace " + path("run") +
+                                       "/trace.spans --frame 1234 --out frame-1234.pftrace`");
 }
 
 TEST_F(BudgetReport, CountsEveryCallOnceInANodesTimes) {
@@ -121,6 +126,21 @@ TEST_F(BudgetReport, CountsEveryCallOnceInANodesTimes) {
   EXPECT_EQ(nodes.rows[6][3].text, "1\u2009300");
   EXPECT_EQ(nodes.rows[6][7].text, us_text(0.8 * 58));
   EXPECT_EQ(nodes.rows[6][8].text, "0");
+}
+
+TEST_F(BudgetReport, SaysNoneWhereTheAnalysisFoundNoBound) {
+  write_samples(folder_.string(), {.frames = 50});
+  std::ifstream in(path("check.json"));
+  auto json = nlohmann::ordered_json::parse(in);
+  json["groups"][0]["response_us"] = nullptr;
+  json["system_slack_percent"] = nullptr;
+  json["can"][0]["response_us"] = nullptr;
+  std::ofstream(path("check.json")) << json.dump();
+  const Document document = budget_report(read_sources({{}, path("check.json"), "", ""}), {});
+  const Table& groups = table(section(document, "groups"));
+  EXPECT_EQ(groups.rows[0][4].text, "none");
+  EXPECT_EQ(groups.rows[0][6].tone, Tone::bad);
+  EXPECT_EQ(table(section(document, "can")).rows[0][2].text, "none");
 }
 
 TEST_F(BudgetReport, MarksALoopThatRanMoreOftenThanItMay) {
