@@ -66,6 +66,24 @@ TEST(PlanCheck, FindsNothingWrongWithRandomPlansAndSomethingInEachSpoiltOne) {
   }
 }
 
+TEST(PlanCheck, WantsDataToBeHandedOverBeforeItIsReadOnAnotherCore) {
+  TaskModel model;
+  model.cores = 2;
+  model.groups = {staged_group({{"A", 1, 100}, {"B", 2, 100}})};
+  model.groups[0].min_gap_ns = model.groups[0].deadline_ns = 10'000;
+  model.system.core_handover_ns = 30;
+  Plan plan = synthesize(model);
+  ASSERT_TRUE(check_plan(plan, model).empty());
+  for (PlannedNode& node : plan.nodes) {
+    if (node.core == 0) continue;
+    EXPECT_EQ(node.start_ns, 130);
+    --node.start_ns;
+    --node.end_ns;
+  }
+  ASSERT_EQ(check_plan(plan, model).size(), 1U);
+  EXPECT_NE(check_plan(plan, model)[0].find("expected at least 130 ns"), std::string::npos);
+}
+
 struct Spoilt {
   const char* name;
   std::function<void(Plan&, TaskModel&)> spoil;
