@@ -1,6 +1,5 @@
 #include "platform/budget/task_model_of.hpp"
 
-#include <algorithm>
 #include <cstdio>
 
 #include "graph/describe.hpp"
@@ -59,21 +58,6 @@ TaskModel task_structure_of(const Cell& cell) {
   tick.nodes = nodes_of<Output>();
   model.groups = {frame, tick};
   return model;
-}
-
-Limits budget_limits(const Cell& cell) {
-  Limits limits;
-  limits.width = cell.camera.model.width;
-  limits.height = cell.camera.model.height;
-  limits.tools = cell.tools.count;
-  limits.markers_per_tool = 0;
-  for (int t = 0; t < cell.tools.count; ++t) {
-    limits.markers_per_tool = std::max(
-        limits.markers_per_tool, cell.tools.items[static_cast<std::size_t>(t)].marker_count);
-  }
-  limits.reflectivity_bytes = cell.camera.reflectivity_bits / 8;
-  if (cell.camera.model.lens != Lens::lut) limits.lens_steps = 0;
-  return limits;
 }
 
 TaskModel task_model_of(const Cell& cell, const CostTable& costs, const SystemShare& system,

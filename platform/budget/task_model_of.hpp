@@ -17,9 +17,6 @@ inline constexpr int k_tick_group_index = 1;
 // Groups, nodes and edges, rates and deadlines; every bound is 0 until a board gives it.
 [[nodiscard]] TaskModel task_structure_of(const Cell& cell);
 
-// The problem that the cell takes on: its camera and its tools, everything else at its maximum.
-[[nodiscard]] Limits budget_limits(const Cell& cell);
-
 // The same with every node's bound on a board under given limits, and the system's share there.
 // Throws InputError where the table does not price a node.
 [[nodiscard]] TaskModel task_model_of(const Cell& cell, const CostTable& costs,

@@ -39,7 +39,7 @@ int run_check(const CheckArguments& arguments) {
   CheckOptions options = arguments.options;
   for (const std::string& scale : arguments.scale) add_scale(scale, options);
 
-  CheckInput input{cell, board, {}, budget_limits(cell), {}};
+  CheckInput input{cell, board, {}, limits_of(cell), {}};
   TaskModel model = task_model_of(cell, board.table(), board.system, input.limits);
   input.plan = load_plan(arguments.plan, model, graphs_signature());
   if (!options.foreign.empty()) {

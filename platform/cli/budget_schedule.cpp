@@ -26,7 +26,7 @@ struct ScheduleArguments {
 int schedule(const ScheduleArguments& arguments) {
   const Cell cell = arguments.cell.empty() ? default_cell() : load_cell(arguments.cell);
   const Board board = load_board(arguments.board, expected_board(), BoardUse::analyse);
-  const Limits limits = budget_limits(cell);
+  const Limits limits = limits_of(cell);
   TaskModel model = task_model_of(cell, board.table(), board.system, limits);
   model.cores = arguments.cores;
   const bool typical = arguments.load == "typical";
