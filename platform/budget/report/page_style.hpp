@@ -71,8 +71,8 @@ nav a{color:inherit;text-decoration:none;border-bottom:1px solid var(--line)}nav
 table{border-collapse:collapse;font-size:13.5px;line-height:1.4}
 p.caption{color:var(--faint);font-size:13.5px;max-width:105ch;margin:18px 0 4px}p.caption+.scroll{margin-top:4px}
 th,td{padding:4px 12px 4px 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--grid)}
-thead th{border-bottom:1.5px solid var(--faint);font-weight:600;vertical-align:bottom;white-space:nowrap}
-td.number,th.number{text-align:right;padding-left:10px}td.number{white-space:nowrap}
+thead th{border-bottom:1.5px solid var(--faint);font-weight:600;vertical-align:bottom}
+td.number,th.number{text-align:right;padding-left:8px}td.number{white-space:nowrap}
 tbody tr:hover{background:var(--panel)}td code{overflow-wrap:anywhere}
 td.good{color:var(--good)}td.bad{color:var(--bad);font-weight:650}td.faint{color:var(--faint)}
 figure{margin:16px 0}figcaption{color:var(--faint);font-size:13px;max-width:100ch;margin-top:2px}
