@@ -24,7 +24,7 @@ std::string_view class_of(Verdict verdict) {
 
 // A mark of its own for each kind, for readers and printers without colour.
 std::string_view mark_of(NumberKind kind) {
-  constexpr std::string_view marks[] = {"", "&#9632; ", "&#9670; ", "&#9679; "};
+  constexpr std::string_view marks[] = {"", "&#9632;&#160;", "&#9670;&#160;", "&#9679;&#160;"};
   return marks[static_cast<std::size_t>(kind)];
 }
 
