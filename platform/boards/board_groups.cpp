@@ -8,9 +8,37 @@
 
 namespace glint {
 
+namespace {
+
+// One core, every node in the graph's order, deadlines watched as the cell says.
+template <class G>
+RunnerSettings<G> runner_settings(std::uint8_t group, Duration deadline,
+                                  graph::OverrunPolicy policy, bool watch) {
+  RunnerSettings<G> settings;
+  settings.group = group;
+  settings.watch.deadline = deadline;
+  settings.watch.policy = policy;
+  settings.watch.on = watch;
+  return settings;
+}
+
+// How many overruns of each kind there were so far: after each activation, what was decided on it.
+void add_decisions(const OverrunCounts& counts, Sha256& hash) {
+  std::array<std::uint8_t, 16> said{};
+  put_little_endian(std::span(said).first(8), counts.will_miss);
+  put_little_endian(std::span(said).last(8), counts.missed);
+  hash.add(said);
+}
+
+}  // namespace
+
 BoardGroups::BoardGroups(const Cell& cell, Sinks& sinks, const Clock& now,
                          std::int64_t unix_offset_ns, std::size_t frames)
-    : frame_(cell, tool_set_, now, frame_runner_, nullptr),
+    : frame_runner_(runner_settings<Tracker>(k_frame_group, cell.deadlines.frame,
+                                             cell.overrun.frame, cell.overrun.watch)),
+      tick_runner_(runner_settings<Output>(k_tick_group, cell.deadlines.tick, cell.overrun.tick,
+                                           cell.overrun.watch)),
+      frame_(cell, tool_set_, now, frame_runner_, nullptr),
       tick_(cell, frame_.estimates(), robot_, now, {sinks.can(), sinks.dds(), nullptr, nullptr},
             unix_offset_ns, frames, tick_runner_, frame_.overrun_notes()) {
   tool_set_.write_slot() = cell.tools;
@@ -35,6 +63,7 @@ void BoardGroups::process(const ArrivedFrame& arrived) noexcept {
                                               track.marker_mask};
     verdicts_.add(of_tool);
   }
+  add_decisions(frame_runner_.overruns(), verdicts_);
   ++frames_;
   if (seen) ++tracked_;
 }
@@ -51,11 +80,14 @@ void BoardGroups::tick(std::uint32_t number, Time nominal, Time woken) noexcept 
     said[9] = static_cast<std::uint8_t>(sample.reason);
     states_.add(said);
   }
+  add_decisions(tick_runner_.overruns(), states_);
 }
 
 void BoardGroups::report(BoardResult& result) const {
   result.frames = frames_;
   result.frames_tracked = tracked_;
+  result.frame_overruns = frame_runner_.overruns().total();
+  result.tick_overruns = tick_runner_.overruns().total();
   result.latencies = tick_.latencies().entries();
   result.latencies_left_out = tick_.latencies().beyond();
   result.can_frames = tick_.can_frames();

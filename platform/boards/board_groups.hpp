@@ -8,6 +8,7 @@
 #include "platform/boards/board_run.hpp"
 #include "platform/record/sha256.hpp"
 #include "platform/session/frame_group.hpp"
+#include "platform/session/group_runner.hpp"
 #include "platform/session/sinks.hpp"
 #include "platform/session/tick_group.hpp"
 

@@ -40,6 +40,8 @@ Json as_json(const BoardResult& result) {
       {"ticks", result.ticks},
       {"ticks_late", result.ticks_late},
       {"ticks_skipped", result.ticks_skipped},
+      {"frame_overruns", result.frame_overruns},
+      {"tick_overruns", result.tick_overruns},
       {"frame_to_can_us", as_json(figures_of_totals(result.latencies))},
       {"computing_us", as_json(figures_of(result.latencies, &FrameToCan::computing))},
       {"sampling_us", as_json(figures_of(result.latencies, &FrameToCan::sampling))},

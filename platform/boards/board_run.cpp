@@ -1,9 +1,5 @@
 #include "platform/boards/board_run.hpp"
 
-#include <sys/resource.h>
-
-#include <algorithm>
-#include <atomic>
 #include <memory>
 #include <utility>
 
@@ -13,26 +9,19 @@
 #include "platform/rt/allocation_counter.hpp"
 #include "platform/rt/clock.hpp"
 #include "platform/rt/memory_lock.hpp"
+#include "platform/rt/page_faults.hpp"
 #include "platform/rt/periodic_loop.hpp"
 #include "platform/rt/real_time_thread.hpp"
+#include "platform/session/run_plan.hpp"
 
 namespace glint {
 namespace {
 
-// As in a session: tick preempts frame, both stay below the kernel's interrupt threads (50). The
-// arrival thread stands in for the camera driver and so comes before both.
-constexpr int k_arrival_priority = 49;
-constexpr int k_tick_priority = 48;
-constexpr int k_frame_priority = 45;
+// The arrival thread stands in for the camera's driver and so comes before tick and frame.
+constexpr int k_arrival_priority = k_tick_priority + 1;
 
 // From here to the first frame everything starts; its ticks are due before it.
 constexpr Duration k_lead = milliseconds(100);
-
-std::int64_t page_faults_of_this_thread() {
-  rusage usage{};
-  ::getrusage(RUSAGE_THREAD, &usage);
-  return usage.ru_minflt + usage.ru_majflt;
-}
 
 void require_same_camera(const Cell& cell, const FrameLoop& loop) {
   const FrameLoopHeader& header = loop.header();
@@ -51,11 +40,12 @@ void require_same_camera(const Cell& cell, const FrameLoop& loop) {
 
 // Runs `body` armed: from here on neither the heap nor a page that is not there may be touched.
 template <class Body>
-void counted(std::atomic<std::int64_t>& page_faults, Body body) {
+void counted(Body body) {
+  prefault_stack();
   AllocationCounter::arm();
-  const std::int64_t before = page_faults_of_this_thread();
+  PageFaultCounter::arm();
   body();
-  page_faults += page_faults_of_this_thread() - before;
+  PageFaultCounter::disarm();
   AllocationCounter::disarm();
 }
 
@@ -75,7 +65,7 @@ BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& opti
   const Duration frame_period{loop.header().period_ns};
   const Time epoch = monotonic_now() + k_lead;
   const std::int64_t unix_offset_ns = unix_offset().nanoseconds + epoch.nanoseconds;
-  Sinks sinks(cell, {options.out, false}, unix_offset_ns);
+  Sinks sinks(cell, {options.out, false, result.refused}, unix_offset_ns);
   auto groups = std::make_unique<BoardGroups>(
       cell, sinks, [epoch] { return Time{} + (monotonic_now() - epoch); }, unix_offset_ns,
       static_cast<std::size_t>(options.frames));
@@ -86,12 +76,11 @@ BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& opti
   // The first frame's exposure must not lie before the session's clock began.
   LoopSource source(loop, {options.frames, frame_period, epoch + frame_period, epoch,
                            k_arrival_priority, options.core});
-  std::atomic<std::int64_t> page_faults{0};
-  std::atomic<bool> frames_done{false};
   PeriodicLoop ticks(epoch, tick_period);
   const std::uint64_t allocations_before = AllocationCounter::count();
+  const std::uint64_t faults_before = PageFaultCounter::count();
   RealTimeThread tick_thread({"glint-tick", options.core, k_tick_priority}, [&] {
-    counted(page_faults, [&] {
+    counted([&] {
       while (result.tick_wake_up_ns.size() < result.tick_wake_up_ns.capacity()) {
         const Tick tick = ticks.next();
         const Time nominal = Time{} + (tick.nominal - epoch);
@@ -102,7 +91,7 @@ BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& opti
     });
   });
   RealTimeThread frame_thread({"glint-frame", options.core, k_frame_priority}, [&] {
-    counted(page_faults, [&] {
+    counted([&] {
       ArrivedFrame arrived;
       while (source.wait(arrived)) {
         groups->process(arrived);
@@ -116,7 +105,7 @@ BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& opti
 
   result.heap_allocations = AllocationCounter::count() - allocations_before;
   result.heap_counted = AllocationCounter::available();
-  result.page_faults = page_faults;
+  result.page_faults = PageFaultCounter::count() - faults_before;
   for (const ThreadReport* report :
        {&source.report(), &frame_thread.report(), &tick_thread.report()}) {
     if (!report->refused.empty()) result.refused.push_back(report->name + ": " + report->refused);

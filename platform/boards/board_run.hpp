@@ -24,12 +24,13 @@ struct BoardResult {
   std::int64_t frames_worst = 0;    // of these, drawn as worst inputs
   std::int64_t frames_tracked = 0;  // of these, with at least one tool seen
   std::int64_t ticks = 0, ticks_late = 0, ticks_skipped = 0;
+  std::uint64_t frame_overruns = 0, tick_overruns = 0;
   std::vector<FrameToCan> latencies;
   std::int64_t latencies_left_out = 0;
   std::vector<std::int64_t> frame_wake_up_ns, tick_wake_up_ns;
   std::uint64_t heap_allocations = 0;  // of both groups after their start
   bool heap_counted = false;
-  std::int64_t page_faults = 0;  // of both groups after their start, minor and major
+  std::uint64_t page_faults = 0;  // of both groups after their start, minor and major
   std::uint64_t can_frames = 0;
   SinkOutcome sinks;
   std::string output_sha256;         // over the output records

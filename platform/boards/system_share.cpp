@@ -6,14 +6,12 @@
 #include "platform/rt/memory_lock.hpp"
 #include "platform/rt/real_time_thread.hpp"
 #include "platform/rt/release.hpp"
+#include "platform/session/run_plan.hpp"
 
 namespace glint {
 namespace {
 
-// The priorities of a run (board_run.cpp).
-constexpr int k_arrival_priority = 49;
-constexpr int k_tick_priority = 48;
-constexpr int k_frame_priority = 45;
+constexpr int k_arrival_priority = k_tick_priority + 1;  // as in board_run.cpp
 
 // A reading of the clock that takes this many times as long as usual was interrupted.
 constexpr std::int64_t k_disturbed = 4;
