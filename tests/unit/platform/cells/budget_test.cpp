@@ -1,0 +1,79 @@
+// The section [budget] of a cell file, and the limits that follow.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "platform/cells/cell.hpp"
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+std::string complaint_about(const std::string& text) {
+  try {
+    (void)cell_from_text(text, "cell.toml");
+    return "accepted";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST(CellBudget, FollowsTheCellsToolsAndCameraWhereNothingIsSaid) {
+  const Limits limits = limits_of(cell_from_text("name = \"plain\"\n", "cell.toml"));
+  EXPECT_EQ(limits.tools, 1);
+  EXPECT_EQ(limits.markers_per_tool, 5);  // the pen's
+  EXPECT_EQ(limits.blobs, 64);
+  EXPECT_EQ(limits.width, 512);
+  EXPECT_EQ(limits.lens_steps, 0);  // without a ray table nothing is searched in one
+  const Limits built_in = limits_of(default_cell());
+  EXPECT_EQ(built_in.search_steps, limits.search_steps);
+  EXPECT_EQ(built_in.pair_tests, limits.pair_tests);
+  EXPECT_EQ(built_in.runs_per_band, limits.runs_per_band);
+}
+
+TEST(CellBudget, TakesTheProblemThatACellStates) {
+  const Cell cell = cell_from_text(
+      "[budget]\ntools = 5\nblobs = 100\nruns_per_band = 300\npair_tests = 400\n"
+      "search_steps = 500\n",
+      "cell.toml");
+  const Limits limits = limits_of(cell);
+  EXPECT_EQ(limits.tools, 5);
+  EXPECT_EQ(limits.blobs, 100);
+  EXPECT_EQ(limits.runs_per_band, 300);
+  EXPECT_EQ(limits.pair_tests, 400);
+  EXPECT_EQ(limits.search_steps, 500);
+}
+
+TEST(CellBudget, RefusesMoreThanTheCodeCoversWithTheNearestThatFits) {
+  EXPECT_EQ(complaint_about("[budget]\ntools = 17\n"),
+            "cell.toml:2: budget.tools is 17; expected a whole number from 1 to 16");
+  EXPECT_EQ(complaint_about("[budget]\n\nblobs = 300\n"),
+            "cell.toml:3: budget.blobs is 300; expected a whole number from 8 to 256");
+  EXPECT_EQ(
+      complaint_about("[budget]\ntool = 1\n").rfind("cell.toml:2: unknown key budget.tool", 0), 0u);
+}
+
+TEST(CellBudget, RefusesMoreToolsThanTheBudgetCovers) {
+  const CellFiles carried = [] {
+    CellFiles files;
+    files.tools = default_cell().tools;
+    files.tools.items[1] = files.tools.items[0];
+    files.tools.items[1].name[0] = 'q';
+    files.tools.count = 2;
+    return files;
+  }();
+  try {
+    (void)cell_from_text("tools = [\"pen\", \"qen\"]\n[budget]\ntools = 1\n", "cell.toml",
+                         &carried);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "cell.toml:3: budget.tools is 1, but 2 tools are listed; expected at least 2");
+  }
+  std::string many = "name = \"many\"\ntools = [";
+  for (int i = 0; i < 17; ++i) many += "\"pen\",";
+  EXPECT_EQ(complaint_about(many + "]\n"), "cell.toml:2: 17 tools; expected at most 16");
+}
+
+}  // namespace
+}  // namespace glint
