@@ -67,6 +67,17 @@ struct CallOf<void (Node::*)(P...) noexcept> {
 };
 template <class Node, class... P>
 struct CallOf<void (Node::*)(P...) const noexcept> : CallOf<void (Node::*)(P...) noexcept> {};
+#if defined(__has_cpp_attribute)
+#if __has_cpp_attribute(clang::nonblocking)
+// Where the compiler knows the promise, it is part of a call operator's type.
+template <class Node, class... P>
+struct CallOf<void (Node::*)(P...) noexcept [[clang::nonblocking]]>
+    : CallOf<void (Node::*)(P...) noexcept>{};
+template <class Node, class... P>
+struct CallOf<void (Node::*)(P...) const noexcept [[clang::nonblocking]]>
+    : CallOf<void (Node::*)(P...) noexcept>{};
+#endif
+#endif
 
 template <class Node>
 struct SignatureOf : CallOf<void> {};

@@ -12,6 +12,8 @@
 //           Functions.
 #pragma once
 
+#include "kernels/nonblocking.hpp"
+
 namespace glint {
 
 struct SineCosine {
@@ -19,10 +21,12 @@ struct SineCosine {
   double cosine = 1;
 };
 
-[[nodiscard]] SineCosine sine_cosine(double radians) noexcept;  // |radians| <= 1e5
-[[nodiscard]] double logarithm(double x) noexcept;              // natural, x > 0
-[[nodiscard]] double exponential(double x) noexcept;            // |x| <= 700
-[[nodiscard]] double arc_tangent(double y, double x) noexcept;  // atan2
-[[nodiscard]] double arc_cosine(double x) noexcept;             // clamped to [-1, 1]
+// sine_cosine: |radians| <= 1e5. logarithm: natural, x > 0. exponential: |x| <= 700. arc_tangent:
+// atan2. arc_cosine: clamped to [-1, 1].
+[[nodiscard]] SineCosine sine_cosine(double radians) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] double logarithm(double x) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] double exponential(double x) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] double arc_tangent(double y, double x) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] double arc_cosine(double x) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -11,6 +11,7 @@
 #include "graph/loops.hpp"
 #include "kernels/image/frame.hpp"
 #include "kernels/limits.hpp"
+#include "kernels/nonblocking.hpp"
 #include "nodes/tokens.hpp"
 
 namespace glint {
@@ -46,7 +47,7 @@ struct CheckFrame {
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits&) noexcept { return {{1}}; }
   [[nodiscard]] graph::LoopCounts counts() const noexcept { return {{1}}; }
 
-  void operator()(const FrameStamp& stamp, FrameVerdict& verdict) noexcept;
+  void operator()(const FrameStamp& stamp, FrameVerdict& verdict) noexcept GLINT_NONBLOCKING;
 
  private:
   Time newest_;  // of the frames accepted

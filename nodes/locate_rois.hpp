@@ -14,6 +14,7 @@
 
 #include "graph/graph.hpp"
 #include "kernels/image/roi.hpp"
+#include "kernels/nonblocking.hpp"
 #include "kernels/pose/camera_model.hpp"
 #include "kernels/pose/head_pose.hpp"
 #include "kernels/pose/tool.hpp"
@@ -47,7 +48,7 @@ struct PredictTracks {
   Limits limits;
   void operator()(const FrameVerdict& verdict, const HeadPose& head,
                   const graph::Latest<ToolSet>& tools, const graph::Previous<Estimates>& last,
-                  Predictions& predictions) noexcept;
+                  Predictions& predictions) noexcept GLINT_NONBLOCKING;
 
  private:
   graph::LoopCounts counts_;
@@ -68,7 +69,7 @@ struct LocateRois {
   CameraModel camera;
   Limits limits;
   void operator()(const FrameVerdict& verdict, const graph::Latest<ToolSet>& tools,
-                  const Predictions& predictions, Rois& rois) noexcept;
+                  const Predictions& predictions, Rois& rois) noexcept GLINT_NONBLOCKING;
 
  private:
   graph::LoopCounts counts_;

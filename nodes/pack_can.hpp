@@ -10,6 +10,7 @@
 
 #include "graph/loops.hpp"
 #include "kernels/limits.hpp"
+#include "kernels/nonblocking.hpp"
 #include "kernels/wire/can_frames.hpp"
 #include "kernels/wire/node_frames.hpp"
 #include "nodes/tokens.hpp"
@@ -36,7 +37,8 @@ struct PackCan {
 
   PackCanSettings settings;
   Limits limits;
-  void operator()(const Now& now, const PoseSamples& samples, CanFrames& frames) noexcept;
+  void operator()(const Now& now, const PoseSamples& samples,
+                  CanFrames& frames) noexcept GLINT_NONBLOCKING;
 
  private:
   [[nodiscard]] bool due(Time tick, Duration period, Time& next) const noexcept;

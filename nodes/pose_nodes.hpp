@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "graph/graph.hpp"
+#include "kernels/nonblocking.hpp"
 #include "kernels/pose/assign.hpp"
 #include "kernels/pose/correspond.hpp"
 #include "kernels/pose/fit_covariance.hpp"
@@ -37,7 +38,7 @@ struct Correspond {
   Limits limits;
   void operator()(const FrameVerdict& verdict, const Markers& markers,
                   const graph::Latest<ToolSet>& tools, const Predictions& predictions,
-                  graph::Slice slice, ToolLabelings& labelings) noexcept;
+                  graph::Slice slice, ToolLabelings& labelings) noexcept GLINT_NONBLOCKING;
 
  private:
   CorrespondScratch scratch_;
@@ -58,7 +59,7 @@ struct AssignMarkers {
   Limits limits;
   void operator()(const FrameVerdict& verdict, const graph::Latest<ToolSet>& tools,
                   const graph::Parts<ToolLabelings, k_tool_slices>& labelings,
-                  Assignment& assignment) noexcept;
+                  Assignment& assignment) noexcept GLINT_NONBLOCKING;
 
  private:
   std::array<Labelings, k_tools_max> per_tool_;  // the slices' answers, by tool
@@ -86,7 +87,7 @@ struct FitRigid {
   Limits limits;
   void operator()(const FrameVerdict& verdict, const Markers& markers,
                   const graph::Latest<ToolSet>& tools, const Assignment& assignment,
-                  graph::Slice slice, FittedTools& fitted) noexcept;
+                  graph::Slice slice, FittedTools& fitted) noexcept GLINT_NONBLOCKING;
 
  private:
   graph::LoopCounts counts_;

@@ -14,6 +14,7 @@
 #include "graph/graph.hpp"
 #include "graph/loops.hpp"
 #include "kernels/limits.hpp"
+#include "kernels/nonblocking.hpp"
 #include "nodes/tokens.hpp"
 
 namespace glint {
@@ -34,7 +35,8 @@ struct PredictTools {
   PredictSettings settings;
   Limits limits;
   void operator()(const Now& now, const graph::Latest<Estimates>& estimates,
-                  const graph::Latest<RobotFrame>& robot, PoseSamples& samples) noexcept;
+                  const graph::Latest<RobotFrame>& robot,
+                  PoseSamples& samples) noexcept GLINT_NONBLOCKING;
 
  private:
   graph::LoopCounts counts_;

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "graph/graph.hpp"
+#include "kernels/nonblocking.hpp"
 #include "kernels/pose/head_pose.hpp"
 #include "kernels/pose/tool.hpp"
 #include "nodes/node_limits.hpp"
@@ -33,7 +34,8 @@ struct TrackTools {
   void operator()(const FrameVerdict& verdict, const HeadPose& head,
                   const graph::Latest<ToolSet>& tools,
                   const graph::Parts<FittedTools, k_tool_slices>& fitted,
-                  const graph::Previous<Estimates>& last, Estimates& estimates) noexcept;
+                  const graph::Previous<Estimates>& last,
+                  Estimates& estimates) noexcept GLINT_NONBLOCKING;
 
  private:
   graph::LoopCounts counts_;

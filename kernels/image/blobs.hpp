@@ -21,6 +21,7 @@
 #include "kernels/image/blob_settings.hpp"
 #include "kernels/image/frame.hpp"
 #include "kernels/image/nearest_kept.hpp"
+#include "kernels/nonblocking.hpp"
 
 namespace glint {
 
@@ -38,7 +39,8 @@ struct BlobWork {
 // are beyond it, else runs_full if a band's was.
 BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
                     const BlobSettings& settings, std::span<const Vector2> predicted_px,
-                    BlobScratch& scratch, Blobs& out, const Limits& limits = {}) noexcept;
+                    BlobScratch& scratch, Blobs& out,
+                    const Limits& limits = {}) noexcept GLINT_NONBLOCKING;
 
 // What find_blobs may do at most.
 [[nodiscard]] constexpr BlobWork blob_work_max(const Limits& limits) {

@@ -17,6 +17,7 @@
 #include "kernels/image/blob_scratch.hpp"
 #include "kernels/image/frame.hpp"
 #include "kernels/image/grown_box.hpp"
+#include "kernels/nonblocking.hpp"
 
 namespace glint {
 
@@ -28,13 +29,14 @@ struct Centroid {
 
 // A larger box falls back to binary_centroid; a background as bright as the blob, to its position.
 [[nodiscard]] Centroid grown_centroid(const Frame& frame, const BlobScratch& scratch,
-                                      const Component& component, std::uint16_t threshold) noexcept;
+                                      const Component& component,
+                                      std::uint16_t threshold) noexcept GLINT_NONBLOCKING;
 
 [[nodiscard]] Centroid weighted_centroid(const Frame& frame, const BlobScratch& scratch,
                                          const Component& component,
                                          std::uint16_t threshold) noexcept;
 
 [[nodiscard]] Centroid binary_centroid(const Frame& frame, const BlobScratch& scratch,
-                                       const Component& component) noexcept;
+                                       const Component& component) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -15,6 +15,7 @@
 #include <span>
 
 #include "kernels/image/blob_scratch.hpp"
+#include "kernels/nonblocking.hpp"
 
 namespace glint {
 
@@ -22,6 +23,6 @@ namespace glint {
 // scratch.runs and scratch.components, ordered by each component's first run: top first, then left
 // first.
 void find_components(std::span<const Runs* const> bands, BlobScratch& scratch,
-                     int runs_per_band = k_runs_per_band_max) noexcept;
+                     int runs_per_band = k_runs_per_band_max) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

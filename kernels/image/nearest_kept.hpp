@@ -14,6 +14,7 @@
 
 #include "kernels/geometry.hpp"
 #include "kernels/image/blob_scratch.hpp"
+#include "kernels/nonblocking.hpp"
 
 namespace glint {
 
@@ -23,6 +24,6 @@ inline constexpr int k_predictions_max = k_tools_max * k_markers_per_tool_max;
 // beyond k_predictions_max, or not in reach of the frame, they are ignored. Gives the number of
 // distances to four predictions that were computed.
 int keep_nearest(std::span<const Vector2> predicted_px, BlobScratch& scratch, int candidates,
-                 int kept) noexcept;
+                 int kept) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -16,6 +16,7 @@
 #include "kernels/image/frame.hpp"
 #include "kernels/image/roi.hpp"
 #include "kernels/image/run.hpp"
+#include "kernels/nonblocking.hpp"
 
 namespace glint {
 
@@ -37,7 +38,8 @@ struct ThresholdWork {
 // tools become one that covers the frame. Nothing is searched in a frame beyond `limits`. Frame,
 // threshold: raw counts.
 ThresholdWork threshold_runs(const Frame& frame, const Rois& rois, std::uint16_t threshold,
-                             RowBand band, Runs& out, const Limits& limits = {}) noexcept;
+                             RowBand band, Runs& out,
+                             const Limits& limits = {}) noexcept GLINT_NONBLOCKING;
 
 // The same, pixel by pixel: what the faster one is compared with.
 void threshold_runs_reference(const Frame& frame, const Rois& rois, std::uint16_t threshold,

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "kernels/geometry.hpp"
+#include "kernels/nonblocking.hpp"
 #include "kernels/units.hpp"
 
 namespace glint {
@@ -25,25 +26,29 @@ struct Velocity {
 };
 
 // p0 at u = 0, p1 at u = 1, on their line for every u.
-[[nodiscard]] Vector3 constant_velocity(const Vector3& p0, const Vector3& p1, double u) noexcept;
+[[nodiscard]] Vector3 constant_velocity(const Vector3& p0, const Vector3& p1,
+                                        double u) noexcept GLINT_NONBLOCKING;
 
 // q0 at u = 0, q1 at u = 1 (or its negative, the same rotation), along the shorter arc; outside
 // [0, 1] it goes on at the same angular velocity. Both unit; |u| <= 1e4; so is the result.
-[[nodiscard]] Quaternion slerp(const Quaternion& q0, const Quaternion& q1, double u) noexcept;
+[[nodiscard]] Quaternion slerp(const Quaternion& q0, const Quaternion& q1,
+                               double u) noexcept GLINT_NONBLOCKING;
 
 // From a to b; before a it is a, after b it is b. Stamps that do not rise: b.
-[[nodiscard]] Pose interpolate(const StampedPose& a, const StampedPose& b, Time t) noexcept;
+[[nodiscard]] Pose interpolate(const StampedPose& a, const StampedPose& b,
+                               Time t) noexcept GLINT_NONBLOCKING;
 
 // Like interpolate, but goes on after b at the velocity from a to b, for max_horizon at most, and
 // stays there. Stamps that do not rise: b.
 [[nodiscard]] Pose extrapolate(const StampedPose& a, const StampedPose& b, Time t,
-                               Duration max_horizon) noexcept;
+                               Duration max_horizon) noexcept GLINT_NONBLOCKING;
 
 // Constant velocities that carry a to b. Stamps that do not rise: zero.
-[[nodiscard]] Velocity velocity_between(const StampedPose& a, const StampedPose& b) noexcept;
+[[nodiscard]] Velocity velocity_between(const StampedPose& a,
+                                        const StampedPose& b) noexcept GLINT_NONBLOCKING;
 
 // Rotation vector (axis times angle, |angle| <= pi) of a unit quaternion, and back.
-[[nodiscard]] Vector3 rotation_vector(const Quaternion& q) noexcept;
-[[nodiscard]] Quaternion from_rotation_vector(const Vector3& radians) noexcept;
+[[nodiscard]] Vector3 rotation_vector(const Quaternion& q) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] Quaternion from_rotation_vector(const Vector3& radians) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

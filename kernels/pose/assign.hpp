@@ -13,6 +13,7 @@
 
 #include <span>
 
+#include "kernels/nonblocking.hpp"
 #include "kernels/pose/labeling.hpp"
 
 namespace glint {
@@ -32,6 +33,6 @@ struct AssignWork {
 // becomes the index into per_tool[t].items or -1; reasons[t] none, the labelings' own reason where
 // there are none, or taken_by_other.
 AssignWork assign_markers(std::span<const Labelings> per_tool, std::span<int> chosen,
-                          std::span<Reason> reasons) noexcept;
+                          std::span<Reason> reasons) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

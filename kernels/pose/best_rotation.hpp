@@ -17,6 +17,7 @@
 #pragma once
 
 #include "kernels/geometry.hpp"
+#include "kernels/nonblocking.hpp"
 
 namespace glint {
 
@@ -26,6 +27,6 @@ namespace glint {
 inline constexpr int k_rotation_sweeps = 3;
 
 // C finite, and its second singular value not zero: without it the rotation is free about a line.
-[[nodiscard]] Quaternion best_rotation(const Matrix3& c) noexcept;
+[[nodiscard]] Quaternion best_rotation(const Matrix3& c) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

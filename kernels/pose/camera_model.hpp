@@ -15,6 +15,7 @@
 
 #include "kernels/geometry.hpp"
 #include "kernels/limits.hpp"
+#include "kernels/nonblocking.hpp"
 #include "kernels/result.hpp"
 
 namespace glint {
@@ -45,7 +46,8 @@ inline constexpr int k_turning_ray_steps_max = 12;
 inline constexpr int k_lut_search_iterations_max = k_lens_steps_max;
 
 // Reason::out_of_range: outside the table, or the lens has no ray there.
-[[nodiscard]] Result<Vector3> unproject(const CameraModel& camera, const Vector2& pixel) noexcept;
+[[nodiscard]] Result<Vector3> unproject(const CameraModel& camera,
+                                        const Vector2& pixel) noexcept GLINT_NONBLOCKING;
 
 // A pixel's ray and by how much it turns, at right angles to itself, from one pixel to the next.
 struct TurningRay {
@@ -55,12 +57,13 @@ struct TurningRay {
 // For every lens but a table, which has neighbours to ask. Reason::out_of_range: no ray there, or
 // not found in k_turning_ray_steps_max Newton steps; those taken are added to `lens_steps`.
 [[nodiscard]] Result<TurningRay> unproject_turning(const CameraModel& camera, const Vector2& pixel,
-                                                   int& lens_steps) noexcept;
+                                                   int& lens_steps) noexcept GLINT_NONBLOCKING;
 
 // Reason::out_of_range: behind the camera or outside the lens; the pixel may lie outside the frame.
-[[nodiscard]] Result<Vector2> project(const CameraModel& camera, const Vector3& point) noexcept;
+[[nodiscard]] Result<Vector2> project(const CameraModel& camera,
+                                      const Vector3& point) noexcept GLINT_NONBLOCKING;
 // The same, and adds the look-ups that a lens table took to `lens_steps`.
 [[nodiscard]] Result<Vector2> project(const CameraModel& camera, const Vector3& point,
-                                      int& lens_steps) noexcept;
+                                      int& lens_steps) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

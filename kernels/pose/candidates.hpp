@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 
+#include "kernels/nonblocking.hpp"
 #include "kernels/pose/correspond_settings.hpp"
 #include "kernels/pose/marker.hpp"
 #include "kernels/pose/tool.hpp"
@@ -43,6 +44,7 @@ struct Candidates {
 
 // The prior may be null. Returns the number of markers looked at.
 int select_candidates(const Markers& markers, const Tool& tool, const CorrespondSettings& settings,
-                      const Pose* prior_T_camera_tool, Candidates& candidates) noexcept;
+                      const Pose* prior_T_camera_tool,
+                      Candidates& candidates) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

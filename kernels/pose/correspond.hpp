@@ -26,6 +26,7 @@
 //      gate stands before one without: of two mirror-like readings the predicted one is taken.
 #pragma once
 
+#include "kernels/nonblocking.hpp"
 #include "kernels/pose/candidates.hpp"
 #include "kernels/pose/correspond_settings.hpp"
 #include "kernels/pose/labeling.hpp"
@@ -54,6 +55,6 @@ struct CorrespondWork {
 CorrespondWork propose_labelings(const Markers& markers, const Tool& tool,
                                  const CorrespondSettings& settings,
                                  const Pose* prior_T_camera_tool, CorrespondScratch& scratch,
-                                 Labelings& labelings) noexcept;
+                                 Labelings& labelings) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

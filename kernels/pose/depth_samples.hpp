@@ -14,6 +14,7 @@
 
 #include "kernels/image/blob.hpp"
 #include "kernels/image/frame.hpp"
+#include "kernels/nonblocking.hpp"
 #include "kernels/pose/depth_settings.hpp"
 #include "kernels/pose/local_rays.hpp"
 #include "kernels/pose/robust_mean.hpp"
@@ -51,8 +52,8 @@ struct DepthSamples {
 
 // radius_px: of the disc that has the blob's area. At most `most_samples`.
 void inner_samples(const DepthView& view, double radius_px, int most_samples,
-                   DepthSamples& out) noexcept;
+                   DepthSamples& out) noexcept GLINT_NONBLOCKING;
 void ring_samples(const DepthView& view, double radius_px, int most_samples, int most_pixels,
-                  DepthSamples& out) noexcept;
+                  DepthSamples& out) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

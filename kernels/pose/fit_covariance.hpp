@@ -14,13 +14,14 @@
 #include <span>
 
 #include "kernels/geometry.hpp"
+#include "kernels/nonblocking.hpp"
 #include "kernels/result.hpp"
 
 namespace glint {
 
 // Of a marker seen along `ray` (unit): one sigma along it, another across it, in metres.
 [[nodiscard]] Matrix3 marker_covariance(const Vector3& ray, double along_sigma_m,
-                                        double across_sigma_m) noexcept;
+                                        double across_sigma_m) noexcept GLINT_NONBLOCKING;
 
 // points_m: the fitted markers in the measured frame; covariances_m2: theirs, equally many;
 // reference_m: the point of the tool, in the same frame, whose place is asked for (the tip).
@@ -29,6 +30,6 @@ namespace glint {
 // finite).
 [[nodiscard]] Result<Matrix6> fit_covariance(std::span<const Vector3> points_m,
                                              std::span<const Matrix3> covariances_m2,
-                                             const Vector3& reference_m) noexcept;
+                                             const Vector3& reference_m) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

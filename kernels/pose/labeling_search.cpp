@@ -18,7 +18,7 @@ bool stands_before(const Labeling& a, const Labeling& b) {
 
 LabelingSearch::LabelingSearch(const Tool& tool, const CorrespondSettings& settings,
                                const Candidates& candidates, const PairMatches& matches,
-                               Labelings& found)
+                               Labelings& found) noexcept
     : tool_(tool), settings_(settings), candidates_(candidates), matches_(matches), found_(found) {
   chosen_.fill(-1);
 }
@@ -72,7 +72,7 @@ int LabelingSearch::narrow(int level, int i, int a) {
   return possible;
 }
 
-void LabelingSearch::run(const CandidateSets& allowed, int target) {
+void LabelingSearch::run(const CandidateSets& allowed, int target) noexcept {
   const int markers = tool_.marker_count;
   const int words = candidates_.words;
   Place& root = place_[0];

@@ -10,6 +10,7 @@
 //           Kerbosch 1973), bounded in depth; no recursion, so that the stack is known.
 #pragma once
 
+#include "kernels/nonblocking.hpp"
 #include "kernels/pose/labeling.hpp"
 #include "kernels/pose/pair_matches.hpp"
 
@@ -23,10 +24,10 @@ struct SearchWork {
 class LabelingSearch {
  public:
   LabelingSearch(const Tool& tool, const CorrespondSettings& settings, const Candidates& candidates,
-                 const PairMatches& matches, Labelings& found);
+                 const PairMatches& matches, Labelings& found) noexcept GLINT_NONBLOCKING;
 
   // Tries all labelings with `target` markers within `allowed`.
-  void run(const CandidateSets& allowed, int target);
+  void run(const CandidateSets& allowed, int target) noexcept GLINT_NONBLOCKING;
 
   [[nodiscard]] bool full() const { return full_; }
   [[nodiscard]] bool rejected_a_fit() const { return rejected_a_fit_; }

@@ -7,6 +7,7 @@
 // Source:   the lens's own derivative; of a table the difference to a neighbour.
 #pragma once
 
+#include "kernels/nonblocking.hpp"
 #include "kernels/pose/camera_model.hpp"
 
 namespace glint {
@@ -26,7 +27,7 @@ struct LocalRays {
 
 // Adds the lens's steps to `lens_steps`: a look-up in a table is as dear as two.
 [[nodiscard]] Result<LocalRays> local_rays(const CameraModel& camera, const Vector2& pixel,
-                                           int& lens_steps) noexcept;
+                                           int& lens_steps) noexcept GLINT_NONBLOCKING;
 
 inline constexpr int k_lens_steps_a_look_up = 2;
 // What local_rays may take at most, whatever the lens.

@@ -20,6 +20,7 @@
 #include <array>
 #include <cstdint>
 
+#include "kernels/nonblocking.hpp"
 #include "kernels/pose/candidates.hpp"
 
 namespace glint {
@@ -51,6 +52,7 @@ struct PairWork {
 };
 
 PairWork match_pairs(const Candidates& candidates, const Tool& tool,
-                     const CorrespondSettings& settings, PairMatches& matches) noexcept;
+                     const CorrespondSettings& settings,
+                     PairMatches& matches) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

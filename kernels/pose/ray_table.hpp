@@ -10,18 +10,20 @@
 // Source:   HoloLens 2 research mode gives MapImagePointToCameraUnitPlane at pixel centres.
 #pragma once
 
+#include "kernels/nonblocking.hpp"
 #include "kernels/pose/camera_model.hpp"
 
 namespace glint {
 
 // Within half a pixel of the border the nearest cell is extended. Reason::out_of_range: outside the
 // table, or a ray that it needs is zero.
-[[nodiscard]] Result<Vector3> unproject(const RayTable& table, const Vector2& pixel) noexcept;
+[[nodiscard]] Result<Vector3> unproject(const RayTable& table,
+                                        const Vector2& pixel) noexcept GLINT_NONBLOCKING;
 
 // start: where to begin, e.g. the pixel by a fitted lens; middle: a pixel that surely has a ray.
 // Reason::out_of_range: no pixel of the table has this ray. Adds its look-ups to `steps`.
 [[nodiscard]] Result<Vector2> project(const RayTable& table, const Vector3& point,
                                       const Vector2& start, const Vector2& middle,
-                                      int& steps) noexcept;
+                                      int& steps) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -17,6 +17,7 @@
 #include <span>
 
 #include "kernels/geometry.hpp"
+#include "kernels/nonblocking.hpp"
 #include "kernels/reason.hpp"
 
 namespace glint {
@@ -38,10 +39,11 @@ inline constexpr double k_coincident_variance_m2 = 1e-12;
 
 // Whether the points fix a rotation: none, too_few_markers (< 3), degenerate, collinear or
 // out_of_range (not finite).
-[[nodiscard]] Reason rotation_is_fixed_by(std::span<const Vector3> points_m) noexcept;
+[[nodiscard]] Reason rotation_is_fixed_by(std::span<const Vector3> points_m) noexcept
+    GLINT_NONBLOCKING;
 
 // Both spans in metres and equally long; point i of one belongs to point i of the other.
 [[nodiscard]] RigidFit fit_rigid(std::span<const Vector3> model_m,
-                                 std::span<const Vector3> measured_m) noexcept;
+                                 std::span<const Vector3> measured_m) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

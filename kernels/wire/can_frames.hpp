@@ -31,6 +31,7 @@
 
 #include <cstdint>
 
+#include "kernels/nonblocking.hpp"
 #include "kernels/wire/can_frame.hpp"
 #include "kernels/wire/pose_sample.hpp"
 
@@ -79,6 +80,6 @@ struct CanPacking {
 // Adds one tool's frames, position first, since it is what a controller waits for. A tool number
 // beyond k_tools_max counts as one dropped frame.
 void add_pose_frames(const PoseSample& sample, const CanPacking& packing,
-                     CanFrames& frames) noexcept;
+                     CanFrames& frames) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <span>
 
+#include "kernels/nonblocking.hpp"
+
 namespace glint {
 
 inline constexpr std::uint8_t k_crc8_start = 0xFF;
@@ -19,15 +21,17 @@ inline constexpr std::uint16_t k_crc16_start = 0xFFFF;
 
 // The bare division: neither the start value nor the final inversion is applied, since profile 1
 // uses the first without either. crc8_j1850_step(0xFF, bytes) ^ 0xFF is the named CRC.
-[[nodiscard]] std::uint8_t crc8_j1850_step(std::uint8_t crc,
-                                           std::span<const std::uint8_t> bytes) noexcept;
-[[nodiscard]] std::uint8_t crc8_h2f_step(std::uint8_t crc,
-                                         std::span<const std::uint8_t> bytes) noexcept;
-[[nodiscard]] std::uint16_t crc16_ccitt_step(std::uint16_t crc,
-                                             std::span<const std::uint8_t> bytes) noexcept;
+[[nodiscard]] std::uint8_t crc8_j1850_step(
+    std::uint8_t crc, std::span<const std::uint8_t> bytes) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] std::uint8_t crc8_h2f_step(
+    std::uint8_t crc, std::span<const std::uint8_t> bytes) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] std::uint16_t crc16_ccitt_step(
+    std::uint16_t crc, std::span<const std::uint8_t> bytes) noexcept GLINT_NONBLOCKING;
 
-[[nodiscard]] std::uint8_t crc8_j1850(std::span<const std::uint8_t> bytes) noexcept;
-[[nodiscard]] std::uint8_t crc8_h2f(std::span<const std::uint8_t> bytes) noexcept;
-[[nodiscard]] std::uint16_t crc16_ccitt_false(std::span<const std::uint8_t> bytes) noexcept;
+[[nodiscard]] std::uint8_t crc8_j1850(std::span<const std::uint8_t> bytes) noexcept
+    GLINT_NONBLOCKING;
+[[nodiscard]] std::uint8_t crc8_h2f(std::span<const std::uint8_t> bytes) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] std::uint16_t crc16_ccitt_false(std::span<const std::uint8_t> bytes) noexcept
+    GLINT_NONBLOCKING;
 
 }  // namespace glint

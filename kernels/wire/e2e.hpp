@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <span>
 
+#include "kernels/nonblocking.hpp"
+
 namespace glint {
 
 // How profile 1 includes its 16-bit data identifier.
@@ -29,21 +31,23 @@ inline constexpr int k_p05_counters = 256;
 // Byte 0: CRC-8 J1850 without start value and inversion. Byte 1, bits 0..3: counter. Two bytes at
 // least, else nothing happens. A counter beyond 14 is taken modulo 15.
 void protect_p01(std::span<std::uint8_t> frame, std::uint16_t data_id, P01Mode mode,
-                 unsigned counter) noexcept;
+                 unsigned counter) noexcept GLINT_NONBLOCKING;
 [[nodiscard]] bool check_p01(std::span<const std::uint8_t> frame, std::uint16_t data_id,
-                             P01Mode mode) noexcept;
+                             P01Mode mode) noexcept GLINT_NONBLOCKING;
 
 // Byte 0: CRC-8H2F over bytes 1.. and then the list's entry at the counter. Byte 1, bits 0..3:
 // counter, modulo 16.
 using P02DataIds = std::array<std::uint8_t, k_p02_counters>;
 void protect_p02(std::span<std::uint8_t> frame, const P02DataIds& data_ids,
-                 unsigned counter) noexcept;
+                 unsigned counter) noexcept GLINT_NONBLOCKING;
 [[nodiscard]] bool check_p02(std::span<const std::uint8_t> frame,
-                             const P02DataIds& data_ids) noexcept;
+                             const P02DataIds& data_ids) noexcept GLINT_NONBLOCKING;
 
 // Bytes 0..1: CRC-16 CCITT-FALSE, little endian, over bytes 2.. and then the data identifier, low
 // byte first. Byte 2: counter, modulo 256. Three bytes at least, else nothing happens.
-void protect_p05(std::span<std::uint8_t> frame, std::uint16_t data_id, unsigned counter) noexcept;
-[[nodiscard]] bool check_p05(std::span<const std::uint8_t> frame, std::uint16_t data_id) noexcept;
+void protect_p05(std::span<std::uint8_t> frame, std::uint16_t data_id,
+                 unsigned counter) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] bool check_p05(std::span<const std::uint8_t> frame,
+                             std::uint16_t data_id) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 
+#include "kernels/nonblocking.hpp"
 #include "kernels/reason.hpp"
 #include "kernels/result.hpp"
 #include "kernels/wire/can_frame.hpp"
@@ -26,11 +27,13 @@ enum class CanNodeState : std::uint8_t {
 };
 
 // Identifier 0x700 + node, node 1..127 (taken modulo 128).
-[[nodiscard]] CanFrame heartbeat_frame(unsigned node, CanNodeState state) noexcept;
+[[nodiscard]] CanFrame heartbeat_frame(unsigned node,
+                                       CanNodeState state) noexcept GLINT_NONBLOCKING;
 
 // Identifier 0x80 + node. Error code FF00 + reason (0000: the error is over), error register 81
 // (generic, manufacturer's), then tool, track state, reason, registration state, 0.
-[[nodiscard]] CanFrame emergency_frame(unsigned node, const PoseSample& sample) noexcept;
+[[nodiscard]] CanFrame emergency_frame(unsigned node,
+                                       const PoseSample& sample) noexcept GLINT_NONBLOCKING;
 
 // An activation that was not in time. Identifier and error code as above; then in the place of the
 // tool the rate group (0 frame, 1 tick), of the state the kind (1 noticed ahead, 2 missed), the
@@ -57,12 +60,12 @@ struct TimeSync {
 // SYNC: the whole seconds of `unix_ns`, the time just before it is sent. The time must lie in
 // 1970..2106, as the field has 32 bits: else Reason::out_of_range.
 [[nodiscard]] Result<CanFrame> time_sync_frame(const TimeSync& sync, std::uint8_t counter,
-                                               std::int64_t unix_ns) noexcept;
+                                               std::int64_t unix_ns) noexcept GLINT_NONBLOCKING;
 
 // Follow-up: the time at which the SYNC went out. The field has two bits for whole seconds since
 // SYNC's: more than that, or a time before SYNC's seconds, is Reason::out_of_range.
-[[nodiscard]] Result<CanFrame> time_follow_up_frame(const TimeSync& sync, std::uint8_t counter,
-                                                    std::int64_t sync_unix_ns,
-                                                    std::int64_t sent_unix_ns) noexcept;
+[[nodiscard]] Result<CanFrame> time_follow_up_frame(
+    const TimeSync& sync, std::uint8_t counter, std::int64_t sync_unix_ns,
+    std::int64_t sent_unix_ns) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include "kernels/geometry.hpp"
+#include "kernels/nonblocking.hpp"
 
 namespace glint {
 
@@ -23,9 +24,11 @@ struct SmallestThree {
 };
 
 // Unit within 1e-3; the remaining length error is divided out.
-[[nodiscard]] SmallestThree to_smallest_three(const Quaternion& rotation) noexcept;
+[[nodiscard]] SmallestThree to_smallest_three(const Quaternion& rotation) noexcept
+    GLINT_NONBLOCKING;
 
 // Unit, whatever the integers are.
-[[nodiscard]] Quaternion from_smallest_three(const SmallestThree& packed) noexcept;
+[[nodiscard]] Quaternion from_smallest_three(const SmallestThree& packed) noexcept
+    GLINT_NONBLOCKING;
 
 }  // namespace glint
