@@ -1,6 +1,7 @@
 #include "platform/rt/node_trace.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 
 #include <array>
 #include <cstdlib>
@@ -68,7 +69,9 @@ TEST(TraceWriter, WritesItsHeaderAndEverySpanOfEveryRing) {
 TEST(PageFaults, OfAnArmedThreadAreCounted) {
   constexpr std::size_t k_pages = 64;
   const std::uint64_t before = PageFaultCounter::count();
-  void* const fresh = std::aligned_alloc(4096, k_pages * 4096);
+  void* const fresh =
+      mmap(nullptr, k_pages * 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(fresh, MAP_FAILED);
   PageFaultCounter::arm();
   for (std::size_t i = 0; i < k_pages; ++i) static_cast<volatile char*>(fresh)[i * 4096] = 1;
   PageFaultCounter::disarm();
@@ -78,7 +81,7 @@ TEST(PageFaults, OfAnArmedThreadAreCounted) {
   for (std::size_t i = 0; i < k_pages; ++i) static_cast<volatile char*>(fresh)[i * 4096] = 2;
   PageFaultCounter::disarm();
   EXPECT_LT(PageFaultCounter::count() - before - touched, touched);
-  std::free(fresh);
+  munmap(fresh, k_pages * 4096);
 }
 
 }  // namespace
