@@ -44,6 +44,7 @@ int replay_recording(const ReplayArguments& arguments) {
                               {"frames", result.frames},
                               {"ticks", result.ticks},
                               {"workers", arguments.workers},
+                              {"overruns", result.overruns},
                               {"records", result.records},
                               {"records_recorded", result.records_recorded},
                               {"records_differing", result.mismatches},

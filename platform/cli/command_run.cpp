@@ -4,12 +4,15 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "platform/cells/cell.hpp"
 #include "platform/cli/commands.hpp"
 #include "platform/cli/output_file.hpp"
+#include "platform/cli/planned_run.hpp"
 #include "platform/cli/progress.hpp"
 #include "platform/cli/run_report.hpp"
+#include "platform/session/injection_text.hpp"
 #include "platform/session/session.hpp"
 
 namespace glint {
@@ -25,6 +28,9 @@ struct RunArguments {
   bool as_fast_as_can_be = false;
   bool no_dds = false;
   std::string method = "glint";
+  std::string board, plan;
+  std::vector<std::string> inject;
+  bool trace = false;
 };
 
 Cell cell_of(const RunArguments& arguments) {
@@ -44,9 +50,14 @@ Cell cell_of(const RunArguments& arguments) {
 
 int run(const RunArguments& arguments) {
   const Cell cell = cell_of(arguments);
+  SessionOptions options;
+  options.plan = planned_run(cell, arguments.board, arguments.plan);
+  for (const std::string& text : arguments.inject) {
+    options.injections.push_back(injection_of(text));
+  }
+  options.trace = arguments.trace;
   make_folder(arguments.out);
   Progress progress("tracking");
-  SessionOptions options;
   options.out = arguments.out;
   options.progress = [&](double done_s, double all_s) { progress.show(done_s, all_s); };
   options.stop = &g_stop;
@@ -54,7 +65,7 @@ int run(const RunArguments& arguments) {
   std::signal(SIGTERM, [](int) { g_stop = true; });
   SessionResult result = run_session(cell, options);
   draw_plots(arguments.out, result);
-  const nlohmann::ordered_json summary = summary_of(cell, result);
+  const nlohmann::ordered_json summary = summary_of(cell, options.plan, result);
   print_table(summary, result);
   write_json(arguments.json, summary);
   return sums_hold(result) ? 0 : 1;
@@ -83,6 +94,13 @@ void add_run(CLI::App& app, int& exit_code) {
       ->add_option("--method", arguments->method,
                    "glint, or seed: the method as published, the baseline")
       ->check(CLI::IsMember({"glint", "seed"}));
+  command->add_option("--board", arguments->board, "costs: a built-in board or a board file");
+  command->add_option("--plan", arguments->plan, "who runs what: of `glint budget schedule`");
+  command
+      ->add_option("--inject", arguments->inject,
+                   "a delay: node=FindBlobs,delay_us=200,frame=512 or node=..,tick=N; several")
+      ->allow_extra_args(false);
+  command->add_flag("--trace", arguments->trace, "when every node ran: trace.spans in --out");
   command->add_flag("--no-dds", arguments->no_dds, "send nothing over DDS");
   command->add_flag("--fast", arguments->as_fast_as_can_be,
                     "as fast as can be instead of in real time: no DDS, the same bytes every time");

@@ -32,6 +32,40 @@ std::string fixed(double value, int digits, const char* unit) {
   return text;
 }
 
+bool best_effort(const SessionResult& result) {
+  return !result.refused.empty() || !result.machine.spoils.empty();
+}
+
+ordered_json budget_of(const RunPlan& plan, const SessionResult& result) {
+  const OverrunCounts &frame = result.frame_overruns, &tick = result.tick_overruns;
+  ordered_json by_policy;
+  for (std::size_t p = 0; p < frame.by_policy.size(); ++p) {
+    by_policy[std::string(name_of(static_cast<graph::OverrunPolicy>(p)))] =
+        frame.by_policy[p] + tick.by_policy[p];
+  }
+  ordered_json bound;
+  const auto add_bound = [&](const char* name, double us) {
+    if (us > 0) bound[name] = us;
+  };
+  add_bound("frame", plan.frame_bound_us);
+  add_bound("tick", plan.tick_bound_us);
+  add_bound("frame_to_can", plan.frame_to_can_bound_us);
+  return {{"board", plan.board},
+          {"plan", plan.plan_file},
+          {"bound_us", bound.is_null() ? ordered_json::object() : bound},
+          {"overruns",
+           {{"frame", frame.total()},
+            {"tick", tick.total()},
+            {"will_miss", frame.will_miss + tick.will_miss},
+            {"missed", frame.missed + tick.missed},
+            {"by_policy", by_policy}}},
+          {"page_faults_after_start", result.page_faults_after_start},
+          {"trace_spans", result.trace_spans},
+          {"trace_dropped", result.trace_dropped},
+          {"preempt_rt", result.machine.preempt_rt},
+          {"best_effort", result.machine.spoils}};
+}
+
 void latency_row(const char* name, const ordered_json& item) {
   char text[128];
   std::snprintf(text, sizeof text, "p50 %.0f  p99 %.0f  p99.9 %.0f  max %.0f us",
@@ -42,7 +76,7 @@ void latency_row(const char* name, const ordered_json& item) {
 
 }  // namespace
 
-ordered_json summary_of(const Cell& cell, const SessionResult& result) {
+ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResult& result) {
   const Accuracy& accuracy = result.accuracy;
   ordered_json frame_to_can = as_json(figures_of_totals(result.latencies));
   frame_to_can["computing"] = as_json(figures_of(result.latencies, &FrameToCan::computing));
@@ -89,8 +123,9 @@ ordered_json summary_of(const Cell& cell, const SessionResult& result) {
                        {"recording_reason", result.recording.reason},
                        {"recording_bytes", result.recording.bytes},
                        {"output_sha256", result.output_sha256},
-                       {"best_effort", !result.refused.empty()},
-                       {"refused", result.refused}};
+                       {"best_effort", best_effort(result)},
+                       {"refused", result.refused},
+                       {"budget", budget_of(plan, result)}};
   return summary;
 }
 
@@ -105,7 +140,7 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
   const Accuracy& accuracy = result.accuracy;
   std::printf("\n%s, %.0f s%s\n", summary.at("camera").get<std::string>().c_str(),
               result.duration_s,
-              result.refused.empty() ? "" : "  (best effort: real-time rights were refused)");
+              best_effort(result) ? "  (best effort: see what this machine spoils)" : "");
   row("frames",
       std::to_string(result.frames) + " (" + std::to_string(accuracy.refused) + " refused)");
   row("tracked", fixed(100 * accuracy.tracked_fraction(), 2, "%") + " of " +
@@ -118,11 +153,23 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
   latency_row("  computing", latency.at("computing"));
   latency_row("  sampling", latency.at("sampling"));
   latency_row("  sending", latency.at("sending"));
+  const ordered_json& budget = summary.at("budget");
+  for (const auto& [name, us] : budget.at("bound_us").items()) {
+    row(name == "frame_to_can" ? "  bound, frame to CAN" : "  bound, group",
+        fixed(us.get<double>(), 0, "us") + " (" + name + ")");
+  }
+  const auto overruns = [](const OverrunCounts& counts) {
+    return std::to_string(counts.missed) + " missed, " + std::to_string(counts.will_miss) +
+           " noticed ahead";
+  };
+  row("overruns, frame", overruns(result.frame_overruns));
+  row("overruns, tick", overruns(result.tick_overruns));
   row("ticks", std::to_string(result.ticks) + " (" + std::to_string(result.ticks_late) + " late, " +
                    std::to_string(result.ticks_skipped) + " skipped)");
   row("heap allocations after start", result.heap_counted
                                           ? std::to_string(result.heap_allocations_after_start)
                                           : "not counted (only in a live run)");
+  row("page faults after start", std::to_string(result.page_faults_after_start));
   row("CAN frames", std::to_string(result.can_frames) + " (bus load " +
                         fixed(100 * result.can_bus_load, 1, "%, computed)"));
   row("DDS", std::to_string(result.dds.written) + " written, " +
@@ -133,6 +180,7 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
   for (const std::string& file : result.files) row("written", file);
   if (!result.recording.reason.empty()) row("recording", result.recording.reason);
   for (const std::string& refused : result.refused) row("refused", refused);
+  for (const std::string& line : result.machine.spoils) row("this machine", line);
 }
 
 void draw_plots(const std::string& folder, SessionResult& result) {

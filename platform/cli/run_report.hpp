@@ -9,7 +9,8 @@
 
 namespace glint {
 
-[[nodiscard]] nlohmann::ordered_json summary_of(const Cell& cell, const SessionResult& result);
+[[nodiscard]] nlohmann::ordered_json summary_of(const Cell& cell, const RunPlan& plan,
+                                                const SessionResult& result);
 
 void print_table(const nlohmann::ordered_json& summary, const SessionResult& result);
 

@@ -1,0 +1,43 @@
+#include "platform/cli/planned_run.hpp"
+
+#include "platform/budget/check.hpp"
+#include "platform/budget/expected_board.hpp"
+#include "platform/budget/plan_file.hpp"
+#include "platform/budget/task_model_of.hpp"
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+// 0 where there is none.
+double microseconds_of(std::optional<std::int64_t> ns) {
+  return static_cast<double>(ns.value_or(0)) * 1e-3;
+}
+
+}  // namespace
+
+RunPlan planned_run(const Cell& cell, const std::string& board_name, const std::string& plan_file) {
+  if (board_name.empty() && plan_file.empty()) return plan_by_rule(cell);
+  if (board_name.empty() || plan_file.empty()) {
+    throw InputError("--board \"" + board_name + "\" and --plan \"" + plan_file +
+                     "\": expected both, for a plan holds on one board's costs");
+  }
+  const Board board = load_board(board_name, expected_board(), BoardUse::run_here);
+  CheckInput input{cell, board, {}, limits_of(cell), {}};
+  TaskModel model = task_model_of(cell, board.table(), board.system, input.limits);
+  input.plan = load_plan(plan_file, model, graphs_signature());
+  model.cores = input.plan.cores;
+  if (const auto faults = check_plan(input.plan, model); !faults.empty()) {
+    throw InputError(plan_file + ": " + faults.front());
+  }
+  RunPlan plan = plan_of(input.plan, model, plan_file);
+  const CheckResult result = check(input, {});
+  for (const Chain& chain : result.assessment.chains) {
+    if (chain.name == "frame_to_can") plan.frame_to_can_bound_us = microseconds_of(chain.total_ns);
+  }
+  plan.frame_bound_us = microseconds_of(result.assessment.groups.at(0).response_ns);
+  plan.tick_bound_us = microseconds_of(result.assessment.groups.at(1).response_ns);
+  return plan;
+}
+
+}  // namespace glint
