@@ -15,7 +15,7 @@ inline constexpr int k_reflectivity_bytes_max = 2;  // of a pixel
 // What all blobs share, in parts of a blob. Most take less, and a larger one what they leave.
 inline constexpr int k_centroid_pixels_a_blob = 320;   // of the box a centroid is weighed in
 inline constexpr int k_range_pixels_a_blob = 128;      // looked at for depth
-inline constexpr int k_range_samples_a_blob = 24;      // ranges that are averaged
+inline constexpr int k_range_samples_a_blob = 16;      // ranges that are averaged
 inline constexpr int k_labelings_max = 8;              // kept for each tool, best first
 inline constexpr int k_lens_steps_max = 40;            // of a search in a lens table, a projection
 inline constexpr int k_pair_tests_max = 16'384;        // of a distance against a tool's, a tool

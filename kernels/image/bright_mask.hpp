@@ -14,6 +14,10 @@
 #include <cstdint>
 #include <cstring>
 
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
 namespace glint {
 
 static_assert(std::endian::native == std::endian::little);
@@ -58,6 +62,30 @@ std::uint64_t gathered(std::uint64_t lanes) {
   } else {
     return ((lanes & 0x0001000100010001u) * 0x0001000200040008u) >> 48 & 0xF;
   }
+}
+
+// A block's lanes to a bit each. x86-64 has an instruction for it.
+template <class Pixel>
+std::uint64_t gathered_block(const typename LanesOf<Pixel>::Type (&found)[4]) {
+#ifdef __SSE2__
+  const auto bits = [](__m128i bytes) {
+    return static_cast<std::uint64_t>(static_cast<unsigned>(_mm_movemask_epi8(bytes)));
+  };
+  const auto lanes = [&](int i) { return reinterpret_cast<__m128i>(found[i]); };
+  if constexpr (sizeof(Pixel) == 1) {
+    return bits(lanes(0)) | bits(lanes(1)) << 16 | bits(lanes(2)) << 32 | bits(lanes(3)) << 48;
+  } else {
+    return bits(_mm_packs_epi16(lanes(0), lanes(1))) | bits(_mm_packs_epi16(lanes(2), lanes(3)))
+                                                           << 16;
+  }
+#else
+  constexpr int lanes = 16 / static_cast<int>(sizeof(Pixel));
+  std::uint64_t words[8];
+  std::memcpy(words, found, sizeof words);
+  std::uint64_t mask = 0;
+  for (int i = 0; i < 8; ++i) mask |= gathered<Pixel>(words[i]) << (i * lanes / 2);
+  return mask;
+#endif
 }
 
 // A block's pixels: those at x, or further left where the row ends sooner. A row narrower than a
@@ -105,11 +133,7 @@ std::uint64_t bright_mask(const Pixel* row, int width, int x, int x1, Pixel thre
   typename detail::LanesOf<Pixel>::Type found[4];
   for (int i = 0; i < 4; ++i) found[i] = detail::above(at.pixels + i * lanes, threshold);
   if (!detail::any_set(found[0] | found[1] | found[2] | found[3])) return 0;
-  std::uint64_t words[8];
-  std::memcpy(words, found, sizeof words);
-  std::uint64_t mask = 0;
-  for (int i = 0; i < 8; ++i) mask |= detail::gathered<Pixel>(words[i]) << (i * lanes / 2);
-  mask >>= at.known;
+  std::uint64_t mask = detail::gathered_block<Pixel>(found) >> at.known;
   return x1 - x < 64 ? mask & ((std::uint64_t{1} << (x1 - x)) - 1) : mask;
 }
 

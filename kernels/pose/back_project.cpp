@@ -27,15 +27,37 @@ double front_of(const DepthSample& sample, double wrapped_m, double radius_m) {
          (radius_m - std::sqrt(radius_m * radius_m - beside) - 0.5 * beside / (range + radius_m));
 }
 
-// wrapped_m: what the sensor left out of every range.
-double front_of_all(const DepthSamples& samples, double wrapped_m, double radius_m, double unit_m) {
-  RangeValues fronts;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(samples.count); ++i) {
-    fronts[i] = front_of(samples.items[i], wrapped_m, radius_m);
+// The mean of the samples' fronts; of those again that count, with what the sensor left out of
+// every range: a pixel's distance beside the middle grows with its range.
+class FrontMean {
+ public:
+  FrontMean(const DepthSamples& samples, double radius_m, double unit_m)
+      : samples_(samples), radius_m_(radius_m) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(samples.count); ++i) {
+      fronts_[i] = front_of(samples.items[i], 0, radius_m);
+    }
+    // Never narrower than one step of the sensor's counting.
+    found_ = robust_mean(fronts_, samples.count, unit_m);
   }
-  // Never narrower than one step of the sensor's counting.
-  return robust_mean(fronts, samples.count, unit_m);
-}
+  [[nodiscard]] double value() const { return found_.mean; }
+  [[nodiscard]] double unwrapped(double wrapped_m) const {
+    double sum = 0;
+    int inliers = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(samples_.count); ++i) {
+      const bool near = found_.counts(fronts_[i]);
+      const double front = front_of(samples_.items[i], wrapped_m, radius_m_);
+      sum += near ? front : 0.0;
+      inliers += near ? 1 : 0;
+    }
+    return inliers > 0 ? sum / inliers : found_.mean + wrapped_m;
+  }
+
+ private:
+  const DepthSamples& samples_;
+  double radius_m_;
+  RangeValues fronts_;
+  RobustMean found_;
+};
 
 // By what factor the blob's radius at this range misses the nominal one; 1 fits best.
 double size_misfit(const DepthView& view, double radius_m, double front_m) {
@@ -74,11 +96,10 @@ BackProjectWork measure_range(const DepthView& view, const NominalMarker& nomina
   }
   work.samples = samples.count;
   const double curved_m = nominal.shape == MarkerShape::sphere ? nominal.radius_m : 0;
-  out.surface_range_m = front_of_all(samples, 0, curved_m, view.depth.unit_m);
+  const FrontMean front(samples, curved_m, view.depth.unit_m);
+  out.surface_range_m = front.value();
   if (has_wrapped(view, nominal.radius_m, out.surface_range_m)) {
-    // A pixel's distance beside the middle grows with its range.
-    out.surface_range_m =
-        front_of_all(samples, view.depth.wrap_range_m, curved_m, view.depth.unit_m);
+    out.surface_range_m = front.unwrapped(view.depth.wrap_range_m);
     out.flags |= k_marker_wrapped;
     work.unwrapped = samples.count;
   }

@@ -7,9 +7,10 @@
 //           sphere r - sqrt(r^2 - s^2) further away. Centre saturated or without depth: the same
 //           over the ring between the inner half and the rim. z depth becomes radial by each
 //           pixel's own ray. A range that has wrapped is told by the blob's size.
-// Cost:     a ray for each blob, and what depth_samples.hpp and robust_mean.hpp say, the mean twice
-//           if wrapped. All blobs together look at no more pixels and average no more samples than
-//           `limits` says; each may have its share, and what the others leave.
+// Cost:     a ray for each blob, and what depth_samples.hpp and robust_mean.hpp say, its
+//           inliers averaged twice if wrapped. All blobs together look at no more pixels and
+//           average no more samples than `limits` says; each may have its share, and what the
+//           others leave.
 // Worst:    as many large blobs as there may be, their middles saturated, their ranges wrapped, at
 //           the rim of a wide lens.
 // Accuracy: noise of one pixel / sqrt(samples); bias on a sphere of the nominal radius 0.1 mm, by
@@ -21,6 +22,7 @@
 
 #include "kernels/image/blob.hpp"
 #include "kernels/image/frame.hpp"
+#include "kernels/nonblocking.hpp"
 #include "kernels/pose/camera_model.hpp"
 #include "kernels/pose/depth_settings.hpp"
 #include "kernels/pose/local_rays.hpp"
@@ -49,7 +51,7 @@ struct MarkerWorkLimits {
 [[nodiscard]] bool measure_marker(const Frame& frame, const Blob& blob, std::uint16_t blob_index,
                                   const CameraModel& camera, const DepthSettings& depth,
                                   const NominalMarker& nominal, Marker& out,
-                                  const MarkerWorkLimits& most = {}) noexcept;
+                                  const MarkerWorkLimits& most = {}) noexcept GLINT_NONBLOCKING;
 
 // How often the loops ran.
 struct BackProjectWork {
@@ -64,7 +66,7 @@ struct BackProjectWork {
 // limits.blobs are not looked at.
 BackProjectWork back_project(const Frame& frame, const Blobs& blobs, const CameraModel& camera,
                              const DepthSettings& depth, const NominalMarker& nominal, Markers& out,
-                             const Limits& limits = {}) noexcept;
+                             const Limits& limits = {}) noexcept GLINT_NONBLOCKING;
 
 // What back_project may do at most.
 [[nodiscard]] constexpr BackProjectWork back_project_work_max(const Limits& limits) {
@@ -76,6 +78,6 @@ BackProjectWork back_project(const Frame& frame, const Blobs& blobs, const Camer
 // Pixels that a sphere (or a disc that faces the camera) of this radius covers around a pixel with
 // its centre at this range (metres, radial): its solid angle over the pixel's. 0: no ray there.
 [[nodiscard]] double expected_area_px(const CameraModel& camera, const Vector2& pixel,
-                                      double radius_m, double range_m) noexcept;
+                                      double radius_m, double range_m) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -82,10 +82,23 @@ void for_each_within(const Square& square, const Vector2& middle, double inner, 
   }
 }
 
-// Of so many candidates every how many-th is taken, so that all round is heard.
-int every(double candidates, int most) {
-  return 1 + static_cast<int>(candidates) / std::max(most, 1);
-}
+// Takes so many of the candidates that come, evenly spread, so that all round is heard.
+class Thinning {
+ public:
+  Thinning(double candidates, int most)
+      : candidates_(std::max(static_cast<int>(candidates), 1)), most_(std::max(most, 0)) {}
+  // Source: Bresenham, IBM Systems Journal 4 (1965): the line's error term.
+  [[nodiscard]] bool take_next() {
+    due_ += std::min(most_, candidates_);
+    if (due_ < candidates_) return false;
+    due_ -= candidates_;
+    return true;
+  }
+
+ private:
+  int candidates_, most_;
+  int due_ = 0;
+};
 
 }  // namespace
 
@@ -94,14 +107,13 @@ void inner_samples(const DepthView& view, double radius_px, int most_samples,
   // A pixel's centre is at most 0.71 px from any point.
   const double outer = std::clamp(k_inner_part * radius_px, 0.72, k_inner_radius_max_px);
   const int most = std::min(most_samples, k_inner_samples_max);
-  const int nth = every(k_pi * outer * outer, most);
+  Thinning thinning(k_pi * outer * outer, most);
   const Beside beside(view.rays);
   const Square square = square_around(view, outer);
   out.count = out.tried = 0;
   out.pixels = square.pixels();
-  int seen = 0;
   for_each_within(square, view.blob.centroid_px, 0, outer, [&](int x, int y) {
-    if (seen++ % nth != 0 || out.tried >= most) return;
+    if (!thinning.take_next() || out.tried >= most) return;
     ++out.tried;
     take(view, beside, x, y, out);
   });
@@ -115,14 +127,13 @@ void ring_samples(const DepthView& view, double radius_px, int most_samples, int
   Square square = square_around(view, outer);
   while (square.pixels() > most_pixels && square.step < 2 * k_scan_radius_max_px) ++square.step;
   const double area = k_pi * (outer * outer - inner * inner) / (square.step * square.step);
-  const int nth = every(area, most);
+  Thinning thinning(area, most);
   const Beside beside(view.rays);
   out.count = out.tried = 0;
   out.pixels = square.pixels();
-  int seen = 0;
   for_each_within(square, view.blob.centroid_px, inner, outer, [&](int x, int y) {
     if (reflectivity_at(view.frame, x, y) < view.blob.peak / 4) return;  // mostly background
-    if (seen++ % nth != 0 || out.count >= most) return;
+    if (!thinning.take_next() || out.count >= most) return;
     ++out.tried;
     take(view, beside, x, y, out);
   });

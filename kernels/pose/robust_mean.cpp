@@ -32,21 +32,24 @@ double median_deviation(const RangeValues& sorted, int count, double median) {
 
 }  // namespace
 
-double robust_mean(RangeValues& values, int count, double gate_least) noexcept {
-  RangeValues spare;
-  merge_sort(values, spare, count);
-  const double median = middle_of(values, count);
-  const double gate =
-      std::max(k_inlier_deviations * median_deviation(values, count, median), gate_least);
+RobustMean robust_mean(const RangeValues& values, int count, double gate_least) noexcept {
+  RangeValues sorted, spare;
+  std::copy_n(values.begin(), count, sorted.begin());
+  merge_sort(sorted, spare, count);
+  RobustMean out;
+  out.median = middle_of(sorted, count);
+  out.gate =
+      std::max(k_inlier_deviations * median_deviation(sorted, count, out.median), gate_least);
   double sum = 0;
   int inliers = 0;
   for (int i = 0; i < count; ++i) {
-    const double value = values[static_cast<std::size_t>(i)];
-    const bool near = value - median <= gate && median - value <= gate;
+    const double value = sorted[static_cast<std::size_t>(i)];
+    const bool near = out.counts(value);
     sum += near ? value : 0.0;
     inliers += near ? 1 : 0;
   }
-  return inliers > 0 ? sum / inliers : median;
+  out.mean = inliers > 0 ? sum / inliers : out.median;
+  return out;
 }
 
 }  // namespace glint

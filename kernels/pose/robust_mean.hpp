@@ -10,13 +10,24 @@
 
 #include <array>
 
+#include "kernels/nonblocking.hpp"
+
 namespace glint {
 
 inline constexpr int k_range_values_max = 64;
 using RangeValues = std::array<double, k_range_values_max>;
 
-// Of the first `count` values, 1..k_range_values_max; sorts them. The gate is never narrower than
-// gate_least.
-[[nodiscard]] double robust_mean(RangeValues& values, int count, double gate_least) noexcept;
+struct RobustMean {
+  double mean = 0;
+  double median = 0;
+  double gate = 0;  // a value no further from the median counts
+  [[nodiscard]] bool counts(double value) const {
+    return value - median <= gate && median - value <= gate;
+  }
+};
+
+// Of the first `count` values, 1..k_range_values_max. The gate is never narrower than gate_least.
+[[nodiscard]] RobustMean robust_mean(const RangeValues& values, int count,
+                                     double gate_least) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint
