@@ -9,6 +9,7 @@
 #include "platform/budget/expected_board.hpp"
 #include "platform/budget/task_model_of.hpp"
 #include "platform/input_error.hpp"
+#include "schedules/sensitivity.hpp"
 #include "schedules/synthesis.hpp"
 
 namespace glint {
@@ -89,11 +90,12 @@ TEST(Check, BreakEvenClockHoldsAndABitLessDoesNot) {
 }
 
 TEST(Check, ScalesOneKernelUpToItsSlackAndNoFurther) {
-  const Fixture fixture;
+  const Fixture fixture(5.0);  // slow enough that FindBlobs has an end to its slack
   const CheckResult result = check(fixture.input(), {});
   for (const KernelSlack& slack : result.kernels) {
     if (slack.name != "FindBlobs") continue;
     ASSERT_TRUE(slack.all_copies);
+    ASSERT_LT(*slack.all_copies, k_factor_max);
     CheckOptions options;
     options.scale["FindBlobs"] = *slack.all_copies;
     EXPECT_TRUE(assess(question_of(fixture.input(), options)).holds());
