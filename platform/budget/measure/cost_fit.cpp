@@ -9,7 +9,9 @@ namespace glint {
 namespace {
 
 // Upwards to what a board file keeps, so that writing one loses nothing that was covered.
-double thousandths_up(double cost) { return std::ceil(cost * 1000 - 1e-6) / 1000; }
+double thousandths_up(double cost) {
+  return cost > 0 ? std::ceil(cost * 1000 - 1e-6) / 1000 : 0;  // never a negative zero
+}
 
 }  // namespace
 
