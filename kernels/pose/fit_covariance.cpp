@@ -1,6 +1,5 @@
 #include "kernels/pose/fit_covariance.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "kernels/pose/rigid_fit.hpp"
@@ -24,6 +23,32 @@ Matrix6 moved(const Matrix6& covariance, const Vector3& offset) {
   Matrix6 j = Matrix6::Identity();
   j.topRows<3>() = point_by_pose(offset);
   return j * covariance * j.transpose();
+}
+
+// The inverse of a symmetric positive matrix; not finite where it is not positive. By hand, for
+// Eigen's way to it leads past a size of cache blocks behind a lock and past a heap. Golub and Van
+// Loan 2013, algorithm 4.2.1 and equations (3.1.2), (3.1.4).
+Matrix6 inverse_by_cholesky(const Matrix6& matrix) {
+  Matrix6 lower = Matrix6::Zero();
+  for (int c = 0; c < 6; ++c) {
+    for (int r = c; r < 6; ++r) {
+      double rest = matrix(r, c);
+      for (int k = 0; k < c; ++k) rest -= lower(r, k) * lower(c, k);
+      lower(r, c) = r == c ? std::sqrt(rest) : rest / lower(c, c);
+    }
+  }
+  Matrix6 inverse = Matrix6::Identity();
+  for (int c = 0; c < 6; ++c) {
+    for (int r = 0; r < 6; ++r) {
+      for (int k = 0; k < r; ++k) inverse(r, c) -= lower(r, k) * inverse(k, c);
+      inverse(r, c) /= lower(r, r);
+    }
+    for (int r = 5; r >= 0; --r) {
+      for (int k = r + 1; k < 6; ++k) inverse(r, c) -= lower(k, r) * inverse(k, c);
+      inverse(r, c) /= lower(r, r);
+    }
+  }
+  return inverse;
 }
 
 }  // namespace
@@ -54,11 +79,7 @@ Result<Matrix6> fit_covariance(std::span<const Vector3> points_m,
     normal += j.transpose() * j;
     spread += j.transpose() * covariances_m2[i] * j;
   }
-  // Column by column: for a whole matrix Eigen would size blocks for the processor's caches, which
-  // it asks for behind a lock.
-  const Eigen::LLT<Matrix6> factor(normal);
-  Matrix6 inverse;
-  for (int c = 0; c < 6; ++c) inverse.col(c) = factor.solve(Matrix6::Identity().col(c));
+  const Matrix6 inverse = inverse_by_cholesky(normal);
   const Matrix6 about_mean = inverse * spread * inverse;
   const Matrix6 about_reference = moved(about_mean, reference_m - mean);
   if (!std::isfinite(about_reference.sum())) {
