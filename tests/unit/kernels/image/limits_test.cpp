@@ -76,7 +76,7 @@ TEST(ImageLimits, TurnTooManyRoisIntoTheWholeFrame) {
 // Every blob of its share has the same centroid as without a limit; larger ones the plain mean.
 TEST(ImageLimits, LeaveSmallBlobsTheirCentroidsWhenLargeOnesComeFirst) {
   Picture p(512, 512, 100);
-  for (int i = 0; i < 8; ++i) test::add_disc(p, 60.3 * i + 40, 40.2, 25, 9000);
+  for (int i = 0; i < 8; ++i) test::add_disc(p, 60.3 * i + 40, 40.2, 12, 9000);
   for (int i = 0; i < 8; ++i) test::add_disc(p, 60.3 * i + 40, 200.2, 5, 9000);
   Limits limits;
   limits.blobs = 16;
