@@ -3,12 +3,12 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <thread>
 
 #include "glint_build_signature.hpp"
 #include "platform/budget/expected_board.hpp"
 #include "platform/budget/measure/measure_result.hpp"
 #include "platform/cli/budget_commands.hpp"
+#include "platform/cli/measure_request.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/progress.hpp"
 #include "platform/input_error.hpp"
@@ -24,39 +24,12 @@ struct MeasureCommand {
   int jobs = 0;
 };
 
-#if defined(__aarch64__)
-constexpr const char* k_own_arch = "arm64";
-#else
-constexpr const char* k_own_arch = "x86-64";
-#endif
-
-std::string own_folder() {
-  return std::filesystem::read_symlink("/proc/self/exe").parent_path().string();
-}
-
 MeasureRequest request_of(const MeasureCommand& command) {
-  MeasureRequest request;
-  const bool own = command.arch == k_own_arch;
-  const std::string beside = own_folder();
-  request.count_instructions = command.count == "instructions";
-  if (!request.count_instructions && !own) {
-    throw InputError("--count is time and --arch is " + command.arch + "; expected --arch " +
-                     k_own_arch + ": an emulator's time says nothing");
-  }
-  request.program = !command.program.empty() ? command.program
-                    : own                    ? beside + "/glint_measure"
-                          : beside + "/../build-" + command.arch + "/glint_measure";
-  request.program = std::filesystem::absolute(request.program).lexically_normal().string();
-  if (request.count_instructions) {
-    request.emulator = command.arch == "arm64" ? "qemu-aarch64" : "qemu-x86_64";
-    request.cpu_model = command.arch == "arm64" ? "cortex-a72" : "qemu64";
-    request.plugin = beside + "/glint_count_instructions.so";
-  }
+  MeasureRequest request = measure_request(
+      {"glint_measure", command.program, command.count, command.arch, command.jobs});
   request.kernel = command.kernel;
   request.cache = command.cache;
   request.inputs = command.inputs;
-  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  request.jobs = !request.count_instructions ? 1 : command.jobs > 0 ? command.jobs : cores;
   return request;
 }
 

@@ -7,6 +7,7 @@ void add_budget(CLI::App& app, int& exit_code) {
   CLI::App* budget = app.add_subcommand("budget", "how late an output can be, before it runs");
   budget->require_subcommand(1);
   add_budget_measure(*budget, exit_code);
+  add_budget_curve(*budget, exit_code);
   add_budget_schedule(*budget, exit_code);
   add_budget_check(*budget, exit_code);
   add_budget_report(*budget, exit_code);

@@ -14,7 +14,7 @@ inline TaskGroup random_group(std::mt19937_64& random, int nodes, int edge_perce
   group.name = "random";
   for (int n = 0; n < nodes; ++n) {
     TaskNode node;
-    node.name = "N" + std::to_string(n);
+    node.name = std::string("N").append(std::to_string(n));
     node.bound_ns = 1 + static_cast<std::int64_t>(random() % bound_max);
     for (int before = 0; before < n; ++before) {
       if (static_cast<int>(random() % 100) < edge_percent) node.after.push_back(before);

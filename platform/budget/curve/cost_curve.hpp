@@ -1,0 +1,28 @@
+// What a frame costs against the number of tools and strays, beside its bound.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "platform/budget/board_file.hpp"
+#include "platform/budget/curve/crowd_point.hpp"
+#include "platform/budget/measure/observations.hpp"
+
+namespace glint {
+
+// In the board's unit: instructions or nanoseconds.
+struct CurveRow {
+  CrowdPoint point;
+  std::size_t frames = 0;
+  double median = 0, greatest = 0;
+  double bound = 0;  // of the frame group for this point's cell: all nodes at their maxima
+  [[nodiscard]] bool holds() const { return greatest <= bound; }
+};
+
+[[nodiscard]] std::vector<CurveRow> cost_curve(const Observations& seen, const Board& board);
+
+// Two panels' worth of lines as SVG text: cost against strays, and against tools.
+[[nodiscard]] std::string strays_plot(const std::vector<CurveRow>& rows, const std::string& unit);
+[[nodiscard]] std::string tools_plot(const std::vector<CurveRow>& rows, const std::string& unit);
+
+}  // namespace glint

@@ -1,0 +1,14 @@
+// What glint_measure_crowd measures: the frame group at every point of the curve.
+#include "platform/budget/curve/crowd_kernel.hpp"
+
+namespace glint {
+
+std::vector<std::unique_ptr<MeasuredKernel>> measured_kernels() {
+  std::vector<std::unique_ptr<MeasuredKernel>> kernels;
+  for (const CrowdPoint& point : crowd_points()) {
+    kernels.push_back(std::make_unique<CrowdKernel>(point));
+  }
+  return kernels;
+}
+
+}  // namespace glint

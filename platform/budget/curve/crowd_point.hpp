@@ -1,0 +1,26 @@
+// One point of the cost curve: so many tools and so many strays in a whole AHAT frame.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "platform/cells/cell.hpp"
+
+namespace glint {
+
+struct CrowdPoint {
+  int tools = 1;
+  int strays = 0;
+  [[nodiscard]] std::string name() const {
+    return std::to_string(tools) + "_tools_" + std::to_string(strays) + "_strays";
+  }
+};
+
+// Along both axes through the usual cell (5 tools, 20 strays), and the two far corners.
+[[nodiscard]] std::vector<CrowdPoint> crowd_points();
+
+// The default cell with these tools. Up to five tools it has the default's 64 blobs; with more it
+// takes the most there are, for 16 tools alone have 80 markers.
+[[nodiscard]] Cell crowd_cell(int tools);
+
+}  // namespace glint

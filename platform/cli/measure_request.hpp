@@ -1,0 +1,27 @@
+// Which measuring program is run, and by what: shared by the commands that measure.
+#pragma once
+
+#include <string>
+
+#include "platform/budget/measure/observations.hpp"
+
+namespace glint {
+
+#if defined(__aarch64__)
+inline constexpr const char* k_own_arch = "arm64";
+#else
+inline constexpr const char* k_own_arch = "x86-64";
+#endif
+
+struct MeasureTarget {
+  std::string program = "glint_measure";  // beside this one, or in the other build's folder
+  std::string program_file;               // overrides where it is looked for
+  std::string count = "instructions";     // or time
+  std::string arch = k_own_arch;
+  int jobs = 0;  // counted at a time; 0: one a core
+};
+
+// Throws InputError where an emulator would have to tell the time.
+[[nodiscard]] MeasureRequest measure_request(const MeasureTarget& target);
+
+}  // namespace glint
