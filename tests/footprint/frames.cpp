@@ -38,6 +38,12 @@ Play make_play() {
   play.cell = default_cell();
   play.cell.camera = scenario.camera;
   play.cell.tools = tools;
+  // As much as the code can be asked for, so that every loop may run to its last.
+  play.cell.budget = {.tools = k_tools_max,
+                      .blobs = k_blobs_max,
+                      .runs_per_band = k_runs_per_band_max,
+                      .pair_tests = k_pair_tests_max,
+                      .search_steps = k_search_steps_max};
   sim::SimFrame rendered;
   for (int i = 0; i < k_crowd_frames; ++i) {
     simulator.render(i, rendered);
