@@ -41,9 +41,11 @@ void include(const CameraModel& camera, const Tool& tool, const Vector3& point,
              const Vector2& pixel, Prediction& prediction) {
   const double radius_px =
       camera.fx * (prediction.reach_m + 2 * tool.marker_radius_m) / std::max(point.z(), 0.05);
-  const Vector2 radius(radius_px, radius_px);
-  prediction.low_px = prediction.low_px.cwiseMin(pixel - radius);
-  prediction.high_px = prediction.high_px.cwiseMax(pixel + radius);
+  // Eigen's cwiseMin hands its packet's function on by a pointer, whose effects nobody can see.
+  for (int axis = 0; axis < 2; ++axis) {
+    prediction.low_px[axis] = std::min(prediction.low_px[axis], pixel[axis] - radius_px);
+    prediction.high_px[axis] = std::max(prediction.high_px[axis], pixel[axis] + radius_px);
+  }
 }
 
 // The part of the frame that holds the tool; false where there is none.
