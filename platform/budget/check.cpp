@@ -4,8 +4,10 @@
 #include <cstdio>
 
 #include "platform/budget/bus_frames.hpp"
+#include "platform/budget/plan_file.hpp"
 #include "platform/budget/task_model_of.hpp"
 #include "platform/input_error.hpp"
+#include "schedules/plan_check.hpp"
 #include "schedules/sensitivity.hpp"
 
 namespace glint {
@@ -87,6 +89,19 @@ void add_largest(const CheckInput& input, const CheckOptions& options, CheckResu
 }
 
 }  // namespace
+
+Plan validated_plan(const std::string& file, TaskModel& model, const Limits& limits) {
+  Plan plan = load_plan(file, model, graphs_signature());
+  model.cores = plan.cores;
+  if (const auto faults = check_plan(plan, model); !faults.empty()) {
+    throw InputError(file + ": " + faults.front());
+  }
+  if (plan.traffic.tools < limits.tools) {
+    throw InputError(file + ": made for " + std::to_string(plan.traffic.tools) +
+                     " tools; expected " + std::to_string(limits.tools) + " as in the cell");
+  }
+  return plan;
+}
 
 Question question_of(const CheckInput& input, const CheckOptions& options) {
   Question question;

@@ -32,6 +32,10 @@ struct CheckInput {
   std::vector<CanMessage> foreign;
 };
 
+// As loaded and validated for this model, which takes its number of cores. Throws InputError for a
+// plan of another graph, one that cannot run, or one that was made for fewer tools than `limits`.
+[[nodiscard]] Plan validated_plan(const std::string& file, TaskModel& model, const Limits& limits);
+
 // The question as the options make it.
 [[nodiscard]] Question question_of(const CheckInput& input, const CheckOptions& options);
 
@@ -57,6 +61,10 @@ struct CheckResult {
 };
 
 [[nodiscard]] CheckResult check(const CheckInput& input, const CheckOptions& options);
+
+// Why the bounds are no statement about this plan on this board.
+[[nodiscard]] std::vector<std::string> void_reasons(const CheckInput& input,
+                                                    const CheckResult& result);
 
 // Adds to `fails` where what was observed is above its bound.
 void compare_observed(const std::string& summary_file, CheckResult& result);

@@ -23,15 +23,6 @@ ordered_json percent_or_null(const std::optional<double>& factor) {
   return factor ? ordered_json(slack_percent(*factor)) : ordered_json();
 }
 
-std::vector<std::string> void_reasons(const CheckInput& input, const CheckResult& result) {
-  std::vector<std::string> reasons = result.what_if;
-  if (!input.plan.board_sha256.empty() && input.plan.board_sha256 != input.board.sha256) {
-    reasons.push_back("the plan was made from another version of the board file " +
-                      input.plan.board);
-  }
-  return reasons;
-}
-
 const KernelSlack* slack_of(const CheckResult& result, std::size_t group, const std::string& name) {
   for (const KernelSlack& slack : result.kernels) {
     if (slack.group == group && slack.name == name) return &slack;
@@ -128,6 +119,15 @@ std::string shown_percent(const std::optional<double>& factor) {
 
 }  // namespace
 
+std::vector<std::string> void_reasons(const CheckInput& input, const CheckResult& result) {
+  std::vector<std::string> reasons = result.what_if;
+  if (!input.plan.board_sha256.empty() && input.plan.board_sha256 != input.board.sha256) {
+    reasons.push_back("the plan was made from another version of the board file " +
+                      input.plan.board);
+  }
+  return reasons;
+}
+
 ordered_json check_json(const CheckInput& input, const CheckOptions& options,
                         const CheckResult& result) {
   const Limits& limits = input.limits;
@@ -135,6 +135,7 @@ ordered_json check_json(const CheckInput& input, const CheckOptions& options,
   ordered_json json{
       {"board", input.board.name},
       {"board_sha256", input.board.sha256},
+      {"counter", input.board.counter == CostCounter::time ? "time" : "instructions"},
       {"plan", input.plan.board_sha256 == input.board.sha256 ? "of this board" : "of another"},
       {"cores", input.plan.cores},
       {"limits",

@@ -6,7 +6,6 @@
 #include "platform/budget/bus_frames.hpp"
 #include "platform/budget/check.hpp"
 #include "platform/budget/expected_board.hpp"
-#include "platform/budget/plan_file.hpp"
 #include "platform/budget/task_model_of.hpp"
 #include "platform/cli/budget_commands.hpp"
 #include "platform/cli/output_file.hpp"
@@ -41,16 +40,9 @@ int run_check(const CheckArguments& arguments) {
 
   CheckInput input{cell, board, {}, limits_of(cell), {}};
   TaskModel model = task_model_of(cell, board.table(), board.system, input.limits);
-  input.plan = load_plan(arguments.plan, model, graphs_signature());
+  input.plan = validated_plan(arguments.plan, model, input.limits);
   if (!options.foreign.empty()) {
     input.foreign = foreign_frames(options.foreign, own_frames_of(cell, input.limits.tools));
-  }
-  model.cores = input.plan.cores;
-  const std::vector<std::string> faults = check_plan(input.plan, model);
-  if (!faults.empty()) throw InputError(arguments.plan + ": " + faults.front());
-  if (input.plan.traffic.tools < input.limits.tools) {
-    throw InputError(arguments.plan + ": made for " + std::to_string(input.plan.traffic.tools) +
-                     " tools; expected " + std::to_string(input.limits.tools) + " as in the cell");
   }
 
   const CheckResult result = check(input, options);

@@ -6,6 +6,7 @@ namespace glint {
 void add_budget(CLI::App& app, int& exit_code) {
   CLI::App* budget = app.add_subcommand("budget", "how late an output can be, before it runs");
   budget->require_subcommand(1);
+  budget->footer("Example: glint budget schedule --board x86-64-emulated --out plan.toml");
   add_budget_measure(*budget, exit_code);
   add_budget_curve(*budget, exit_code);
   add_budget_schedule(*budget, exit_code);

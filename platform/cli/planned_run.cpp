@@ -2,7 +2,6 @@
 
 #include "platform/budget/check.hpp"
 #include "platform/budget/expected_board.hpp"
-#include "platform/budget/plan_file.hpp"
 #include "platform/budget/task_model_of.hpp"
 #include "platform/input_error.hpp"
 
@@ -25,16 +24,14 @@ RunPlan planned_run(const Cell& cell, const std::string& board_name, const std::
   const Board board = load_board(board_name, expected_board(), BoardUse::run_here);
   CheckInput input{cell, board, {}, limits_of(cell), {}};
   TaskModel model = task_model_of(cell, board.table(), board.system, input.limits);
-  input.plan = load_plan(plan_file, model, graphs_signature());
-  model.cores = input.plan.cores;
-  if (const auto faults = check_plan(input.plan, model); !faults.empty()) {
-    throw InputError(plan_file + ": " + faults.front());
-  }
+  input.plan = validated_plan(plan_file, model, input.limits);
   RunPlan plan = plan_of(input.plan, model, plan_file);
   const CheckResult result = check(input, {});
   for (const Chain& chain : result.assessment.chains) {
     if (chain.name == "frame_to_can") plan.frame_to_can_bound_us = microseconds_of(chain.total_ns);
   }
+  plan.doubts = void_reasons(input, result);
+  plan.doubts.insert(plan.doubts.end(), result.fails.begin(), result.fails.end());
   plan.frame_bound_us = microseconds_of(result.assessment.groups.at(0).response_ns);
   plan.tick_bound_us = microseconds_of(result.assessment.groups.at(1).response_ns);
   return plan;

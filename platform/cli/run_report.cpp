@@ -1,5 +1,6 @@
 #include "platform/cli/run_report.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <vector>
@@ -36,6 +37,15 @@ bool best_effort(const SessionResult& result) {
   return !result.refused.empty() || !result.machine.spoils.empty();
 }
 
+// Frames whose way to the bus took longer than their bound.
+std::int64_t above_bound(const RunPlan& plan, const SessionResult& result) {
+  if (plan.frame_to_can_bound_us <= 0) return 0;
+  return std::count_if(
+      result.latencies.begin(), result.latencies.end(), [&](const FrameToCan& entry) {
+        return static_cast<double>(entry.total().nanoseconds) > plan.frame_to_can_bound_us * 1e3;
+      });
+}
+
 ordered_json budget_of(const RunPlan& plan, const SessionResult& result) {
   const OverrunCounts &frame = result.frame_overruns, &tick = result.tick_overruns;
   ordered_json by_policy;
@@ -53,6 +63,8 @@ ordered_json budget_of(const RunPlan& plan, const SessionResult& result) {
   return {{"board", plan.board},
           {"plan", plan.plan_file},
           {"bound_us", bound.is_null() ? ordered_json::object() : bound},
+          {"doubts", plan.doubts},
+          {"frames_above_bound", above_bound(plan, result)},
           {"overruns",
            {{"frame", frame.total()},
             {"tick", tick.total()},
@@ -102,7 +114,7 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
                        {"ticks_skipped", result.ticks_skipped},
                        {"worker_overruns", result.worker_overruns},
                        {"frame_to_can_us", frame_to_can},
-                       {"frame_to_can_kind", "observed"},
+                       {"frame_to_can_kind", cell.realtime ? "observed" : "nominal"},
                        {"heap_allocations_after_start", result.heap_allocations_after_start},
                        {"heap_allocations_counted", result.heap_counted},
                        {"can_frames", result.can_frames},
@@ -149,7 +161,8 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
                             fixed(accuracy.tip_max_m * 1e3, 1, "mm)"));
   row("angle error, rms", fixed(accuracy.angle_rms_rad * k_degrees, 2, "deg"));
   const ordered_json& latency = summary.at("frame_to_can_us");
-  latency_row("frame to CAN (observed)", latency);
+  const std::string kind = summary.at("frame_to_can_kind").get<std::string>();
+  latency_row(("frame to CAN (" + kind + ")").c_str(), latency);
   latency_row("  computing", latency.at("computing"));
   latency_row("  sampling", latency.at("sampling"));
   latency_row("  sending", latency.at("sending"));
@@ -158,6 +171,12 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
     row(name == "frame_to_can" ? "  bound, frame to CAN" : "  bound, group",
         fixed(us.get<double>(), 0, "us") + " (" + name + ")");
   }
+  if (const auto above = budget.at("frames_above_bound").get<std::int64_t>(); above > 0) {
+    row("  ABOVE THE BOUND", std::to_string(above) + " of " +
+                                 std::to_string(result.latencies.size()) +
+                                 " frames: here the bound is void");
+  }
+  for (const auto& doubt : budget.at("doubts")) row("  doubt", doubt.get<std::string>());
   const auto overruns = [](const OverrunCounts& counts) {
     return std::to_string(counts.missed) + " missed, " + std::to_string(counts.will_miss) +
            " noticed ahead";

@@ -139,7 +139,7 @@ class GroupRunner {
   }
 
   void begin(const ActivationStart& start) noexcept {
-    const std::uint64_t cycles = settings_.live ? cycle_count() : 0;
+    const std::uint64_t cycles = cycle_count();
     clock_.begin(start.now - start.nominal, cycles);
     for (NodeProbe& probe : probes_) probe.begin(start.at);
     for (auto& trace : traces_) {

@@ -29,6 +29,7 @@ struct RunPlan {
   std::string board, plan_file;
   // In microseconds; 0: no board.
   double frame_bound_us = 0, tick_bound_us = 0, frame_to_can_bound_us = 0;
+  std::vector<std::string> doubts;  // why these bounds promise less than they say
   GroupPlan<Tracker> frame;
   GroupPlan<Output> tick;
 };

@@ -107,7 +107,7 @@ Section chains_section(const ReportSources& sources) {
     section.blocks.push_back(table);
     section.blocks.insert(section.blocks.end(), figures.begin(), figures.end());
   }
-  if (sources.summary && sources.summary->has("frame_to_can_us")) {
+  if (sources.observed_frame_to_can_us() >= 0) {
     section.blocks.push_back(frame_to_can_observed(sources.summary->at("frame_to_can_us")));
   }
   return section;

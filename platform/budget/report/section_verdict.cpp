@@ -113,6 +113,12 @@ void judge(const ReportSources& sources, Document& document) {
     reasons.push_back({"Observed above bound: " + node, Tone::bad});
     ++voids;
   }
+  if (voids > 0 && sources.check && sources.check->text_or("counter", "time") == "instructions") {
+    reasons.push_back(
+        {"The table counts instructions and declares their price; the run was timed by a clock, "
+         "which sees caches, interrupts and preemption as well",
+         Tone::plain});
+  }
   const std::vector<std::string> best_effort = sources.best_effort();
   if (!best_effort.empty()) {
     reasons.push_back(
@@ -181,7 +187,8 @@ Section reading_section(const ReportSources& sources) {
   }
   if (sources.trace) {
     from.rows.push_back({{"observed times"},
-                         {sources.trace->board.empty() ? "none" : sources.trace->board},
+                         {"the run's machine; bounds of " +
+                          (sources.trace->board.empty() ? "none" : sources.trace->board)},
                          {"cell " + sources.trace->cell},
                          {us_text(sources.run.duration_s) + " s, " +
                           count_text(static_cast<double>(sources.trace->spans.size())) + " spans" +
