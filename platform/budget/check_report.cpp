@@ -230,6 +230,11 @@ void compare_observed(const std::string& summary_file, CheckResult& result) {
     throw InputError(summary_file +
                      ":1: no frame_to_can_us.max; expected a summary.json of `glint run`");
   }
+  if (summary.value("frame_to_can_kind", "observed") != "observed") {
+    throw InputError(summary_file +
+                     ":1: frame_to_can_us was computed, no clock saw it; expected the summary of a "
+                     "run in real time, without --fast");
+  }
   const auto compare = [&](const std::string& what, const nlohmann::json& seen, double bound_us) {
     const double seen_us = seen.value("max", 0.0);
     if (seen_us <= bound_us) return;

@@ -7,6 +7,7 @@
 
 #include "platform/budget/bus_frames.hpp"
 #include "platform/budget/expected_board.hpp"
+#include "platform/budget/plan_file.hpp"
 #include "platform/budget/task_model_of.hpp"
 #include "platform/input_error.hpp"
 #include "schedules/sensitivity.hpp"
@@ -127,6 +128,9 @@ TEST(Check, FailsBelowThePolicysMarginAndAboveAnObservation) {
   }
   std::ofstream(options.observed) << "{}";
   EXPECT_THROW((void)check(fixture.input(), options), InputError);
+  std::ofstream(options.observed)
+      << R"({"frame_to_can_kind": "nominal", "frame_to_can_us": {"max": 1.0}})";
+  EXPECT_THROW((void)check(fixture.input(), options), InputError);
   std::remove(options.observed.c_str());
 }
 
@@ -135,6 +139,26 @@ TEST(Check, SaysThatAPlanOfAnotherBoardFileIsVoid) {
   fixture.plan.board_sha256 = std::string(64, '1');
   const CheckInput input = fixture.input();
   EXPECT_EQ(check_json(input, {}, check(input, {}))["void"].size(), 1U);
+}
+
+TEST(Check, RefusesAPlanMadeForFewerToolsThanTheCellHas) {
+  Fixture fixture;
+  TaskModel model =
+      task_model_of(fixture.cell, fixture.board.table(), fixture.board.system, small_limits());
+  model.cores = fixture.plan.cores;
+  fixture.plan.graph_signature = graphs_signature();
+  const std::string file = testing::TempDir() + "plan_of_one_tool.toml";
+  std::ofstream(file) << plan_text(fixture.plan, model);
+  Limits limits = small_limits();
+  EXPECT_EQ(validated_plan(file, model, limits).traffic.tools, 1);
+  limits.tools = 2;
+  try {
+    (void)validated_plan(file, model, limits);
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()), file + ": made for 1 tools; expected 2 as in the cell");
+  }
+  std::remove(file.c_str());
 }
 
 TEST(BusFrames, CarryWhatTheCellSendsAndNoIdentifierTwice) {

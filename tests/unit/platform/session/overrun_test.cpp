@@ -7,6 +7,7 @@
 #include "graph/describe.hpp"
 #include "kernels/wire/output_record.hpp"
 #include "nodes/overrun_effects.hpp"
+#include "platform/budget/export/trace_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/session/choices.hpp"
 #include "platform/session/injection_text.hpp"
@@ -234,6 +235,21 @@ TEST(OverrunWatch, RefusesAnInjectionThatNamesNoNodeOfItsGroup) {
   EXPECT_THROW((void)injection_of("node=FindBlobs,delay_us=-1,frame=3"), InputError);
   EXPECT_THROW((void)injection_of("node=FindBlobs,delay_us=1"), InputError);
   EXPECT_THROW((void)injection_of("node=FindBlobs,delay_us=1,frame=3,tick=4"), InputError);
+}
+
+TEST(OverrunTrace, OfARunInOrderStandsOnTheSessionsTime) {
+  const TemporaryFolder folder;
+  SessionOptions options;
+  options.out = folder.path();
+  options.trace = true;
+  const SessionResult run = run_session(short_cell(0.5), options);
+  const TraceFile trace = read_trace(folder.path() + "/trace.spans");
+  EXPECT_EQ(trace.spans.size(), run.trace_spans);
+  for (const TraceSpan& span : trace.spans) {
+    EXPECT_GE(span.begin_ns, 0);
+    EXPECT_GE(span.end_ns, span.begin_ns);
+    EXPECT_LT(span.end_ns, 2'000'000'000) << "since the session's epoch";
+  }
 }
 
 }  // namespace

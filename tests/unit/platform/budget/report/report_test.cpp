@@ -72,6 +72,13 @@ TEST_F(BudgetReport, IsVoidWhereOneNodeOnceTookLongerThanItsBound) {
   EXPECT_TRUE(some_reason_has(document, "FindBlobs: 1 of 1300 calls above their bound of 58"));
 }
 
+TEST_F(BudgetReport, CallsNoLatencyObservedThatNoClockSaw) {
+  const Document document = report({.real_time = false});
+  EXPECT_EQ(document.headlines.back().kind, NumberKind::observed);
+  EXPECT_EQ(document.headlines.back().value, "not given");
+  EXPECT_NE(report({}).headlines.back().value, "not given");
+}
+
 TEST_F(BudgetReport, FailsWhereTheCheckFailed) {
   const Document document = report({.check_fails = true});
   EXPECT_EQ(document.verdict, Verdict::fails);

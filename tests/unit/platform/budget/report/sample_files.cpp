@@ -200,7 +200,7 @@ ordered_json summary_of(const SampleSettings& settings, const TraceFile& trace) 
   return {{"cell", "sample.toml"},
           {"frames", settings.frames},
           {"frame_to_can_us", times},
-          {"frame_to_can_kind", "observed"},
+          {"frame_to_can_kind", settings.real_time ? "observed" : "nominal"},
           {"budget",
            {{"board", "sample-x86-64"},
             {"plan", "two_cores.plan"},

@@ -12,6 +12,7 @@ struct SampleSettings {
   bool one_frame_above_bound = false;  // FindBlobs of one frame takes longer than its bound
   bool best_effort = true;
   bool check_fails = false;
+  bool real_time = true;  // else the run computed its latencies
 };
 
 // A frame group on two cores and a tick group on the first. Times are drawn independently from
