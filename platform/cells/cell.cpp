@@ -159,13 +159,23 @@ void read_overrun(const toml::table* table, Cell& cell) {
   reader.done();
 }
 
+int markers_of(const ToolSet& tools) {
+  int count = 0;
+  for (int t = 0; t < tools.count; ++t) {
+    count += tools.items[static_cast<std::size_t>(t)].marker_count;
+  }
+  return count;
+}
+
 void read_budget(const toml::table* table, Cell& cell) {
   static const toml::table k_empty;
   TomlReader reader(table != nullptr ? *table : k_empty, cell.file, "budget.");
   BudgetSettings& budget = cell.budget;
   const int listed = cell.tools.count;
   budget.tools = static_cast<int>(reader.integer("tools", listed, 1, k_tools_max));
-  budget.blobs = static_cast<int>(reader.integer("blobs", budget.blobs, 8, k_blobs_max));
+  // As many strays as there are markers; the blobs that a budget leaves out may be a tool's.
+  const int usual = std::clamp(2 * markers_of(cell.tools), budget.blobs, k_blobs_max);
+  budget.blobs = static_cast<int>(reader.integer("blobs", usual, 8, k_blobs_max));
   budget.runs_per_band = static_cast<int>(
       reader.integer("runs_per_band", budget.runs_per_band, 64, k_runs_per_band_max));
   budget.pair_tests =
@@ -287,7 +297,7 @@ Limits limits_of(const Cell& cell) {
   limits.height = camera.height;
   limits.reflectivity_bytes = (cell.camera.reflectivity_bits + 7) / 8;
   limits.lens_steps = camera.lens == Lens::lut ? k_lens_steps_max : 0;
-  limits.tools = cell.budget.tools;
+  limits.tools = std::max(cell.budget.tools, cell.tools.count);  // some join after reading
   limits.markers_per_tool = 3;
   for (int t = 0; t < cell.tools.count; ++t) {
     limits.markers_per_tool = std::max(limits.markers_per_tool,

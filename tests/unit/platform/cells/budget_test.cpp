@@ -53,6 +53,39 @@ TEST(CellBudget, RefusesMoreThanTheCodeCoversWithTheNearestThatFits) {
       complaint_about("[budget]\ntool = 1\n").rfind("cell.toml:2: unknown key budget.tool", 0), 0u);
 }
 
+CellFiles copies_of_the_pen(int tools) {
+  CellFiles files;
+  files.tools.count = tools;
+  for (int t = 0; t < tools; ++t) {
+    Tool& tool = files.tools.items[static_cast<std::size_t>(t)];
+    tool = default_cell().tools.items[0];
+    tool.name[0] = static_cast<char>('a' + t);
+  }
+  return files;
+}
+
+TEST(CellBudget, HasRoomForEveryListedMarkerAndAsManyStraysWhereNothingIsSaid) {
+  const auto blobs_with = [](int tools) {
+    const CellFiles carried = copies_of_the_pen(tools);
+    std::string list;
+    for (int t = 0; t < tools; ++t) {
+      list +=
+          '"' + std::string(carried.tools.items[static_cast<std::size_t>(t)].name.data()) + "\",";
+    }
+    return limits_of(cell_from_text("tools = [" + list + "]\n", "cell.toml", &carried)).blobs;
+  };
+  EXPECT_EQ(blobs_with(5), 64);
+  EXPECT_EQ(blobs_with(8), 80);
+  EXPECT_EQ(blobs_with(16), 160);
+}
+
+TEST(CellBudget, CoversToolsThatJoinAfterReading) {
+  Cell cell = default_cell();
+  cell.tools.items[1] = cell.tools.items[0];
+  cell.tools.count = 2;
+  EXPECT_EQ(limits_of(cell).tools, 2);
+}
+
 TEST(CellBudget, RefusesMoreToolsThanTheBudgetCovers) {
   const CellFiles carried = [] {
     CellFiles files;
