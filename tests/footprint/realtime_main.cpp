@@ -48,5 +48,5 @@ int main(int argc, char** argv) {
   }
   std::printf("%u cycles without a report, %d tools measured at the end\n", k_realtime_cycles,
               groups.measured_now());
-  return groups.measured_now() == k_tools_max ? 0 : 1;
+  return groups.measured_now() == glint::k_tools_max ? 0 : 1;
 }
