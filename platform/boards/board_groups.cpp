@@ -22,11 +22,15 @@ RunnerSettings<G> runner_settings(std::uint8_t group, Duration deadline,
   return settings;
 }
 
-// How many overruns of each kind there were so far: after each activation, what was decided on it.
-void add_decisions(const OverrunCounts& counts, Sha256& hash) {
-  std::array<std::uint8_t, 16> said{};
-  put_little_endian(std::span(said).first(8), counts.will_miss);
-  put_little_endian(std::span(said).last(8), counts.missed);
+// After each activation: how many overruns of each kind there were so far, and what was decided on
+// the last, after which node.
+template <class G>
+void add_decisions(const GroupRunner<G>& runner, Sha256& hash) {
+  std::array<std::uint8_t, 18> said{};
+  put_little_endian(std::span(said).first(8), runner.overruns().will_miss);
+  put_little_endian(std::span(said).subspan(8, 8), runner.overruns().missed);
+  said[16] = static_cast<std::uint8_t>(runner.last_overrun().policy);
+  said[17] = runner.last_overrun().after_node;
   hash.add(said);
 }
 
@@ -63,7 +67,7 @@ void BoardGroups::process(const ArrivedFrame& arrived) noexcept {
                                               track.marker_mask};
     verdicts_.add(of_tool);
   }
-  add_decisions(frame_runner_.overruns(), verdicts_);
+  add_decisions(frame_runner_, verdicts_);
   ++frames_;
   if (seen) ++tracked_;
 }
@@ -80,7 +84,7 @@ void BoardGroups::tick(std::uint32_t number, Time nominal, Time woken) noexcept 
     said[9] = static_cast<std::uint8_t>(sample.reason);
     states_.add(said);
   }
-  add_decisions(tick_runner_.overruns(), states_);
+  add_decisions(tick_runner_, states_);
 }
 
 void BoardGroups::report(BoardResult& result) const {

@@ -94,6 +94,7 @@ class GroupRunner {
     if (decision.happened()) {
       decision.after_node = static_cast<std::uint8_t>(last);
       count(decision);
+      last_overrun_ = decision;
     }
     if (NodeTrace* const trace = probes_[0].trace()) {
       if (decision.happened()) {
@@ -118,6 +119,10 @@ class GroupRunner {
   }
 
   [[nodiscard]] const OverrunCounts& overruns() const noexcept { return counts_; }
+  // The newest that there was; {}: none yet.
+  [[nodiscard]] const graph::OverrunDecision& last_overrun() const noexcept {
+    return last_overrun_;
+  }
   [[nodiscard]] std::uint64_t late_waits() const noexcept {
     return executor_ == nullptr ? 0 : executor_->overruns();
   }
@@ -160,6 +165,7 @@ class GroupRunner {
   std::vector<NodeProbe> probes_;
   std::unique_ptr<PlannedExecutor<G>> executor_;
   OverrunCounts counts_;
+  graph::OverrunDecision last_overrun_;
 };
 
 }  // namespace glint
