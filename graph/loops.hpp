@@ -9,6 +9,8 @@
 //     [[nodiscard]] static constexpr LoopCounts worst(const Limits& limits) noexcept;
 //     [[nodiscard]] LoopCounts counts() const noexcept;  // of the last activation
 //   };
+//
+// A node under Split whose copies differ may add worst(limits, slice); worst(limits) covers all.
 #pragma once
 
 #include <array>

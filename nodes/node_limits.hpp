@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "graph/loops.hpp"
+#include "graph/port.hpp"
 #include "kernels/limits.hpp"
 #include "kernels/pose/tool.hpp"
 
@@ -12,10 +13,10 @@ namespace glint {
 // How many copies the tools are spread over; never the worker count.
 inline constexpr int k_tool_slices = 4;
 
-// Slice i takes the tools whose number leaves i when divided by k_tool_slices: the first slice has
-// the most.
-[[nodiscard]] constexpr int tools_per_slice(const Limits& limits) {
-  return (limits.tools + k_tool_slices - 1) / k_tool_slices;
+// Slice i takes the tools whose number leaves i when divided by the slices' count: the first slice
+// has the most.
+[[nodiscard]] constexpr int tools_of(const Limits& limits, graph::Slice slice) {
+  return std::max(0, (limits.tools - slice.index + slice.count - 1) / slice.count);
 }
 
 // A tool set may be exchanged at run time; what is beyond the limits is left alone.

@@ -25,7 +25,11 @@ struct Correspond {
       "call",          "tools",      "markers", "pairs",
       "words_cleared", "pair_tests", "steps",   "words_narrowed"};
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
-    const std::int64_t tools = tools_per_slice(limits);
+    return worst(limits, {0, k_tool_slices});
+  }
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits,
+                                                         graph::Slice slice) noexcept {
+    const std::int64_t tools = tools_of(limits, slice);
     const std::int64_t blobs = limits.blobs;
     const std::int64_t row = limits.markers_per_tool * ((blobs + 63) / 64);
     return {{1, tools, tools * blobs, tools * blobs * (blobs - 1) / 2,
@@ -78,7 +82,11 @@ struct MarkerNoise {
 struct FitRigid {
   static constexpr std::array<std::string_view, 4> k_loops = {"call", "tools", "fits", "markers"};
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
-    const std::int64_t tools = tools_per_slice(limits);
+    return worst(limits, {0, k_tool_slices});
+  }
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits,
+                                                         graph::Slice slice) noexcept {
+    const std::int64_t tools = tools_of(limits, slice);
     return {{1, tools, tools, tools * limits.markers_per_tool}};
   }
   [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }

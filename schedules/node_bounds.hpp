@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "graph/port.hpp"
 #include "schedules/cost_table.hpp"
 #include "schedules/kernel_list.hpp"
 
@@ -41,13 +42,24 @@ template <class... G>
   return {};
 }
 
-// One node (of a split: each copy) in nanoseconds.
+// What one copy of a node does at most. A node whose copies differ says so by worst(limits, slice).
 template <class Node>
-[[nodiscard]] constexpr std::int64_t node_bound(const CostTable& table, const Limits& limits) {
+[[nodiscard]] constexpr graph::LoopCounts worst_of(const Limits& limits, graph::Slice slice) {
+  if constexpr (requires { Node::worst(limits, slice); }) {
+    return Node::worst(limits, slice);
+  } else {
+    return Node::worst(limits);
+  }
+}
+
+// One node, or one copy of a split one, in nanoseconds.
+template <class Node>
+[[nodiscard]] constexpr std::int64_t node_bound(const CostTable& table, const Limits& limits,
+                                                graph::Slice slice = {}) {
   const KernelLoops kernel{graph::type_name<Node>(), Node::k_loops};
   const KernelCost* cost = table.find(kernel.kernel);
   if (cost == nullptr || !costs_of(*cost, kernel)) return k_no_bound;
-  return bound_ns(*cost, Node::worst(limits));
+  return bound_ns(*cost, worst_of<Node>(limits, slice));
 }
 
 // By node number: the order of execution, each copy of a split by itself, as in
@@ -59,9 +71,9 @@ node_bounds(const CostTable& table, const Limits& limits) {
   std::array<std::int64_t, static_cast<std::size_t>(G::node_count)> bounds{};
   graph::for_each_index<G::unit_count>([&]<int unit>() {
     using Node = typename graph::Unit<graph::At<unit, typename Wires::Listed>>::Node;
-    const std::int64_t bound = node_bound<Node>(table, limits);
     for (int copy = 0; copy < Wires::copies[unit]; ++copy) {
-      bounds[static_cast<std::size_t>(Wires::first_node[unit] + copy)] = bound;
+      bounds[static_cast<std::size_t>(Wires::first_node[unit] + copy)] =
+          node_bound<Node>(table, limits, {copy, Wires::copies[unit]});
     }
   });
   return bounds;

@@ -29,6 +29,31 @@ TEST(NodeBounds, GiveEachCopyOfASplitTheSameBound) {
   EXPECT_EQ(bounds, (std::array<std::int64_t, 3>{2, 2, 2}));
 }
 
+// Copy i takes every third tool from i on.
+struct UnevenSpots {
+  static constexpr std::array<std::string_view, 2> k_loops = {"call", "tools"};
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
+    return worst(limits, {0, 3});
+  }
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits,
+                                                         graph::Slice slice) noexcept {
+    return {{1, (limits.tools - slice.index + slice.count - 1) / slice.count}};
+  }
+  [[nodiscard]] graph::LoopCounts counts() const noexcept { return {}; }
+  void operator()(const toy::Picture& /*picture*/, graph::Slice /*slice*/,
+                  toy::Spots& /*spots*/) noexcept {}
+};
+
+TEST(NodeBounds, GiveEachCopyItsOwnWhereTheNodeTellsThemApart) {
+  using Split =
+      graph::Graph<graph::Inputs<toy::Picture>, graph::Outputs<graph::Parts<toy::Spots, 3>>,
+                   graph::Split<UnevenSpots, 3>>;
+  static constexpr std::array<KernelCost, 1> costs = {
+      {{"UnevenSpots", {"call", "tools"}, {0, 1'000}}}};
+  constexpr auto bounds = node_bounds<Split>({"toy", "any", "none", costs}, Limits{.tools = 5});
+  EXPECT_EQ(bounds, (std::array<std::int64_t, 3>{2, 2, 1}));
+}
+
 TEST(NodeBounds, NameTheNodeThatATableDoesNotPrice) {
   EXPECT_EQ(missing_cost<toy::Chain>(k_table), "");
   const CostTable half{"half", "any", "none", std::span(k_costs).subspan(0, 1)};
