@@ -11,8 +11,8 @@ namespace {
 
 // The slice with the most tools.
 constexpr graph::Slice k_slice{0, k_tool_slices};
-constexpr int k_trials = 3000; // until the worst input uses every budget to its end
-constexpr int k_climbs = 5;    // of the search for a worse one
+constexpr int k_trials = 3000;  // until the worst input uses every budget to its end
+constexpr int k_climbs = 5;     // of the search for a worse one
 
 enum class Shape { crowd, line, swarm, copies };
 
