@@ -48,9 +48,8 @@ TEST(NodeBounds, GiveEachCopyItsOwnWhereTheNodeTellsThemApart) {
   using Split =
       graph::Graph<graph::Inputs<toy::Picture>, graph::Outputs<graph::Parts<toy::Spots, 3>>,
                    graph::Split<UnevenSpots, 3>>;
-  static constexpr std::array<KernelCost, 1> costs = {
-      {{"UnevenSpots", {"call", "tools"}, {0, 1'000}}}};
-  constexpr auto bounds = node_bounds<Split>({"toy", "any", "none", costs}, Limits{.tools = 5});
+  const std::array<KernelCost, 1> costs = {{{"UnevenSpots", {"call", "tools"}, {0, 1'000}}}};
+  const auto bounds = node_bounds<Split>({"toy", "any", "none", costs}, Limits{.tools = 5});
   EXPECT_EQ(bounds, (std::array<std::int64_t, 3>{2, 2, 1}));
 }
 
