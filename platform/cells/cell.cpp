@@ -183,12 +183,16 @@ void read_budget(const toml::table* table, Cell& cell) {
   budget.search_steps =
       static_cast<int>(reader.integer("search_steps", budget.search_steps, 64, k_search_steps_max));
   reader.done();
-  if (budget.tools < listed) {
-    throw InputError(cell.file + ":" + std::to_string(table->get("tools")->source().begin.line) +
-                     ": budget.tools is " + std::to_string(budget.tools) + ", but " +
-                     std::to_string(listed) + " tools are listed; expected at least " +
-                     std::to_string(listed));
-  }
+  const auto require = [&](const char* key, int value, int needed, const std::string& what) {
+    if (value >= needed) return;
+    throw InputError(cell.file + ":" + std::to_string(reader.line_of(key)) + ": budget." + key +
+                     " is " + std::to_string(value) + ", but " + what + "; expected at least " +
+                     std::to_string(needed));
+  };
+  require("tools", budget.tools, listed, std::to_string(listed) + " tools are listed");
+  const int markers = markers_of(cell.tools);
+  require("blobs", budget.blobs, markers,
+          "the listed tools have " + std::to_string(markers) + " markers, each a blob");
 }
 
 void read_sinks(TomlReader& root, Cell& cell) {

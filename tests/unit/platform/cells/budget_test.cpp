@@ -53,6 +53,36 @@ TEST(CellBudget, RefusesMoreThanTheCodeCoversWithTheNearestThatFits) {
       complaint_about("[budget]\ntool = 1\n").rfind("cell.toml:2: unknown key budget.tool", 0), 0u);
 }
 
+TEST(CellBudget, RefusesALoopMaximumThatIsNoneWithTheRangeThatFits) {
+  const struct {
+    const char* key;
+    int least, most;
+  } ranges[] = {{"tools", 1, k_tools_max},
+                {"blobs", 8, k_blobs_max},
+                {"runs_per_band", 64, k_runs_per_band_max},
+                {"pair_tests", 64, k_pair_tests_max},
+                {"search_steps", 64, k_search_steps_max}};
+  for (const auto& [key, least, most] : ranges) {
+    const std::string found = "cell.toml:2: budget." + std::string(key) + " is ";
+    const std::string expected =
+        "; expected a whole number from " + std::to_string(least) + " to " + std::to_string(most);
+    for (const std::string value :
+         {"0", "-1", "-9223372036854775808", "7.5", "true", "\"many\"", "9223372036854775807"}) {
+      EXPECT_EQ(complaint_about("[budget]\n" + std::string(key) + " = " + value + "\n"),
+                found + value + expected);
+    }
+    for (const int value : {least - 1, most + 1}) {
+      const std::string text = std::to_string(value);
+      EXPECT_EQ(complaint_about("[budget]\n" + std::string(key) + " = " + text + "\n"),
+                found + text + expected);
+    }
+    for (const int value : {least, most}) {
+      EXPECT_EQ(complaint_about("[budget]\n" + std::string(key) + " = " + std::to_string(value)),
+                "accepted");
+    }
+  }
+}
+
 CellFiles copies_of_the_pen(int tools) {
   CellFiles files;
   files.tools.count = tools;
@@ -64,19 +94,33 @@ CellFiles copies_of_the_pen(int tools) {
   return files;
 }
 
+// `more` starts in the cell's second line.
+Cell cell_with_pens(int tools, const std::string& more) {
+  const CellFiles carried = copies_of_the_pen(tools);
+  std::string list;
+  for (int t = 0; t < tools; ++t) {
+    list += '"' + std::string(carried.tools.items[static_cast<std::size_t>(t)].name.data()) + "\",";
+  }
+  return cell_from_text("tools = [" + list + "]\n" + more, "cell.toml", &carried);
+}
+
 TEST(CellBudget, HasRoomForEveryListedMarkerAndAsManyStraysWhereNothingIsSaid) {
-  const auto blobs_with = [](int tools) {
-    const CellFiles carried = copies_of_the_pen(tools);
-    std::string list;
-    for (int t = 0; t < tools; ++t) {
-      list +=
-          '"' + std::string(carried.tools.items[static_cast<std::size_t>(t)].name.data()) + "\",";
-    }
-    return limits_of(cell_from_text("tools = [" + list + "]\n", "cell.toml", &carried)).blobs;
-  };
+  const auto blobs_with = [](int tools) { return limits_of(cell_with_pens(tools, "")).blobs; };
   EXPECT_EQ(blobs_with(5), 64);
   EXPECT_EQ(blobs_with(8), 80);
   EXPECT_EQ(blobs_with(16), 160);
+}
+
+TEST(CellBudget, RefusesFewerBlobsThanTheListedToolsHaveMarkers) {
+  EXPECT_EQ(limits_of(cell_with_pens(5, "[budget]\nblobs = 25\n")).blobs, 25);
+  try {
+    (void)cell_with_pens(5, "[budget]\ntools = 6\nblobs = 24\n");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "cell.toml:4: budget.blobs is 24, but the listed tools have 25 markers, each a "
+                 "blob; expected at least 25");
+  }
 }
 
 TEST(CellBudget, CoversToolsThatJoinAfterReading) {
