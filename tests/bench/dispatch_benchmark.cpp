@@ -3,15 +3,14 @@
 //
 //   build/bench_dispatch [ROUNDS]
 #include <array>
-#include <charconv>
 #include <cstdio>
-#include <cstring>
 #include <memory>
 
 #include "dispatch_nodes.hpp"
 #include "dispatch_rows.hpp"
 #include "dispatch_tbb.hpp"
 #include "dispatch_trace.hpp"
+#include "rounds.hpp"
 
 namespace glint::bench {
 namespace {
@@ -90,16 +89,7 @@ bool run(int rounds) {
 }  // namespace glint::bench
 
 int main(int argc, char** argv) {
-  int rounds = glint::bench::k_rounds;
-  if (argc > 2) return std::fprintf(stderr, "bench_dispatch: expected at most ROUNDS\n"), 2;
-  if (argc == 2) {
-    const char* const end = argv[1] + std::strlen(argv[1]);
-    const auto [last, error] = std::from_chars(argv[1], end, rounds);
-    if (error != std::errc{} || last != end || rounds < 1000) {
-      std::fprintf(stderr, "bench_dispatch: found ROUNDS %s, expected a number from 1000\n",
-                   argv[1]);
-      return 2;
-    }
-  }
-  return glint::bench::run(rounds) ? 0 : 1;
+  const auto rounds = glint::bench::rounds_of(argc, argv, glint::bench::k_rounds, 1000);
+  if (!rounds) return 2;
+  return glint::bench::run(*rounds) ? 0 : 1;
 }

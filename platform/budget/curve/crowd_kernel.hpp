@@ -29,6 +29,12 @@ class CrowdKernel final : public MeasuredKernel {
   void run() noexcept override { tracker_->activate(); }
   [[nodiscard]] graph::LoopCounts counts() const override { return {{1}}; }
 
+  // Frame `number`, as the next delivery: whatever activates tracker() next sees it.
+  void show(std::uint64_t number) {
+    set_input(InputKind::typical, number, {});
+    rewind();
+  }
+  [[nodiscard]] Tracker& tracker() { return *tracker_; }  // after the first input
   // Of the last run.
   [[nodiscard]] int tools_seen() const;
 

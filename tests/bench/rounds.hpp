@@ -1,0 +1,25 @@
+// The one argument of a benchmark that measures in rounds.
+#pragma once
+
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <optional>
+
+namespace glint::bench {
+
+// `usual` without an argument; nothing, and one line on stderr, for what is no number from `least`.
+[[nodiscard]] inline std::optional<int> rounds_of(int argc, char** argv, int usual, int least) {
+  int rounds = usual;
+  const bool given = argc == 2;
+  const char* const end = given ? argv[1] + std::strlen(argv[1]) : nullptr;
+  const bool number = given && std::from_chars(argv[1], end, rounds).ptr == end;
+  if (argc > 2 || (given && (!number || rounds < least))) {
+    std::fprintf(stderr, "%s: found ROUNDS %s, expected one number from %d\n", argv[0], argv[1],
+                 least);
+    return {};
+  }
+  return rounds;
+}
+
+}  // namespace glint::bench
