@@ -1,5 +1,6 @@
 #include "kernels/pose/camera_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernels/pose/ray_table.hpp"
@@ -7,8 +8,9 @@
 namespace glint {
 namespace {
 
-// A residual of this size on the plane z = 1 is far below 1e-6 px for any focal length here.
-constexpr double k_converged_square = 1e-26;
+// Newton's error after a step is about the step's square: of this size it leaves less than 1e-12 on
+// the plane z = 1, far below 1e-6 px for any focal length here. No step is spent on confirming it.
+constexpr double k_last_step_square = 1e-14;
 
 // A longer Newton step leaves the part of the lens where the polynomials are well behaved.
 constexpr double k_step_max = 0.25;
@@ -27,7 +29,8 @@ Distorted distort(const std::array<double, 8>& k, const Vector2& p, bool with_de
   const double bottom = with_denominator ? 1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])) : 1.0;
   const double bottom_slope = with_denominator ? k[5] + r2 * (2 * k[6] + r2 * 3 * k[7]) : 0.0;
   const double factor = top / bottom;
-  const double slope = (top_slope - factor * bottom_slope) / bottom;  // d factor / d r2
+  const double inverse = with_denominator ? 1 / bottom : 1.0;          // beside the other division
+  const double slope = (top_slope - factor * bottom_slope) * inverse;  // d factor / d r2
   const double p1 = k[2], p2 = k[3];
   Distorted out;
   out.position = {x * factor + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
@@ -39,40 +42,53 @@ Distorted distort(const std::array<double, 8>& k, const Vector2& p, bool with_de
   return out;
 }
 
+double determinant_of(const Distorted& d) { return d.dxdx * d.dydy - d.dxdy * d.dydx; }
+
 // Beyond its turning point a polynomial folds back: there two rays would share a pixel.
 bool inside_lens(const CameraModel& camera, const Vector2& p, const Distorted& d) {
   const double limit = camera.field_tangent_max;
   if (limit > 0 && p.squaredNorm() > limit * limit) return false;
-  return d.dxdx * d.dydy - d.dxdy * d.dydx > 0 && d.dxdx + d.dydy > 0;
+  return determinant_of(d) > 0 && d.dxdx + d.dydy > 0;
+}
+
+// Where the lens would be undone by its factor at the distorted place: nearer than that place.
+Vector2 first_guess(const std::array<double, 8>& k, const Vector2& target, bool with_denominator) {
+  const double r2 = target.squaredNorm();
+  const double top = 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
+  const double bottom = with_denominator ? 1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])) : 1.0;
+  // Beyond where the lens ends its polynomials may be anything: a guess that is not far off.
+  return target * std::clamp(bottom / std::max(top, 0.1), 0.25, 4.0);
 }
 
 struct Undistorted {
   Vector2 position = Vector2::Zero();  // on the plane z = 1
-  Distorted there{};
+  Distorted there{};                   // one step before the position, which is near enough
 };
 
 // Adds the steps it took to `steps`.
-Result<Undistorted> undistort(const CameraModel& camera, const Vector2& target, int steps_max,
-                              int& steps) {
+Reason undistort(const CameraModel& camera, const Vector2& target, int steps_max, int& steps,
+                 Undistorted& out) {
   const bool rational = camera.lens == Lens::rational;
-  Vector2 p = target;
+  Vector2 p = first_guess(camera.distortion, target, rational);
   for (int i = 0; i < steps_max; ++i) {
     ++steps;
     const Distorted d = distort(camera.distortion, p, rational);
     const Vector2 miss = target - d.position;
-    if (miss.squaredNorm() <= k_converged_square) {
-      if (!inside_lens(camera, p, d)) break;
-      return {{p, d}};
-    }
-    const double determinant = d.dxdx * d.dydy - d.dxdy * d.dydx;
+    const double determinant = determinant_of(d);
     if (!(std::abs(determinant) > 1e-12)) break;
-    Vector2 step{(d.dydy * miss.x() - d.dxdy * miss.y()) / determinant,
-                 (d.dxdx * miss.y() - d.dydx * miss.x()) / determinant};
-    const double length = std::sqrt(step.squaredNorm());
-    if (length > k_step_max) step *= k_step_max / length;
+    const double inverse = 1 / determinant;
+    Vector2 step{(d.dydy * miss.x() - d.dxdy * miss.y()) * inverse,
+                 (d.dxdx * miss.y() - d.dydx * miss.x()) * inverse};
+    const double square = step.squaredNorm();
+    if (square <= k_last_step_square) {
+      out.position = p + step;
+      out.there = d;
+      return inside_lens(camera, out.position, d) ? Reason::none : Reason::out_of_range;
+    }
+    if (square > k_step_max * k_step_max) step *= k_step_max / std::sqrt(square);
     p += step;
   }
-  return {{}, Reason::out_of_range};
+  return Reason::out_of_range;
 }
 
 }  // namespace
@@ -83,9 +99,10 @@ Result<Vector3> unproject(const CameraModel& camera, const Vector2& pixel) noexc
   if (!(p.squaredNorm() < 1e6)) return {Vector3::Zero(), Reason::out_of_range};
   if (camera.lens != Lens::pinhole) {
     int steps = 0;
-    const Result<Undistorted> found = undistort(camera, p, k_undistort_iterations_max, steps);
-    if (!found) return {Vector3::Zero(), found.reason};
-    p = found.value.position;
+    Undistorted found;
+    const Reason reason = undistort(camera, p, k_undistort_iterations_max, steps, found);
+    if (reason != Reason::none) return {Vector3::Zero(), reason};
+    p = found.position;
   }
   const double length = std::sqrt(p.squaredNorm() + 1);
   return {Vector3{p.x() / length, p.y() / length, 1 / length}};
@@ -98,24 +115,25 @@ Result<TurningRay> unproject_turning(const CameraModel& camera, const Vector2& p
   // The change of p by one pixel: the lens's Jacobian, inverted.
   Vector2 dx{1 / camera.fx, 0}, dy{0, 1 / camera.fy};
   if (camera.lens != Lens::pinhole) {
-    const Result<Undistorted> found = undistort(camera, p, k_turning_ray_steps_max, lens_steps);
-    if (!found) return {{}, found.reason};
-    p = found.value.position;
-    const Distorted& d = found.value.there;
-    const double determinant = d.dxdx * d.dydy - d.dxdy * d.dydx;
-    dx = Vector2{d.dydy, -d.dydx} / (determinant * camera.fx);
-    dy = Vector2{-d.dxdy, d.dxdx} / (determinant * camera.fy);
+    Undistorted found;
+    const Reason reason = undistort(camera, p, k_turning_ray_steps_max, lens_steps, found);
+    if (reason != Reason::none) return {{}, reason};
+    p = found.position;
+    const Distorted& d = found.there;
+    const double inverse = 1 / determinant_of(d);
+    dx = Vector2{d.dydy, -d.dydx} * (inverse * dx.x());
+    dy = Vector2{-d.dxdy, d.dxdx} * (inverse * dy.y());
   }
-  const double length = std::sqrt(p.squaredNorm() + 1);
-  TurningRay out;
-  out.ray = {p.x() / length, p.y() / length, 1 / length};
+  const double shrink = 1 / std::sqrt(p.squaredNorm() + 1);
+  Result<TurningRay> out;
+  const Vector3 ray{p.x() * shrink, p.y() * shrink, shrink};
+  // What of a change on the plane z = 1 is at right angles to the ray.
   const auto across = [&](const Vector2& change) {
-    const Vector3 moved{change.x() / length, change.y() / length, 0};
-    return Vector3(moved - out.ray * out.ray.dot(moved));
+    const Vector3 moved{change.x() * shrink, change.y() * shrink, 0};
+    return Vector3(moved - ray * (ray.x() * moved.x() + ray.y() * moved.y()));
   };
-  out.along_x = across(dx);
-  out.along_y = across(dy);
-  return {out};
+  out.value = {ray, across(dx), across(dy)};
+  return out;
 }
 
 Result<Vector2> project(const CameraModel& camera, const Vector3& point) noexcept {

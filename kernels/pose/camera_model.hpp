@@ -41,8 +41,8 @@ struct CameraModel {
 };
 
 inline constexpr int k_undistort_iterations_max = 20;
-// Of the lenses we know none takes more than 7, rim included.
-inline constexpr int k_turning_ray_steps_max = 12;
+// Of the lenses that we ship none takes more than 5, rim included: one of room.
+inline constexpr int k_turning_ray_steps_max = 6;
 inline constexpr int k_lut_search_iterations_max = k_lens_steps_max;
 
 // Reason::out_of_range: outside the table, or the lens has no ray there.

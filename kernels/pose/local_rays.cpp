@@ -7,7 +7,7 @@ Result<LocalRays> from_table(const CameraModel& camera, const Vector2& pixel, in
   LocalRays local;
   local.pixel = pixel;
   const auto look_up = [&](const Vector2& at) {
-    lens_steps += k_lens_steps_a_look_up;
+    ++lens_steps;
     return unproject(camera, at);
   };
   const Result<Vector3> middle = look_up(pixel);

@@ -25,13 +25,13 @@ struct LocalRays {
   [[nodiscard]] double steradian_per_pixel() const { return along_x.cross(along_y).norm(); }
 };
 
-// Adds the lens's steps to `lens_steps`: a look-up in a table is as dear as two.
+// Adds the lens's steps to `lens_steps`: a look-up in a table is no dearer than one.
 [[nodiscard]] Result<LocalRays> local_rays(const CameraModel& camera, const Vector2& pixel,
                                            int& lens_steps) noexcept GLINT_NONBLOCKING;
 
-inline constexpr int k_lens_steps_a_look_up = 2;
+inline constexpr int k_look_ups_max = 5;  // the middle, and two on either side
 // What local_rays may take at most, whatever the lens.
 inline constexpr int k_local_rays_steps_max = k_turning_ray_steps_max;
-static_assert(5 * k_lens_steps_a_look_up <= k_local_rays_steps_max);
+static_assert(k_look_ups_max <= k_local_rays_steps_max);
 
 }  // namespace glint

@@ -13,8 +13,12 @@ namespace glint::bench {
   int rounds = usual;
   const bool given = argc == 2;
   const char* const end = given ? argv[1] + std::strlen(argv[1]) : nullptr;
-  const bool number = given && std::from_chars(argv[1], end, rounds).ptr == end;
-  if (argc > 2 || (given && (!number || rounds < least))) {
+  bool usable = argc <= 2;
+  if (given) {
+    const auto [last, error] = std::from_chars(argv[1], end, rounds);
+    usable = error == std::errc{} && last == end && rounds >= least;
+  }
+  if (!usable) {
     std::fprintf(stderr, "%s: found ROUNDS %s, expected one number from %d\n", argv[0], argv[1],
                  least);
     return {};
