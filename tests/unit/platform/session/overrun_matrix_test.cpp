@@ -1,0 +1,228 @@
+// Fault injection: every policy at every node, noticed ahead by a bound or when the deadline has
+// passed, has its declared effect once, in the recording and on the bus, and replays alike.
+//
+// No clock decides: time stands still but for the delays that are injected, so each decision falls
+// to the nanosecond. A delay that just fits follows each one that does not.
+#include <cstdio>
+#include <tuple>
+#include <vector>
+
+#include "platform/session/replay.hpp"
+#include "tests/unit/platform/session/overrun_log.hpp"
+#include "tests/unit/platform/session/short_run.hpp"
+
+namespace glint {
+namespace {
+
+using graph::OverrunDecision;
+using graph::OverrunKind;
+using graph::OverrunPolicy;
+
+constexpr std::uint32_t k_first_frame = 8, k_frame_step = 2;
+constexpr std::uint32_t k_first_tick = 150, k_tick_step = 5;
+
+// A bound for each node, all different.
+template <class G>
+std::vector<std::int64_t> node_bounds() {
+  std::vector<std::int64_t> bounds;
+  for (int node = 0; node < G::node_count; ++node) bounds.push_back(100'000 + 1'000 * node);
+  return bounds;
+}
+
+// One row of the matrix: what a delay at the end of one node has to lead to.
+struct Row {
+  std::uint32_t at = 0;      // the frame's sequence number, or the tick's
+  Duration longest_in_time;  // a nanosecond more is too late
+  OverrunDecision decision;
+};
+
+template <class G>
+std::vector<Row> rows(Duration deadline, OverrunPolicy policy, bool bounded, std::uint32_t first,
+                      std::uint32_t step) {
+  const std::vector<std::int64_t> bounds = node_bounds<G>();
+  std::vector<Row> all(bounds.size());
+  Duration remaining;  // after the last node nothing does: only a deadline can pass there
+  for (std::size_t node = bounds.size(); node-- > 0;) {
+    const bool ahead = bounded && remaining.nanoseconds > 0;
+    all[node] = {first + step * static_cast<std::uint32_t>(node),
+                 ahead ? deadline - remaining : deadline,
+                 {ahead ? OverrunKind::will_miss : OverrunKind::missed, policy,
+                  static_cast<std::uint8_t>(node)}};
+    remaining = remaining + Duration{bounds[node]};
+  }
+  return all;
+}
+
+void inject(const std::vector<Row>& rows, bool in_tick, std::vector<Injection>& injections) {
+  for (const Row& row : rows) {
+    const int node = row.decision.after_node;
+    injections.push_back({"", node, in_tick, row.at, row.longest_in_time + Duration{1}});
+    injections.push_back({"", node, in_tick, row.at + 1, row.longest_in_time});
+  }
+}
+
+std::string emergency(std::uint8_t group, const OverrunDecision& decision) {
+  char text[32];
+  const auto reason = static_cast<unsigned>(reason_of(decision.policy));
+  std::snprintf(text, sizeof text, "%02XFF81%02X%02X%02X00%02X", reason, unsigned{group},
+                static_cast<unsigned>(decision.kind), reason, unsigned{decision.after_node});
+  return text;
+}
+
+class OverrunMatrix : public testing::TestWithParam<std::tuple<OverrunPolicy, bool>> {
+ protected:
+  OverrunMatrix() {
+    cell_ = short_cell(1.15);
+    cell_.overrun.frame = cell_.overrun.tick = policy_;
+    frame_rows_ =
+        rows<Tracker>(cell_.deadlines.frame, policy_, bounded_, k_first_frame, k_frame_step);
+    tick_rows_ = rows<Output>(cell_.deadlines.tick, policy_, bounded_, k_first_tick, k_tick_step);
+    options_.out = folder_.path();
+    inject(frame_rows_, false, options_.injections);
+    inject(tick_rows_, true, options_.injections);
+    if (!bounded_) return;
+    options_.plan = plan_by_rule(cell_);
+    options_.plan.planned = true;
+    options_.plan.frame.bounds_ns = options_.plan.frame.remaining_ns = node_bounds<Tracker>();
+    options_.plan.tick.bounds_ns = options_.plan.tick.remaining_ns = node_bounds<Output>();
+  }
+
+  [[nodiscard]] OverrunLog log_of(const SessionResult& run) const {
+    return overrun_log(run.recording_file, folder_.path() + "/can.log");
+  }
+
+  OverrunPolicy policy_ = std::get<0>(GetParam());
+  bool bounded_ = std::get<1>(GetParam());
+  Cell cell_;
+  TemporaryFolder folder_;
+  SessionOptions options_;
+  std::vector<Row> frame_rows_, tick_rows_;
+};
+
+void expect_counts(const OverrunCounts& counts, const std::vector<Row>& rows, bool bounded) {
+  EXPECT_EQ(counts.will_miss, bounded ? rows.size() - 1 : 0);
+  EXPECT_EQ(counts.missed, bounded ? 1 : rows.size());
+  EXPECT_EQ(counts.by_policy[static_cast<std::size_t>(rows[0].decision.policy)], rows.size());
+}
+
+TEST_P(OverrunMatrix, DecidesOnceAtEveryNodeInTheRecordingAndOnTheBus) {
+  const SessionResult run = run_session(cell_, options_);
+  ASSERT_TRUE(run.recording.complete());
+  const OverrunLog log = log_of(run);
+  std::map<std::uint32_t, OverrunDecision> frames, ticks;
+  std::map<std::string, int> emergencies;
+  for (const Row& row : frame_rows_) {
+    frames[row.at] = row.decision;
+    emergencies[emergency(k_frame_group, row.decision)] = 1;
+  }
+  for (const Row& row : tick_rows_) {
+    ticks[row.at] = row.decision;
+    emergencies[emergency(k_tick_group, row.decision)] = 1;
+  }
+  EXPECT_EQ(log.frames, frames);
+  EXPECT_EQ(log.ticks, ticks);
+  EXPECT_EQ(log.emergencies, emergencies);
+  expect_counts(run.frame_overruns, frame_rows_, bounded_);
+  expect_counts(run.tick_overruns, tick_rows_, bounded_);
+}
+
+// Of a pose that an overrun's policy put in the place of a measured one.
+void expect_substitute(OverrunPolicy policy, const PoseSample& sample) {
+  EXPECT_EQ(sample.reason, reason_of(policy));
+  EXPECT_EQ(sample.state,
+            policy == OverrunPolicy::stop_safe ? TrackState::lost : TrackState::predicted);
+}
+
+// From the tick before to this one.
+void expect_motion(OverrunPolicy policy, const PoseSample& before, const PoseSample& sample,
+                   double tolerance_m) {
+  const Vector3 moved = sample.pose.translation - before.pose.translation;
+  if (policy == OverrunPolicy::hold_last) {
+    EXPECT_EQ(moved.norm(), 0);
+  }
+  if (policy == OverrunPolicy::predict) {
+    EXPECT_GT(moved.norm(), 0);
+    EXPECT_LT((moved - before.velocity_m_s * 0.004).norm(), tolerance_m);
+  }
+}
+
+TEST_P(OverrunMatrix, LetsTheTickGroupSendWhatThePolicyDeclaresOnce) {
+  const OverrunLog log = log_of(run_session(cell_, options_));
+  for (const Row& row : tick_rows_) {
+    SCOPED_TRACE("tick " + std::to_string(row.at));
+    ASSERT_EQ(log.outputs.count(row.at), policy_ == OverrunPolicy::skip_output ? 0u : 1u);
+    EXPECT_EQ(log.ticks.count(row.at + 1), 0u);
+    ASSERT_EQ(log.outputs.count(row.at + 1), 1u) << "the next tick is in time";
+    if (policy_ == OverrunPolicy::skip_output) continue;
+    expect_substitute(policy_, log.outputs.at(row.at));
+    expect_motion(policy_, log.outputs.at(row.at - 1), log.outputs.at(row.at), 1e-9);
+  }
+  for (const auto& [tick, version] : log.versions) {
+    SCOPED_TRACE("tick " + std::to_string(tick));
+    const auto output = log.outputs.find(tick);
+    const auto bus = log.bus.find(tick);
+    ASSERT_EQ(bus != log.bus.end(), output != log.outputs.end()) << "both or none";
+    if (bus == log.bus.end()) continue;
+    EXPECT_EQ(bus->second.frames, k_can_frames_per_pose_max);
+    EXPECT_EQ(bus->second.state, output->second.state);
+  }
+}
+
+TEST_P(OverrunMatrix, LetsTheFrameGroupPublishWhatThePolicyDeclaresOnce) {
+  const OverrunLog log = log_of(run_session(cell_, options_));
+  std::map<std::uint64_t, int> read;  // how often each late frame's estimates were
+  for (const Row& row : frame_rows_) read[log.activations.at(row.at)] = 0;
+  for (const auto& [tick, version] : log.versions) {
+    SCOPED_TRACE("tick " + std::to_string(tick));
+    const auto output = log.outputs.find(tick);
+    const bool late_tick = log.ticks.count(tick) != 0;
+    const auto late_frame = read.find(version);
+    if (late_tick || output == log.outputs.end()) continue;
+    const PoseSample& sample = output->second;
+    ASSERT_EQ(is_overrun(sample.reason), late_frame != read.end());
+    if (late_frame == read.end()) continue;
+    expect_substitute(policy_, sample);
+    // The tip turns about the tool's origin, so that its velocity holds for a moment only.
+    if (++late_frame->second > 1 && log.ticks.count(tick - 1) == 0) {
+      expect_motion(policy_, log.outputs.at(tick - 1), sample, 2e-5);
+    }
+  }
+  for (const auto& [activation, ticks] : read) {
+    if (policy_ == OverrunPolicy::skip_output) {
+      EXPECT_EQ(ticks, 0) << "activation " << activation << " published nothing";
+    } else {
+      EXPECT_GE(ticks, 4) << "of some five that follow activation " << activation;
+    }
+  }
+}
+
+TEST_P(OverrunMatrix, ReplaysToTheSameBytesAtEveryLevelWithoutAClock) {
+  for (const char* level : {"full", "roi", "blobs"}) {
+    TemporaryFolder folder;
+    cell_.record.level = level;
+    options_.out = folder.path();
+    const SessionResult run = run_session(cell_, options_);
+    for (const int workers : {1, 2}) {
+      ReplayOptions options;
+      options.workers = workers;
+      const ReplayResult result = replay(run.recording_file, options);
+      EXPECT_TRUE(result.agrees())
+          << level << ": " << result.mismatches << " differ, first " << result.first_mismatch;
+      EXPECT_EQ(result.output_sha256, run.output_sha256);
+      EXPECT_EQ(result.overruns, Tracker::node_count + Output::node_count);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ByEvery, OverrunMatrix,
+    testing::Combine(testing::Values(OverrunPolicy::skip_output, OverrunPolicy::hold_last,
+                                     OverrunPolicy::predict, OverrunPolicy::stop_safe),
+                     testing::Bool()),
+    [](const auto& row) {
+      return std::string(name_of(std::get<0>(row.param))) +
+             (std::get<1>(row.param) ? "_noticed_ahead" : "_noticed_late");
+    });
+
+}  // namespace
+}  // namespace glint
