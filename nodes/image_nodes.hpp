@@ -21,8 +21,8 @@ struct RoiThreshold {
     work_ = threshold_runs(frame, rois, threshold, {band.index, band.count}, runs, limits);
   }
 
-  static constexpr std::array<std::string_view, 5> k_loops = {"call", "stretches", "blocks",
-                                                              "masks", "runs"};
+  static constexpr std::array<std::string_view, 4> k_loops = {"call", "stretches", "blocks",
+                                                              "runs"};
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
     return counts_of(threshold_work_max(limits, k_row_bands));
   }
@@ -30,7 +30,7 @@ struct RoiThreshold {
 
  private:
   static constexpr graph::LoopCounts counts_of(const ThresholdWork& work) noexcept {
-    return {{1, work.stretches, work.blocks, work.masks, work.runs}};
+    return {{1, work.stretches, work.blocks, work.runs}};
   }
   ThresholdWork work_;
 };

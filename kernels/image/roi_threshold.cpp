@@ -35,8 +35,8 @@ Rois clipped(const Rois& rois, const Limits& limits, int width, int top, int bot
   return out;
 }
 
-// Calls scan(pixels of the row, y, x0, x1) for each stretch of a row that lies in an ROI; gives the
-// number of ROIs times rows.
+// Calls scan(pixels of the row, y, x0, x1) for each stretch of a row that lies in an ROI, until it
+// gives false; gives the number of ROIs times rows.
 template <class Pixel, class Scan>
 int for_each_stretch(const ImageView<Pixel>& image, const Rois& rois, const Limits& limits,
                      RowBand band, Scan scan) {
@@ -49,7 +49,7 @@ int for_each_stretch(const ImageView<Pixel>& image, const Rois& rois, const Limi
       const Roi& roi = cut.items[static_cast<std::size_t>(i)];
       if (y < roi.y0 || y >= roi.y1) continue;
       const int x0 = std::max(roi.x0, end);
-      if (x0 < roi.x1) scan(image.row(y), y, x0, roi.x1);
+      if (x0 < roi.x1 && !scan(image.row(y), y, x0, roi.x1)) return (y + 1 - top) * cut.count;
       end = std::max(end, roi.x1);
     }
   }
@@ -67,15 +67,6 @@ bool usable(const Frame& frame, RowBand band, const Limits& limits) {
 // A narrow ROI jumps from row to row too fast for the processor to foresee: its rows are asked for
 // this many ahead, which takes the memory's time off a frame that no cache holds yet.
 constexpr int k_rows_ahead = 12;
-constexpr std::ptrdiff_t k_cache_line_bytes = 64;
-
-template <class Pixel>
-void ask_for(const ImageView<Pixel>& image, int x0, int x1, int y) {
-  if (y >= image.height) return;
-  const auto* from = reinterpret_cast<const std::uint8_t*>(image.row(y) + x0);
-  const auto* to = reinterpret_cast<const std::uint8_t*>(image.row(y) + x1);
-  for (; from < to; from += k_cache_line_bytes) __builtin_prefetch(from);
-}
 
 template <class Pixel>
 ThresholdWork scan_fast(const ImageView<Pixel>& image, const Rois& rois, const Limits& limits,
@@ -83,14 +74,20 @@ ThresholdWork scan_fast(const ImageView<Pixel>& image, const Rois& rois, const L
   constexpr int block = k_mask_pixels<Pixel>;
   ThresholdWork work;
   const auto scan = [&](const Pixel* row, int y, int x0, int x1) {
-    const int blocks = (x1 - x0 + block - 1) / block;
-    work.blocks += blocks;
-    if (x1 - x0 < image.width) ask_for(image, x0, x1, y + k_rows_ahead);
-    if (!any_above(row, image.width, x0, x1, threshold)) return;
-    work.masks += blocks;
-    for (int x = x0; x < x1; x += block) {
-      writer.add(y, x, bright_mask(row, image.width, x, x1, threshold));
+    work.blocks += (x1 - x0 + block - 1) / block;
+    const Pixel* ahead = image.row(std::min(y + k_rows_ahead, image.height - 1));
+    writer.begin_stretch(y, x0);
+    int x = x0;
+    for (; x + block <= x1; x += block) {
+      __builtin_prefetch(ahead + x);
+      if (!writer.add(x, block_mask(row + x, threshold))) return false;
     }
+    if (x < x1) {
+      __builtin_prefetch(ahead + x);
+      if (!writer.add(x, bright_mask(row, image.width, x, x1, threshold))) return false;
+    }
+    writer.end_stretch(x1);
+    return true;
   };
   work.stretches = for_each_stretch(image, rois, limits, band, scan);
   return work;
@@ -98,9 +95,24 @@ ThresholdWork scan_fast(const ImageView<Pixel>& image, const Rois& rois, const L
 
 template <class Pixel>
 void scan_reference(const ImageView<Pixel>& image, const Rois& rois, const Limits& limits,
-                    std::uint16_t threshold, RowBand band, RunWriter& writer) {
+                    std::uint16_t threshold, RowBand band, Runs& out) {
+  const int most = std::clamp(limits.runs_per_band, 0, k_runs_per_band_max);
   for_each_stretch(image, rois, limits, band, [&](const Pixel* row, int y, int x0, int x1) {
-    for (int x = x0; x < x1; ++x) writer.add(y, x, row[x] > threshold ? 1 : 0);
+    for (int x = x0; x < x1; ++x) {
+      if (row[x] <= threshold) continue;
+      Run* last = out.count > 0 ? &out.items[static_cast<std::size_t>(out.count - 1)] : nullptr;
+      if (last != nullptr && last->y == y && last->x1 == x) {
+        ++last->x1;
+      } else if (out.count < most) {
+        out.items[static_cast<std::size_t>(out.count++)] = {static_cast<std::uint16_t>(y),
+                                                            static_cast<std::uint16_t>(x),
+                                                            static_cast<std::uint16_t>(x + 1)};
+      } else {
+        out.reason = Reason::runs_full;
+        return false;
+      }
+    }
+    return true;
   });
 }
 
@@ -117,18 +129,20 @@ ThresholdWork threshold_runs(const Frame& frame, const Rois& rois, std::uint16_t
     const auto narrow = static_cast<std::uint8_t>(threshold);
     work = scan_fast(frame.reflectivity_8, rois, limits, narrow, band, writer);
   }
+  writer.finish();
   work.runs = out.count;
   return work;
 }
 
 void threshold_runs_reference(const Frame& frame, const Rois& rois, std::uint16_t threshold,
                               RowBand band, Runs& out, const Limits& limits) noexcept {
-  RunWriter writer(out, limits.runs_per_band);
+  out.count = 0;
+  out.reason = Reason::none;
   if (!usable(frame, band, limits)) return;
   if (!frame.reflectivity_16.empty()) {
-    scan_reference(frame.reflectivity_16, rois, limits, threshold, band, writer);
+    scan_reference(frame.reflectivity_16, rois, limits, threshold, band, out);
   } else if (!frame.reflectivity_8.empty()) {
-    scan_reference(frame.reflectivity_8, rois, limits, threshold, band, writer);
+    scan_reference(frame.reflectivity_8, rois, limits, threshold, band, out);
   }
 }
 

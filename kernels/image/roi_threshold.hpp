@@ -2,10 +2,11 @@
 //
 // What:     every pixel with reflectivity > threshold inside any ROI, as runs by rows, then from
 //           left to right; runs that touch are one run, also across the border of two ROIs.
-// Cost:     one pass over the ROIs' pixels, in blocks of 64 bytes; a row with a bright pixel is
-//           looked at twice. The runs' buffer is as long as `limits` says.
-// Worst:    as many ROIs side by side as there are tools, a bright pixel in every block, more runs
-//           than fit: the rest is counted and Reason::runs_full says so.
+// Cost:     one pass over the ROIs' pixels, in blocks of 64 bytes, and two writes a run; what is
+//           bright beyond the buffer ends it, and Reason::runs_full says so. The runs' buffer is as
+//           long as `limits` says.
+// Worst:    as many ROIs side by side as there are tools, and just as many runs as fit, so that the
+//           last block is still looked at.
 // Accuracy: exact; integers only, so that vector code gives equal bits.
 // Source:   the seed, section III: reflectivity above 250 inside an ROI.
 #pragma once
@@ -29,8 +30,7 @@ struct RowBand {
 // How often its loops ran.
 struct ThresholdWork {
   std::int32_t stretches = 0;  // ROIs times rows of the band
-  std::int32_t blocks = 0;     // looked at for any bright pixel
-  std::int32_t masks = 0;      // looked at pixel by pixel
+  std::int32_t blocks = 0;     // of 64 bytes
   std::int32_t runs = 0;
 };
 
@@ -53,7 +53,7 @@ void threshold_runs_reference(const Frame& frame, const Rois& rois, std::uint16_
   // A stretch of 1 + n block pixels takes n + 1 blocks: that many, where each has one pixel more.
   const int blocks = (limits.width - rois) / block + rois;
   const int runs = std::min(limits.runs_per_band, rows * ((limits.width + 1) / 2));
-  return {rows * rois, rows * blocks, rows * blocks, runs};
+  return {rows * rois, rows * blocks, runs};
 }
 
 // One ROI that covers the frame.

@@ -17,8 +17,7 @@ struct Run {
 struct Runs {
   std::array<Run, k_runs_per_band_max> items;
   int count = 0;
-  std::uint32_t dropped = 0;  // met after the buffer was full
-  Reason reason = Reason::none;
+  Reason reason = Reason::none;  // runs_full: the band holds more than these, its first ones
 };
 
 }  // namespace glint

@@ -7,8 +7,17 @@
 namespace glint {
 namespace {
 
+// Runs at even distances, as many in all rows together as fit a band's buffer, so that none ends
+// the search before the last block.
+struct SpreadRuns {
+  int a_band = 0;          // 0: none; the layout's pattern instead
+  int length = 1;          // but they never touch
+  bool scattered = false;  // each somewhere in its part of the row
+};
+
 struct Layout {
   RunPattern pattern;
+  SpreadRuns spread;
   int strips = 1;       // ROIs side by side
   bool narrow = false;  // all but one of them a pixel wide
 };
@@ -49,39 +58,66 @@ class MeasuredRoiThreshold final : public MeasuredKernel {
   [[nodiscard]] graph::LoopCounts counts() const override { return node_->counts(); }
 
  private:
-  // The first: every row has as many stretches, each as many blocks, as there may be, and all
-  // blocks hold runs. The others drive one loop further away from the rest.
+  // The first: every row has as many stretches, each as many blocks, as there may be, and all runs
+  // fit just so. The others drive one loop further away from the rest.
   static Layout worst_layout(std::uint64_t variant, const Limits& limits) {
     Layout layout;
     layout.pattern.x1 = limits.width;
     layout.pattern.y1 = limits.height;
+    layout.pattern.skip = 0;
     layout.strips = std::max(limits.tools, 1);
     layout.narrow = variant % 2 == 0;
-    layout.pattern.skip = 0;
-    switch (variant / 2 % 5) {
+    layout.spread.a_band = threshold_work_max(limits, k_row_bands).runs;
+    switch (variant / 2 % 6) {
       case 1:
-        layout.pattern.shift = 1;
+        layout.spread.scattered = true;
         break;
       case 2:
-        layout.pattern.run = 2, layout.pattern.gap = 2;
+        layout.spread.length = limits.width;
         break;
       case 3:
-        layout.pattern.run = limits.width;
+        layout.spread.a_band = 0;  // a checkerboard, which fills the buffer soon
+        layout.pattern.shift = 1;
         break;
       case 4:
-        layout.pattern.gap = 15;
+        layout.spread.a_band = 0;
+        layout.pattern.run = limits.width;
+        break;
+      case 5:
+        layout.spread.a_band /= 2;
+        layout.spread.scattered = true;
         break;
       default:
         break;
     }
-    if (variant / 10 % 2 == 1) layout.strips = 1;
+    if (variant / 12 % 2 == 1) layout.strips = 1;
     return layout;
+  }
+
+  void draw_spread(const SpreadRuns& spread) {
+    const int width = drawn_.width(), height = drawn_.height();
+    const int top = height * band_.index / band_.count;
+    const int rows = height * (band_.index + 1) / band_.count - top;
+    CounterRandom random(3, InputKind::worst, 0);
+    for (int row = 0; row < rows; ++row) {
+      const int n = spread.a_band * (row + 1) / rows - spread.a_band * row / rows;
+      const int part = n > 0 ? width / 2 / n : 0;  // of a row's even columns, for each run
+      for (int i = 0; i < n; ++i) {
+        const int x = 2 * (i * part + (spread.scattered ? random.below(part) : 0));
+        const int end = std::min(x + spread.length, 2 * (i + 1) * part - 1);
+        drawn_.pattern({width, 0, 1, 0, 0, x, end, top + row, top + row + 1});
+      }
+    }
   }
 
   // Narrow: single pixels at even columns, where the patterns have theirs, then one wide strip.
   void lay_out(const Layout& layout) {
     drawn_.clear(node_->limits);
-    drawn_.pattern(layout.pattern);
+    if (layout.spread.a_band > 0) {
+      draw_spread(layout.spread);
+    } else {
+      drawn_.pattern(layout.pattern);
+    }
     const int width = drawn_.width(), height = drawn_.height();
     rois_.count = std::clamp(layout.strips, 1, std::min(width, node_->limits.tools));
     for (int i = 0; i < rois_.count; ++i) {
@@ -108,7 +144,9 @@ class MeasuredRoiThreshold final : public MeasuredKernel {
   }
 
   void search(CounterRandom& random, const Limits& limits) {
-    const Layout first{random_pattern(random, limits), random.between(1, std::max(limits.tools, 1)),
+    const Layout first{random_pattern(random, limits),
+                       {},
+                       random.between(1, std::max(limits.tools, 1)),
                        random.below(2) == 0};
     const auto change = [&](Layout layout) {
       const RunPattern other = random_pattern(random, limits);
@@ -136,7 +174,7 @@ class MeasuredRoiThreshold final : public MeasuredKernel {
       frame_ = drawn_.view();
       run();
       const graph::LoopCounts n = counts();
-      return 3 * n[1] + n[2] + 5 * n[3] + 2 * n[4];
+      return 3 * n[1] + 2 * n[2] + 5 * n[3];
     }));
   }
 

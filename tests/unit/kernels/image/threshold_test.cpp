@@ -78,7 +78,7 @@ TEST(Threshold, BandsTogetherAreTheWholeFrame) {
   EXPECT_EQ(runs_of(p.frame(), all, 0, {1, 2}), (List{{2, 0, 1}, {3, 0, 1}, {4, 0, 1}}));
 }
 
-TEST(Threshold, CountsTheRunsOfACheckerboardThatDoNotFit) {
+TEST(Threshold, KeepsTheFirstRunsOfACheckerboardAndSaysThatThereAreMore) {
   Picture p(512, 512);
   for (int y = 0; y < 512; ++y) {
     for (int x = y % 2; x < 512; x += 2) p(x, y) = 5000;
@@ -86,7 +86,28 @@ TEST(Threshold, CountsTheRunsOfACheckerboardThatDoNotFit) {
   auto runs = std::make_unique<Runs>();
   threshold_runs(p.frame(), whole_frame(p.frame()), 100, {0, 2}, *runs);
   EXPECT_EQ(runs->count, k_runs_per_band_max);
-  EXPECT_EQ(runs->dropped, 256u * 256u - k_runs_per_band_max);
+  EXPECT_EQ(runs->reason, Reason::runs_full);
+  EXPECT_EQ(runs->items[k_runs_per_band_max - 1].y, 15);
+  EXPECT_EQ(runs->items[k_runs_per_band_max - 1].x0, 511);
+}
+
+// The third run ends where the first ROI does, and goes on in the second.
+TEST(Threshold, IsNotFullBeforeOneRunTooManyBegins) {
+  Rois rois;
+  rois.items[0] = {0, 0, 6, 1};
+  rois.items[1] = {6, 0, 12, 1};
+  rois.count = 2;
+  Limits limits;
+  limits.runs_per_band = 3;
+  auto runs = std::make_unique<Runs>();
+  const Picture fits = picture_of({"#.#.######.."}), more = picture_of({"#.#.######.#"});
+  threshold_runs(fits.frame(), rois, 100, {}, *runs, limits);
+  EXPECT_EQ(runs->count, 3);
+  EXPECT_EQ(runs->items[2].x1, 10);
+  EXPECT_EQ(runs->reason, Reason::none);
+  threshold_runs(more.frame(), rois, 100, {}, *runs, limits);
+  EXPECT_EQ(runs->count, 3);
+  EXPECT_EQ(runs->items[2].x1, 10);
   EXPECT_EQ(runs->reason, Reason::runs_full);
 }
 
@@ -123,10 +144,12 @@ TEST(Threshold, EqualsThePlainVersionOnRandomFrames) {
     const int range = p.narrow.empty() ? 0x10000 : 0x100;
     const auto threshold = static_cast<std::uint16_t>(below(range));
     const RowBand band{below(3), 3};
-    threshold_runs(p.frame(), rois, threshold, band, *fast);
-    threshold_runs_reference(p.frame(), rois, threshold, band, *plain);
+    Limits limits;
+    if (below(3) == 0) limits.runs_per_band = below(40);
+    threshold_runs(p.frame(), rois, threshold, band, *fast, limits);
+    threshold_runs_reference(p.frame(), rois, threshold, band, *plain, limits);
     ASSERT_EQ(fast->count, plain->count) << "round " << round;
-    ASSERT_EQ(fast->dropped, plain->dropped);
+    ASSERT_EQ(fast->reason, plain->reason);
     for (std::size_t i = 0; i < static_cast<std::size_t>(plain->count); ++i) {
       ASSERT_EQ(fast->items[i].y, plain->items[i].y);
       ASSERT_EQ(fast->items[i].x0, plain->items[i].x0);
