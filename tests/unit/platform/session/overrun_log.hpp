@@ -53,6 +53,8 @@ inline void read_recording(const std::string& file, OverrunLog& log, Duration& u
       if (choice->overrun.happened()) log.ticks[tick] = choice->overrun;
     } else if (const auto* frame = std::get_if<FrameMessage>(&*message)) {
       on_frame(frame->sequence);
+    } else if (const auto* markers = std::get_if<MarkerFrame>(&*message)) {
+      on_frame(markers->sequence);
     } else if (const auto* output = std::get_if<OutputMessage>(&*message)) {
       const auto sample = decode(std::span<const std::uint8_t, k_output_record_bytes>(
           output->record.data(), k_output_record_bytes));

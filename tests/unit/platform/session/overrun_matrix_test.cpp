@@ -69,10 +69,12 @@ std::string emergency(std::uint8_t group, const OverrunDecision& decision) {
   return text;
 }
 
-class OverrunMatrix : public testing::TestWithParam<std::tuple<OverrunPolicy, bool>> {
+using Parameters = std::tuple<OverrunPolicy, bool, const char*>;
+
+class OverrunMatrix : public testing::TestWithParam<Parameters> {
  protected:
   OverrunMatrix() {
-    cell_ = short_cell(1.15);
+    cell_ = short_cell(1.15, std::get<2>(GetParam()));
     cell_.overrun.frame = cell_.overrun.tick = policy_;
     frame_rows_ =
         rows<Tracker>(cell_.deadlines.frame, policy_, bounded_, k_first_frame, k_frame_step);
@@ -87,9 +89,10 @@ class OverrunMatrix : public testing::TestWithParam<std::tuple<OverrunPolicy, bo
     options_.plan.tick.bounds_ns = options_.plan.tick.remaining_ns = node_bounds<Output>();
   }
 
-  [[nodiscard]] OverrunLog log_of(const SessionResult& run) const {
-    return overrun_log(run.recording_file, folder_.path() + "/can.log");
-  }
+  void expect_decisions(const SessionResult& run, const OverrunLog& log) const;
+  void expect_what_ticks_sent(const OverrunLog& log) const;
+  void expect_what_frames_published(const OverrunLog& log) const;
+  static void expect_replays_alike(const SessionResult& run);
 
   OverrunPolicy policy_ = std::get<0>(GetParam());
   bool bounded_ = std::get<1>(GetParam());
@@ -105,10 +108,8 @@ void expect_counts(const OverrunCounts& counts, const std::vector<Row>& rows, bo
   EXPECT_EQ(counts.by_policy[static_cast<std::size_t>(rows[0].decision.policy)], rows.size());
 }
 
-TEST_P(OverrunMatrix, DecidesOnceAtEveryNodeInTheRecordingAndOnTheBus) {
-  const SessionResult run = run_session(cell_, options_);
-  ASSERT_TRUE(run.recording.complete());
-  const OverrunLog log = log_of(run);
+// Once at every node, in the recording and on the bus, and nowhere else.
+void OverrunMatrix::expect_decisions(const SessionResult& run, const OverrunLog& log) const {
   std::map<std::uint32_t, OverrunDecision> frames, ticks;
   std::map<std::string, int> emergencies;
   for (const Row& row : frame_rows_) {
@@ -146,8 +147,7 @@ void expect_motion(OverrunPolicy policy, const PoseSample& before, const PoseSam
   }
 }
 
-TEST_P(OverrunMatrix, LetsTheTickGroupSendWhatThePolicyDeclaresOnce) {
-  const OverrunLog log = log_of(run_session(cell_, options_));
+void OverrunMatrix::expect_what_ticks_sent(const OverrunLog& log) const {
   for (const Row& row : tick_rows_) {
     SCOPED_TRACE("tick " + std::to_string(row.at));
     ASSERT_EQ(log.outputs.count(row.at), policy_ == OverrunPolicy::skip_output ? 0u : 1u);
@@ -168,8 +168,7 @@ TEST_P(OverrunMatrix, LetsTheTickGroupSendWhatThePolicyDeclaresOnce) {
   }
 }
 
-TEST_P(OverrunMatrix, LetsTheFrameGroupPublishWhatThePolicyDeclaresOnce) {
-  const OverrunLog log = log_of(run_session(cell_, options_));
+void OverrunMatrix::expect_what_frames_published(const OverrunLog& log) const {
   std::map<std::uint64_t, int> read;  // how often each late frame's estimates were
   for (const Row& row : frame_rows_) read[log.activations.at(row.at)] = 0;
   for (const auto& [tick, version] : log.versions) {
@@ -196,32 +195,36 @@ TEST_P(OverrunMatrix, LetsTheFrameGroupPublishWhatThePolicyDeclaresOnce) {
   }
 }
 
-TEST_P(OverrunMatrix, ReplaysToTheSameBytesAtEveryLevelWithoutAClock) {
-  for (const char* level : {"full", "roi", "blobs"}) {
-    TemporaryFolder folder;
-    cell_.record.level = level;
-    options_.out = folder.path();
-    const SessionResult run = run_session(cell_, options_);
-    for (const int workers : {1, 2}) {
-      ReplayOptions options;
-      options.workers = workers;
-      const ReplayResult result = replay(run.recording_file, options);
-      EXPECT_TRUE(result.agrees())
-          << level << ": " << result.mismatches << " differ, first " << result.first_mismatch;
-      EXPECT_EQ(result.output_sha256, run.output_sha256);
-      EXPECT_EQ(result.overruns, Tracker::node_count + Output::node_count);
-    }
+void OverrunMatrix::expect_replays_alike(const SessionResult& run) {
+  for (const int workers : {1, 2}) {
+    ReplayOptions options;
+    options.workers = workers;
+    const ReplayResult result = replay(run.recording_file, options);
+    EXPECT_TRUE(result.agrees()) << result.mismatches << " differ, first " << result.first_mismatch;
+    EXPECT_EQ(result.output_sha256, run.output_sha256);
+    EXPECT_EQ(result.overruns, Tracker::node_count + Output::node_count);
   }
+}
+
+TEST_P(OverrunMatrix, HasItsDeclaredEffectOnceAtEveryNodeAndReplaysToTheSameBytes) {
+  const SessionResult run = run_session(cell_, options_);
+  ASSERT_TRUE(run.recording.complete());
+  const OverrunLog log = overrun_log(run.recording_file, folder_.path() + "/can.log");
+  expect_decisions(run, log);
+  expect_what_ticks_sent(log);
+  expect_what_frames_published(log);
+  expect_replays_alike(run);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     ByEvery, OverrunMatrix,
     testing::Combine(testing::Values(OverrunPolicy::skip_output, OverrunPolicy::hold_last,
                                      OverrunPolicy::predict, OverrunPolicy::stop_safe),
-                     testing::Bool()),
+                     testing::Bool(), testing::Values("full", "roi", "blobs")),
     [](const auto& row) {
       return std::string(name_of(std::get<0>(row.param))) +
-             (std::get<1>(row.param) ? "_noticed_ahead" : "_noticed_late");
+             (std::get<1>(row.param) ? "_noticed_ahead_" : "_noticed_late_") +
+             std::get<2>(row.param);
     });
 
 }  // namespace
