@@ -5,6 +5,7 @@
 
 #include "kernels/wire/bits.hpp"
 #include "platform/session/pipeline.hpp"
+#include "platform/session/run_plan.hpp"
 
 namespace glint {
 
@@ -13,9 +14,11 @@ namespace {
 // One core, every node in the graph's order, deadlines watched as the cell says.
 template <class G>
 RunnerSettings<G> runner_settings(std::uint8_t group, Duration deadline,
-                                  graph::OverrunPolicy policy, bool watch) {
+                                  graph::OverrunPolicy policy, bool watch,
+                                  const std::vector<std::int64_t>& bounds_ns) {
   RunnerSettings<G> settings;
   settings.group = group;
+  settings.watch.remaining_ns = remaining_in_order(bounds_ns);
   settings.watch.deadline = deadline;
   settings.watch.policy = policy;
   settings.watch.on = watch;
@@ -37,11 +40,12 @@ void add_decisions(const GroupRunner<G>& runner, Sha256& hash) {
 }  // namespace
 
 BoardGroups::BoardGroups(const Cell& cell, Sinks& sinks, const Clock& now,
-                         std::int64_t unix_offset_ns, std::size_t frames)
+                         std::int64_t unix_offset_ns, std::size_t frames, const BoardBounds& bounds)
     : frame_runner_(runner_settings<Tracker>(k_frame_group, cell.deadlines.frame,
-                                             cell.overrun.frame, cell.overrun.watch)),
+                                             cell.overrun.frame, cell.overrun.watch,
+                                             bounds.frame_ns)),
       tick_runner_(runner_settings<Output>(k_tick_group, cell.deadlines.tick, cell.overrun.tick,
-                                           cell.overrun.watch)),
+                                           cell.overrun.watch, bounds.tick_ns)),
       frame_(cell, tool_set_, now, frame_runner_, nullptr),
       tick_(cell, frame_.estimates(), robot_, now, {sinks.can(), sinks.dds(), nullptr, nullptr},
             unix_offset_ns, frames, tick_runner_, frame_.overrun_notes()) {
@@ -90,8 +94,8 @@ void BoardGroups::tick(std::uint32_t number, Time nominal, Time woken) noexcept 
 void BoardGroups::report(BoardResult& result) const {
   result.frames = frames_;
   result.frames_tracked = tracked_;
-  result.frame_overruns = frame_runner_.overruns().total();
-  result.tick_overruns = tick_runner_.overruns().total();
+  result.frame_overruns = frame_runner_.overruns();
+  result.tick_overruns = tick_runner_.overruns();
   result.latencies = tick_.latencies().entries();
   result.latencies_left_out = tick_.latencies().beyond();
   result.can_frames = tick_.can_frames();

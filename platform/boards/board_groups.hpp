@@ -17,7 +17,7 @@ namespace glint {
 class BoardGroups {
  public:
   BoardGroups(const Cell& cell, Sinks& sinks, const Clock& now, std::int64_t unix_offset_ns,
-              std::size_t frames);
+              std::size_t frames, const BoardBounds& bounds = {});
 
   void process(const ArrivedFrame& arrived) noexcept;                  // frame thread
   void tick(std::uint32_t number, Time nominal, Time woken) noexcept;  // tick thread

@@ -4,19 +4,35 @@
 #include <exception>
 #include <fstream>
 
+#include "nodes/output.hpp"
+#include "nodes/tracker.hpp"
 #include "platform/boards/board_json.hpp"
 #include "platform/boards/board_run.hpp"
 #include "platform/boards/system_share.hpp"
+#include "platform/budget/expected_board.hpp"
 #include "platform/input_error.hpp"
+#include "schedules/node_bounds.hpp"
 
 namespace glint {
 namespace {
 
 struct Arguments {
-  std::string cell_file, frames_file, can, json_file;
+  std::string cell_file, frames_file, can, json_file, board;
   bool with_dds = false, measure_system = false;
   BoardOptions options;
 };
+
+// By node, of the problem that the cell takes on.
+BoardBounds bounds_on(const std::string& name, const Cell& cell) {
+  if (name.empty()) return {};
+  const Board board = load_board(name, expected_board(), BoardUse::run_here);
+  const auto by_node = [](const auto& bounds) {
+    return std::vector<std::int64_t>(bounds.begin(), bounds.end());
+  };
+  const Limits limits = limits_of(cell);
+  return {by_node(node_bounds<Tracker>(board.table(), limits)),
+          by_node(node_bounds<Output>(board.table(), limits))};
+}
 
 void write(const std::string& file, const nlohmann::ordered_json& figures) {
   if (file.empty()) {
@@ -44,7 +60,9 @@ int run(const Arguments& arguments) {
     return 0;
   }
   const FrameLoop loop(arguments.frames_file);
-  const BoardResult result = run_board(std::move(cell), loop, arguments.options);
+  BoardOptions options = arguments.options;
+  options.bounds = bounds_on(arguments.board, cell);
+  const BoardResult result = run_board(std::move(cell), loop, options);
   write(arguments.json_file, as_json(result));
   for (const std::string& refused : result.refused) {
     std::fprintf(stderr, "best effort: %s\n", refused.c_str());
@@ -59,6 +77,8 @@ int main(int argc, char** argv) {
   glint::Arguments arguments;
   CLI::App app{"Glint on a board: frames from memory, poses to CAN and DDS"};
   app.add_option("--cell", arguments.cell_file, "cell file; default: the built-in cell");
+  app.add_option("--board", arguments.board,
+                 "costs, a built-in board or a board file: overruns are then noticed ahead");
   app.add_option("--can", arguments.can, "socketcan:IF or log:FILE, in place of the cell's");
   app.add_option("--json", arguments.json_file, "the figures; default: standard output");
   app.add_option("--out", arguments.options.out, "folder of a CAN log");

@@ -68,7 +68,7 @@ BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& opti
   Sinks sinks(cell, {options.out, false, result.refused}, unix_offset_ns);
   auto groups = std::make_unique<BoardGroups>(
       cell, sinks, [epoch] { return Time{} + (monotonic_now() - epoch); }, unix_offset_ns,
-      static_cast<std::size_t>(options.frames));
+      static_cast<std::size_t>(options.frames), options.bounds);
   const Duration run = frame_period * options.frames + cell.lost_after;
   result.tick_wake_up_ns.reserve(
       static_cast<std::size_t>(run.nanoseconds / tick_period.nanoseconds + 1));

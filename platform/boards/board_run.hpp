@@ -8,15 +8,23 @@
 
 #include "platform/boards/frame_loop.hpp"
 #include "platform/cells/cell.hpp"
+#include "platform/session/group_runner.hpp"
 #include "platform/session/latency.hpp"
 #include "platform/session/sink_outcome.hpp"
 
 namespace glint {
 
+// What each node may need at worst, by its number in the order of execution; empty: unknown, and an
+// overrun is noticed only when the deadline has passed.
+struct BoardBounds {
+  std::vector<std::int64_t> frame_ns, tick_ns;
+};
+
 struct BoardOptions {
   std::int64_t frames = 1000;
   int core = -1;          // all threads of the run on this core; -1: on any
   std::string out = ".";  // folder of a CAN log, where the cell names one
+  BoardBounds bounds;
 };
 
 struct BoardResult {
@@ -24,7 +32,7 @@ struct BoardResult {
   std::int64_t frames_worst = 0;    // of these, drawn as worst inputs
   std::int64_t frames_tracked = 0;  // of these, with at least one tool seen
   std::int64_t ticks = 0, ticks_late = 0, ticks_skipped = 0;
-  std::uint64_t frame_overruns = 0, tick_overruns = 0;
+  OverrunCounts frame_overruns, tick_overruns;
   std::vector<FrameToCan> latencies;
   std::int64_t latencies_left_out = 0;
   std::vector<std::int64_t> frame_wake_up_ns, tick_wake_up_ns;

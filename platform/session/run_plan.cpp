@@ -74,6 +74,16 @@ GroupPlan<G> group_plan(const Plan& plan, const TaskModel& model, int group,
 
 }  // namespace
 
+std::vector<std::int64_t> remaining_in_order(const std::vector<std::int64_t>& bounds_ns) {
+  std::vector<std::int64_t> remaining_ns(bounds_ns.size());
+  std::int64_t after_ns = 0;
+  for (std::size_t node = bounds_ns.size(); node-- > 0;) {
+    remaining_ns[node] = after_ns;
+    after_ns += bounds_ns[node];
+  }
+  return remaining_ns;
+}
+
 RunPlan plan_by_rule(const Cell& cell) {
   RunPlan plan;
   plan.frame.tables = graph::plan_by_rule<Tracker>(cell.workers);

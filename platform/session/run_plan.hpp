@@ -38,6 +38,10 @@ struct RunPlan {
 inline constexpr int k_tick_priority = 48;
 inline constexpr int k_frame_priority = 45;
 
+// What may be needed at worst after each node, where one worker runs them all in the graph's order.
+[[nodiscard]] std::vector<std::int64_t> remaining_in_order(
+    const std::vector<std::int64_t>& bounds_ns);
+
 // By rule, for the cell's number of workers.
 [[nodiscard]] RunPlan plan_by_rule(const Cell& cell);
 

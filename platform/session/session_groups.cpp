@@ -38,11 +38,7 @@ RunnerSettings<G> runner_settings(const GroupPlan<G>& plan, std::uint8_t group, 
     // Time stands still but for what is injected: one worker, so that each run decides alike.
     settings.plan = graph::plan_by_rule<G>(1);
     settings.others.clear();
-    std::int64_t after_ns = 0;
-    for (std::size_t node = settings.watch.remaining_ns.size(); node-- > 0;) {
-      settings.watch.remaining_ns[node] = after_ns;
-      after_ns += plan.bounds_ns[node];
-    }
+    settings.watch.remaining_ns = remaining_in_order(plan.bounds_ns);
   }
   return settings;
 }

@@ -1,0 +1,81 @@
+// A board's groups notice an overrun ahead where they were given bounds, as a desktop's do.
+#include "platform/boards/board_groups.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+namespace glint {
+namespace {
+
+constexpr std::uint32_t k_frames = 3, k_ticks = 4;
+// Beyond what any machine takes for a black frame, and so no matter of its speed.
+constexpr Duration k_deadline = milliseconds(20'000);
+
+class BoardGroupsTest : public testing::Test {
+ protected:
+  BoardGroupsTest()
+      : folder_(std::filesystem::temp_directory_path() /
+                ("glint_board_groups_" + std::to_string(::getpid()))) {
+    std::filesystem::create_directory(folder_);
+    cell_ = default_cell();
+    cell_.record.file.clear();
+    cell_.files = {"", ""};
+    cell_.dds.on = false;
+    cell_.deadlines.frame = cell_.deadlines.tick = k_deadline;
+    black_.width = black_.height = 512;
+    black_.reflectivity_16.resize(512 * 512);
+    black_.depth.resize(512 * 512);
+  }
+  ~BoardGroupsTest() override { std::filesystem::remove_all(folder_); }
+
+  // Some frames, then some ticks, each released when it is due.
+  [[nodiscard]] BoardResult run_with(const BoardBounds& bounds) const {
+    Sinks sinks(cell_, {folder_.string(), false, {}}, 0);
+    Time now;
+    BoardGroups groups(
+        cell_, sinks, [&now] { return now; }, 0, k_frames, bounds);
+    for (std::uint32_t frame = 1; frame <= k_frames; ++frame) {
+      const Time mid_exposure = Time{} + milliseconds(22 * frame);
+      now = mid_exposure + milliseconds(5);
+      ArrivedFrame arrived;
+      arrived.frame = black_.view(mid_exposure, now, frame);
+      groups.process(arrived);
+    }
+    for (std::uint32_t tick = 0; tick < k_ticks; ++tick) {
+      now = Time{} + milliseconds(100 + 4 * tick);
+      groups.tick(tick, now, now);
+    }
+    BoardResult result;
+    groups.report(result);
+    return result;
+  }
+
+  static BoardBounds every_node(Duration bound) {
+    return {std::vector<std::int64_t>(Tracker::node_count, bound.nanoseconds),
+            std::vector<std::int64_t>(Output::node_count, bound.nanoseconds)};
+  }
+
+  std::filesystem::path folder_;
+  Cell cell_;
+  FrameBuffer black_;
+};
+
+TEST_F(BoardGroupsTest, NoticeAheadThatWhatRemainsCannotBeInTime) {
+  const BoardResult result = run_with(every_node(k_deadline + Duration{1}));
+  EXPECT_EQ(result.frame_overruns.will_miss, k_frames);
+  EXPECT_EQ(result.tick_overruns.will_miss, k_ticks);
+  EXPECT_EQ(result.frame_overruns.missed + result.tick_overruns.missed, 0u);
+}
+
+TEST_F(BoardGroupsTest, GoOnWhereWhatRemainsFitsOrNoBoundIsKnown) {
+  for (const BoardBounds& bounds : {every_node(microseconds(1)), BoardBounds{}}) {
+    const BoardResult result = run_with(bounds);
+    EXPECT_EQ(result.frames, k_frames);
+    EXPECT_EQ(result.frame_overruns.total() + result.tick_overruns.total(), 0u);
+  }
+}
+
+}  // namespace
+}  // namespace glint
