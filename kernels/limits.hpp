@@ -13,7 +13,7 @@ inline constexpr int k_row_bands = 4;  // how often the frame is split; never th
 inline constexpr int k_runs_per_band_max = 4096;
 inline constexpr int k_reflectivity_bytes_max = 2;  // of a pixel
 // What all blobs share, in parts of a blob. Most take less, and a larger one what they leave.
-inline constexpr int k_centroid_pixels_a_blob = 320;   // of the box a centroid is weighed in
+inline constexpr int k_centroid_pixels_a_blob = 360;   // of the box of a blob 11 pixels wide
 inline constexpr int k_range_pixels_a_blob = 128;      // looked at for depth
 inline constexpr int k_range_samples_a_blob = 16;      // ranges that are averaged
 inline constexpr int k_labelings_max = 8;              // kept for each tool, best first

@@ -19,19 +19,23 @@ struct Component {
   std::uint16_t first_run = 0, last_run = 0;     // its runs, chained by BlobScratch::next_run
 };
 
-// The runs that one touches in the rows above and below it: neighbours in the list, half open.
-struct RunNeighbours {
-  std::uint16_t above_begin = 0, above_end = 0, below_begin = 0, below_end = 0;
+// A run by where it begins and ends in the order of rows, then columns.
+struct PlacedRun {
+  std::uint32_t begin = 0, end = 0;  // row << 16 | column; half open
+
+  [[nodiscard]] int y() const { return static_cast<int>(begin >> 16); }
+  [[nodiscard]] int x0() const { return static_cast<int>(begin & 0xFFFF); }
+  [[nodiscard]] int x1() const { return static_cast<int>(end & 0xFFFF); }
 };
 
 struct BlobScratch {
-  std::array<Run, k_runs_max> runs;
-  std::array<RunNeighbours, k_runs_max> neighbours;
+  std::array<PlacedRun, k_runs_max> runs;
+  std::array<std::uint16_t, k_runs_max> parent;  // of a run: an earlier one that it hangs together
+                                                 // with, or itself; at last its component
   std::array<std::uint16_t, k_runs_max> next_run;
-  std::array<std::uint16_t, k_runs_max> open;       // runs found, their neighbours not yet
   std::array<Component, k_runs_max> components;     // by their first run
   std::array<std::uint16_t, k_runs_max> candidate;  // indices of components inside the size gate
-  std::array<std::uint32_t, k_runs_max> distance;   // of a candidate to the nearest prediction
+  std::array<std::int32_t, k_runs_max> distance;    // of a candidate to the nearest prediction
   int run_count = 0;
   int component_count = 0;
 };

@@ -89,7 +89,7 @@ BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
     const Component& component = scratch.components[scratch.candidate[static_cast<std::size_t>(i)]];
     const int most_pixels = budget.most_for_next();
     const bool small = fits_grown_box(component);
-    const int pixels = small ? 4 * grown_box(frame, component).fours() : 0;
+    const int pixels = small ? grown_box(frame, component).pixels() : 0;
     const bool paid = pixels <= most_pixels;
     if (paid) budget.spend(pixels);
     if (!paid) out.reason = Reason::blobs_full;

@@ -28,9 +28,9 @@ namespace glint {
 // How often its loops ran.
 struct BlobWork {
   std::int32_t runs = 0;
-  std::int32_t distances = 0;  // of a component to four predictions
+  std::int32_t distances = 0;  // of four components to a prediction
   std::int32_t blobs = 0;
-  std::int32_t pixels = 0;  // of grown boxes, columns rounded up to four
+  std::int32_t pixels = 0;  // of grown boxes, see GrownBox::pixels
 };
 
 // bands: the runs of this frame from top to bottom, at most k_row_bands. predicted_px: where
@@ -47,8 +47,8 @@ BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
   const int band_rows = (limits.height + k_row_bands - 1) / k_row_bands;
   const int runs =
       k_row_bands * std::min(limits.runs_per_band, band_rows * ((limits.width + 1) / 2));
-  const int fours = (limits.tools * limits.markers_per_tool + 3) / 4;
-  return {runs, runs * fours, std::min(limits.blobs, runs),
+  const int fours = (runs + 3) / 4;
+  return {runs, fours * limits.tools * limits.markers_per_tool, std::min(limits.blobs, runs),
           limits.blobs * limits.centroid_pixels_a_blob};
 }
 

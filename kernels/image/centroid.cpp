@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "kernels/image/column_sums.hpp"
+#include "kernels/image/box_sums.hpp"
 
 namespace glint {
 namespace {
@@ -29,14 +29,14 @@ Centroid weighted(const ImageView<Pixel>& image, const BlobScratch& scratch,
                   const Component& component, std::int64_t threshold) {
   std::int64_t weights = 0, x_sum = 0, y_sum = 0;  // in half pixels: a centre is at 2 x + 1
   Pixel peak = 0;
-  for_each_run(scratch, component, [&](const Run& run) {
-    const Pixel* row = image.row(run.y);
-    for (int x = run.x0; x < run.x1; ++x) {
+  for_each_run(scratch, component, [&](const PlacedRun& run) {
+    const Pixel* row = image.row(run.y());
+    for (int x = run.x0(); x < run.x1(); ++x) {
       peak = std::max(peak, row[x]);
       const std::int64_t weight = row[x] - threshold;
       weights += weight;
       x_sum += weight * (2 * x + 1);
-      y_sum += weight * (2 * run.y + 1);
+      y_sum += weight * (2 * run.y() + 1);
     }
   });
   if (weights <= 0) return {};
@@ -48,54 +48,48 @@ Centroid binary(const ImageView<Pixel>& image, const BlobScratch& scratch,
                 const Component& component) {
   std::int64_t pixels = 0, x_sum = 0, y_sum = 0;
   Pixel peak = 0;
-  for_each_run(scratch, component, [&](const Run& run) {
-    const std::int64_t length = run.x1 - run.x0;
-    const Pixel* row = image.row(run.y);
-    peak = std::max({peak, row[run.x0], row[(run.x0 + run.x1) / 2], row[run.x1 - 1]});
+  for_each_run(scratch, component, [&](const PlacedRun& run) {
+    const int x0 = run.x0(), x1 = run.x1();
+    const std::int64_t length = x1 - x0;
+    const Pixel* row = image.row(run.y());
+    peak = std::max({peak, row[x0], row[(x0 + x1) / 2], row[x1 - 1]});
     pixels += length;
-    x_sum += length * (run.x0 + run.x1);  // the sum of 2 x + 1
-    y_sum += length * (2 * run.y + 1);
+    x_sum += length * (x0 + x1);  // the sum of 2 x + 1
+    y_sum += length * (2 * run.y() + 1);
   });
   return {from_half_pixels(x_sum, y_sum, pixels), peak};
 }
 
-// Row masks, the first two rows above the component.
-using Mask = std::array<std::uint64_t, k_grown_box_max + 4>;
-
 constexpr std::uint64_t widened(std::uint64_t row) { return row | row << 1 | row >> 1; }
-
-void grow(const Mask& mask, int rows, Mask& out) {
-  std::uint64_t before = 0, row = mask[0];
-  for (int y = 0; y < rows; ++y) {
-    const std::uint64_t after = y + 1 < rows ? mask[static_cast<std::size_t>(y + 1)] : 0;
-    out[static_cast<std::size_t>(y)] = widened(before | row | after);
-    before = row;
-    row = after;
-  }
-}
 
 template <class Pixel>
 Centroid grown(const ImageView<Pixel>& image, const Frame& frame, const BlobScratch& scratch,
                const Component& component, std::uint16_t threshold) {
   const GrownBox box = grown_box(frame, component);
-  const int top = component.y0 - 2, rows = component.y1 - component.y0 + 4;
-  Mask own, one, two;
-  std::fill_n(own.begin(), rows, 0);
-  for_each_run(scratch, component, [&](const Run& run) {
-    const std::uint64_t ones = (std::uint64_t{1} << (run.x1 - run.x0)) - 1;
-    own[static_cast<std::size_t>(run.y - top)] |= ones << (run.x0 - box.left);
+  // The blob's own rows, with two empty ones above and below it and two more to look ahead to.
+  std::array<std::uint64_t, k_grown_box_max + 6> own;
+  const int top = component.y0 - 2, rows = component.y1 - component.y0;
+  std::fill_n(own.begin(), rows + 6, 0);
+  for_each_run(scratch, component, [&](const PlacedRun& run) {
+    const std::uint64_t ones = (std::uint64_t{1} << (run.x1() - run.x0())) - 1;
+    own[static_cast<std::size_t>(run.y() - top)] |= ones << (run.x0() - box.left);
   });
-  grow(own, rows, one);
-  grow(one, rows, two);
+  const int columns = image.width - box.left;
   const std::uint64_t in_frame =
-      image.width < 64 ? (std::uint64_t{1} << image.width) - 1 : ~std::uint64_t{0};
+      columns < 64 ? (std::uint64_t{1} << columns) - 1 : ~std::uint64_t{0};
 
-  ColumnSums sums(box, threshold);
-  for (int y = box.top; y < box.bottom; ++y) {
+  // Grown by one: of the row before, of this one and of the one after.
+  std::uint64_t before = 0, near = 0, after = 0;
+  BoxSums sums(box, threshold);
+  for (int y = top; y < box.bottom; ++y) {
     const auto at = static_cast<std::size_t>(y - top);
-    const std::uint64_t near = one[at] & in_frame;
-    sums.add_row(image.row(y) + box.left, image.width - box.left, y,
-                 {own[at], near, two[at] & in_frame & ~near});
+    before = near;
+    near = after;
+    after = widened(own[at] | own[at + 1] | own[at + 2]);
+    if (y < box.top) continue;
+    const std::uint64_t rim = widened(before | near | after);
+    sums.add_row(image.row(y) + box.left, columns,
+                 {own[at], near & in_frame, rim & in_frame & ~near});
   }
   const GrownSums total = sums.total();
   // (I - dark / dark_pixels), times dark_pixels: at most 65535 * 64^2 * 64^2 * 1024 < 2^51.

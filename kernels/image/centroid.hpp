@@ -4,7 +4,7 @@
 //           pixel, less the background, which is the mean of the dark pixels one further out.
 //           weighted_centroid: weighted by reflectivity above the threshold over the blob itself.
 //           binary_centroid: the plain mean of the blob's pixels.
-// Cost:     grown: the same for each four columns of a row of the grown box, and linear in the
+// Cost:     grown: the same for each eight columns of a row of the grown box, and linear in the
 //           blob's runs; binary: linear in the blob's runs; weighted: in its pixels.
 // Worst:    a box of k_grown_box_max squared pixels.
 // Accuracy: discs of 4 to 10 px: 0.01 px rms an axis grown, 0.02 to 0.05 weighted, 0.07 to 0.09

@@ -7,98 +7,91 @@ namespace {
 
 using Index = std::uint16_t;
 
-constexpr Index k_unseen = 0xFFFF;
-static_assert(k_runs_max < k_unseen);
+static_assert(k_runs_max <= 0xFFFF);
 
-void gather_runs(std::span<const Runs* const> bands, BlobScratch& scratch, int runs_per_band) {
-  scratch.run_count = 0;
+constexpr std::uint32_t k_row = 1u << 16;
+
+PlacedRun placed(const Run& run) {
+  const std::uint32_t row = run.y * k_row;
+  return {row | run.x0, row | run.x1};
+}
+
+// The first of those that a run hangs together with, as far as is known. On the way every second
+// one is hung higher.
+Index root_of(BlobScratch& scratch, Index run) {
+  Index parent = scratch.parent[run];
+  while (parent != run) {
+    const Index above = scratch.parent[parent];
+    scratch.parent[run] = above;
+    run = above;
+    parent = scratch.parent[run];
+  }
+  return run;
+}
+
+// Hangs each run under the first one that it touches in the row above, and those under each other.
+void join_runs(std::span<const Runs* const> bands, BlobScratch& scratch, int runs_per_band) {
   const std::size_t band_count = std::min<std::size_t>(bands.size(), k_row_bands);
   const int most = std::clamp(runs_per_band, 0, k_runs_per_band_max);
-  for (std::size_t band = 0; band < band_count; ++band) {
-    const int count = std::clamp(bands[band]->count, 0, most);
-    std::copy_n(bands[band]->items.begin(), count, scratch.runs.begin() + scratch.run_count);
-    scratch.run_count += count;
-  }
-}
-
-// Places in the order of rows, then columns.
-constexpr std::uint32_t place(unsigned y, unsigned x) { return y << 16 | x; }
-
-void find_neighbours(BlobScratch& scratch) {
+  PlacedRun* const runs = scratch.runs.data();
+  int count = 0;
   int above = 0;  // first run that may still touch; a run of the same row never does
-  for (int i = 0; i < scratch.run_count; ++i) {
-    const Run run = scratch.runs[static_cast<Index>(i)];
-    const std::uint32_t from = place(run.y, run.x0), to = place(run.y, run.x1);
-    const auto begins_below = [&](int j) {
-      const Run& upper = scratch.runs[static_cast<Index>(j)];
-      return place(upper.y + 1u, upper.x0);
-    };
-    const auto ends_below = [&](int j) {
-      const Run& upper = scratch.runs[static_cast<Index>(j)];
-      return place(upper.y + 1u, upper.x1);
-    };
-    while (ends_below(above) < from) ++above;
-    int j = above;
-    for (; begins_below(j) <= to; ++j) {
-      RunNeighbours& upper = scratch.neighbours[static_cast<Index>(j)];
-      upper.below_begin = upper.below_end == 0 ? static_cast<Index>(i) : upper.below_begin;
-      upper.below_end = static_cast<Index>(i + 1);
+  for (std::size_t band = 0; band < band_count; ++band) {
+    const int in_band = std::clamp(bands[band]->count, 0, most);
+    for (int i = 0; i < in_band; ++i) {
+      const PlacedRun run = placed(bands[band]->items[static_cast<std::size_t>(i)]);
+      const auto self = static_cast<Index>(count++);
+      runs[self] = run;
+      scratch.parent[self] = self;
+      while (runs[above].end + k_row < run.begin) ++above;
+      int j = above;
+      if (runs[j].begin + k_row > run.end) continue;
+      Index root = root_of(scratch, static_cast<Index>(j));
+      for (++j; runs[j].begin + k_row <= run.end; ++j) {
+        const Index other = root_of(scratch, static_cast<Index>(j));
+        if (other == root) continue;
+        scratch.parent[std::max(root, other)] = std::min(root, other);
+        root = std::min(root, other);
+      }
+      scratch.parent[self] = root;
     }
-    scratch.neighbours[static_cast<Index>(i)] = {static_cast<Index>(above), static_cast<Index>(j),
-                                                 0, 0};
-    scratch.next_run[static_cast<Index>(i)] = k_unseen;
   }
+  scratch.run_count = count;
 }
 
-class Search {
- public:
-  explicit Search(BlobScratch& scratch) : scratch_(scratch) {}
-
-  // The component of a run that no other component has.
-  [[nodiscard]] Component from(Index first) {
-    const Run& top = scratch_.runs[first];
-    Component component{0, top.x0, top.y, top.x1, 0, first, first};
-    see(first);
-    while (open_count_ > 0) {
-      const Index index = scratch_.open[--open_count_];
-      const Run run = scratch_.runs[index];
-      component.area_px += static_cast<std::uint32_t>(run.x1 - run.x0);
-      component.x0 = std::min(component.x0, run.x0);
-      component.x1 = std::max(component.x1, run.x1);
-      component.y1 = std::max<std::uint16_t>(component.y1, static_cast<std::uint16_t>(run.y + 1));
-      scratch_.next_run[component.last_run] = index;
-      component.last_run = index;
-      const RunNeighbours near = scratch_.neighbours[index];
-      for (unsigned j = near.above_begin; j < near.above_end; ++j) see(static_cast<Index>(j));
-      for (unsigned j = near.below_begin; j < near.below_end; ++j) see(static_cast<Index>(j));
-    }
-    return component;
+// A parent comes before its runs, so that its component is known when theirs is asked for. Every
+// run does the same, as whether it is a component's first cannot be foreseen: the next free
+// component is made ready by each.
+void gather_components(BlobScratch& scratch) {
+  int count = 0;
+  for (int i = 0; i < scratch.run_count; ++i) {
+    const auto self = static_cast<Index>(i);
+    const PlacedRun run = scratch.runs[self];
+    const auto y = static_cast<std::uint16_t>(run.y());
+    const auto x0 = static_cast<std::uint16_t>(run.x0()), x1 = static_cast<std::uint16_t>(run.x1());
+    scratch.components[static_cast<std::size_t>(count)] = {0, x0, y, x1, y, self, self};
+    const Index parent = scratch.parent[self];
+    const Index known = scratch.parent[parent];
+    const Index index = parent == self ? static_cast<Index>(count) : known;
+    count += parent == self ? 1 : 0;
+    scratch.parent[self] = index;
+    Component& component = scratch.components[index];
+    component.area_px += run.end - run.begin;
+    component.x0 = std::min(component.x0, x0);
+    component.x1 = std::max(component.x1, x1);
+    component.y1 = static_cast<std::uint16_t>(y + 1);
+    scratch.next_run[component.last_run] = self;
+    component.last_run = self;
   }
-
- private:
-  void see(Index index) {
-    if (scratch_.next_run[index] != k_unseen) return;
-    scratch_.next_run[index] = index;
-    scratch_.open[open_count_++] = index;
-  }
-
-  BlobScratch& scratch_;
-  std::size_t open_count_ = 0;
-};
+  scratch.component_count = count;
+}
 
 }  // namespace
 
 void find_components(std::span<const Runs* const> bands, BlobScratch& scratch,
                      int runs_per_band) noexcept {
-  gather_runs(bands, scratch, runs_per_band);
-  find_neighbours(scratch);
-  scratch.component_count = 0;
-  Search search(scratch);
-  for (int i = 0; i < scratch.run_count; ++i) {
-    const auto index = static_cast<Index>(i);
-    if (scratch.next_run[index] != k_unseen) continue;
-    scratch.components[static_cast<Index>(scratch.component_count++)] = search.from(index);
-  }
+  join_runs(bands, scratch, runs_per_band);
+  gather_components(scratch);
 }
 
 }  // namespace glint

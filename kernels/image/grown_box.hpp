@@ -1,5 +1,5 @@
 // The box in which a blob's centroid is weighed: the blob's own, grown by two pixels, cut at the
-// frame's border, in columns that are loaded four at a time.
+// frame's border, in columns that are loaded eight at a time.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,12 @@ namespace glint {
 inline constexpr int k_grown_box_max = 60;
 
 struct GrownBox {
-  int left = 0;                      // the frame's column that bit 0 of a row's mask stands for
-  int first_four = 0, end_four = 0;  // columns left + 4 first_four .. left + 4 end_four
-  int top = 0, bottom = 0;           // rows inside the frame, half open
+  int left = 0;             // the frame's column that bit 0 of a row's mask stands for
+  int eights = 0;           // of columns from there on, all inside a frame that has as many
+  int top = 0, bottom = 0;  // rows inside the frame, half open
 
-  [[nodiscard]] int fours() const { return (bottom - top) * (end_four - first_four); }
+  // What its pixels cost. A row's masks cost as much as eight pixels more.
+  [[nodiscard]] int pixels() const { return 8 * (bottom - top) * (eights + 1); }
 };
 
 [[nodiscard]] inline bool fits_grown_box(const Component& component) {
@@ -26,11 +27,11 @@ struct GrownBox {
 }
 
 [[nodiscard]] inline GrownBox grown_box(const Frame& frame, const Component& component) {
+  const int begin = std::max(component.x0 - 2, 0);
+  const int end = std::min(component.x1 + 2, frame.width());
   GrownBox box;
-  // 64 columns that all lie inside the frame, where it has as many.
-  box.left = std::clamp(component.x0 - 2, 0, std::max(frame.width() - 64, 0));
-  box.first_four = std::max(component.x0 - 2 - box.left, 0) / 4;
-  box.end_four = (std::min(component.x1 + 2 - box.left, 64) + 3) / 4;
+  box.eights = (end - begin + 7) / 8;
+  box.left = std::clamp(begin, 0, std::max(frame.width() - 8 * box.eights, 0));
   box.top = std::max(component.y0 - 2, 0);
   box.bottom = std::min(component.y1 + 2, frame.height());
   return box;

@@ -2,81 +2,124 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+
+#include "kernels/image/pair_products.hpp"
 
 namespace glint {
 namespace {
 
-using Lanes = float __attribute__((vector_size(16)));
+// In half pixels: a middle is from 0 to 1024, so that none is further from a prediction than 1536.
+constexpr int k_nearest = -512, k_farthest = 1536;
+constexpr std::int32_t k_too_far = 1 << 23;
+static_assert(2 * std::max(k_width_max, k_height_max) - k_nearest <= 1536);
+static_assert(2 * 1536 * 1536 < k_too_far);
 
-// The predictions in half pixels, four at a time, the last one repeated. As small whole numbers
-// they stay exact in float, which every vector unit multiplies; far outside the frame the order
-// among them is of no interest.
-struct Predictions {
-  std::array<Lanes, k_predictions_max / 4> x, y;
-  int fours = 0;
+// The smaller of numbers up to k_too_far: in the place of a float's fraction they are in the order
+// of the floats, for which every x86-64 has an instruction that chooses.
+class Least {
+ public:
+  void see(Sums other) {
+#ifdef __SSE2__
+    least_ = _mm_min_ps(least_, reinterpret_cast<__m128>(other | k_exponent));
+#else
+    least_ = other < least_ ? other : least_;
+#endif
+  }
+#ifdef __SSE2__
+  [[nodiscard]] Sums value() const { return reinterpret_cast<Sums>(least_) ^ k_exponent; }
+
+ private:
+  static constexpr Sums k_exponent = Sums{} + 0x4B000000;  // of 2^23
+  __m128 least_ = reinterpret_cast<__m128>((Sums{} + k_too_far) | k_exponent);
+#else
+  [[nodiscard]] Sums value() const { return least_; }
+
+ private:
+  Sums least_ = Sums{} + k_too_far;
+#endif
 };
+
+// The predictions in half pixels, x beside y, each as often as there are pairs of lanes. Far
+// outside the frame the order among them is of no interest.
+struct Predictions {
+  std::array<Words, k_predictions_max> at;
+  int count = 0;
+};
+
+constexpr std::int32_t pair_of(int x, int y) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(x & 0xFFFF) |
+                                   static_cast<std::uint32_t>(y & 0xFFFF) << 16);
+}
 
 Predictions in_half_pixels(std::span<const Vector2> predicted_px) {
   Predictions out;
-  int count = 0;
-  const auto put = [&](int at, float x, float y) {
-    out.x[static_cast<std::size_t>(at / 4)][at % 4] = x;
-    out.y[static_cast<std::size_t>(at / 4)][at % 4] = y;
-  };
-  float x = 0, y = 0;
   for (const Vector2& pixel : predicted_px) {
-    if (count == k_predictions_max) break;
+    if (out.count == k_predictions_max) break;
     if (!(pixel.squaredNorm() < 1e12)) continue;
-    x = static_cast<float>(std::clamp(static_cast<int>(2 * pixel.x()), -512, 1536));
-    y = static_cast<float>(std::clamp(static_cast<int>(2 * pixel.y()), -512, 1536));
-    put(count++, x, y);
+    const int x = std::clamp(static_cast<int>(2 * pixel.x()), k_nearest, k_farthest);
+    const int y = std::clamp(static_cast<int>(2 * pixel.y()), k_nearest, k_farthest);
+    out.at[static_cast<std::size_t>(out.count++)] = reinterpret_cast<Words>(Sums{} + pair_of(x, y));
   }
-  for (; count % 4 != 0; ++count) put(count, x, y);
-  out.fours = count / 4;
   return out;
 }
 
-// Squared, in half pixels, from the middle of the component's box.
-std::uint32_t nearest(const Component& component, const Predictions& predictions) {
-  const Lanes x = Lanes{} + static_cast<float>(component.x0 + component.x1);
-  const Lanes y = Lanes{} + static_cast<float>(component.y0 + component.y1);
-  Lanes least = Lanes{} + 1e9f;
-  for (int i = 0; i < predictions.fours; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const Lanes dx = x - predictions.x[at], dy = y - predictions.y[at];
-    const Lanes square = dx * dx + dy * dy;
-    least = square < least ? square : least;
-  }
-  return static_cast<std::uint32_t>(std::min({least[0], least[1], least[2], least[3]}));
+std::int32_t middle_of(const Component& component) {
+  return pair_of(component.x0 + component.x1, component.y0 + component.y1);
 }
 
-constexpr int k_digit_bits = 8;
-constexpr int k_digits = 3;
-constexpr std::uint32_t k_digit_values = 1u << k_digit_bits;
+// Squared, in half pixels, of four middles to their nearest predictions.
+Sums nearest(Words middles, const Predictions& predictions) {
+  Least least;
+  for (int i = 0; i < predictions.count; ++i) {
+    const Words apart = middles - predictions.at[static_cast<std::size_t>(i)];
+    least.see(pair_products(apart, apart));
+  }
+  return least.value();
+}
 
 struct Cut {
-  std::uint32_t distance = 0;  // all below it stay,
-  int equal = 0;               // and so many of those that have it
+  std::int32_t distance = 0;  // all below it stay,
+  int equal = 0;              // and so many of those that have it
 };
 
-// The distance of place `kept` in the order.
+// The distance of place `kept` in the order, bit by bit: as many are below it as it has room for.
+// Behind the candidates' distances come those that fill up two vectors.
 Cut find_cut(const BlobScratch& scratch, int candidates, int kept) {
   Cut cut{0, kept};
-  for (int digit = k_digits - 1; digit >= 0; --digit) {
-    const int shift = digit * k_digit_bits;
-    std::array<std::uint16_t, k_digit_values + 1> histogram{};  // the last: other upper digits
-    for (int i = 0; i < candidates; ++i) {
-      const std::uint32_t upper = scratch.distance[static_cast<std::size_t>(i)] >> shift;
-      const bool same = upper >> k_digit_bits == cut.distance;
-      ++histogram[same ? upper & (k_digit_values - 1) : k_digit_values];
+  for (std::int32_t bit = k_too_far / 2; bit > 0; bit /= 2) {
+    const Sums tried = Sums{} + (cut.distance + bit);
+    Sums even{}, odd{};
+    for (int i = 0; i < candidates; i += 8) {
+      Sums distances[2];
+      std::memcpy(&distances, &scratch.distance[static_cast<std::size_t>(i)], sizeof distances);
+      even -= distances[0] < tried;
+      odd -= distances[1] < tried;
     }
-    std::uint32_t value = 0;
-    for (; value + 1 < k_digit_values && histogram[value] < cut.equal; ++value) {
-      cut.equal -= histogram[value];
+    const auto below = static_cast<int>(sum_of(even + odd));
+    if (below < kept) {
+      cut.distance += bit;
+      cut.equal = kept - below;
     }
-    cut.distance = cut.distance << k_digit_bits | value;
   }
   return cut;
+}
+
+// To each candidate's middle, and k_too_far behind the last one.
+void measure_distances(const Predictions& predictions, BlobScratch& scratch, int candidates) {
+  for (int i = 0; i < candidates; i += 4) {
+    const auto middle = [&](int lane) {
+      const auto at = static_cast<std::size_t>(std::min(i + lane, candidates - 1));
+      return middle_of(scratch.components[scratch.candidate[at]]);
+    };
+    const Sums middles = {middle(0), middle(1), middle(2), middle(3)};
+    const Sums distances = nearest(reinterpret_cast<Words>(middles), predictions);
+    std::memcpy(&scratch.distance[static_cast<std::size_t>(i)], &distances, sizeof distances);
+  }
+  static_assert(k_runs_max % 8 == 0);
+  for (int i = candidates; i % 8 != 0; ++i) {
+    scratch.distance[static_cast<std::size_t>(i)] = k_too_far;
+  }
 }
 
 }  // namespace
@@ -84,22 +127,19 @@ Cut find_cut(const BlobScratch& scratch, int candidates, int kept) {
 int keep_nearest(std::span<const Vector2> predicted_px, BlobScratch& scratch, int candidates,
                  int kept) noexcept {
   const Predictions predictions = in_half_pixels(predicted_px);
-  if (predictions.fours == 0) return 0;  // the first ones stand where they should
-  for (int i = 0; i < candidates; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    scratch.distance[at] = nearest(scratch.components[scratch.candidate[at]], predictions);
-  }
+  if (predictions.count == 0) return 0;  // the first ones stand where they should
+  measure_distances(predictions, scratch, candidates);
   Cut cut = find_cut(scratch, candidates, kept);
   std::size_t out = 0;
   for (int i = 0; i < candidates; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    const std::uint32_t distance = scratch.distance[at];
+    const std::int32_t distance = scratch.distance[at];
     const bool last_place = distance == cut.distance && cut.equal > 0;
     scratch.candidate[out] = scratch.candidate[at];
     cut.equal -= last_place ? 1 : 0;
     out += distance < cut.distance || last_place ? 1 : 0;
   }
-  return candidates * predictions.fours;
+  return (candidates + 3) / 4 * predictions.count;
 }
 
 }  // namespace glint

@@ -36,7 +36,7 @@ class MeasuredFindBlobs final : public MeasuredKernel {
         drawn_.recorded(random);
         break;
       case InputKind::worst:
-        draw_worst(number);
+        draw_worst(number, random);
         break;
       case InputKind::searched:
         search(random);
@@ -89,9 +89,9 @@ class MeasuredFindBlobs final : public MeasuredKernel {
     }
   }
 
-  void draw_worst(std::uint64_t variant) {
+  void draw_worst(std::uint64_t variant, CounterRandom& random) {
     const int side = limits_.width;
-    switch (variant % 8) {
+    switch (variant % 10) {
       case 0:
         draw_dots_and_bars(1);
         break;
@@ -113,9 +113,27 @@ class MeasuredFindBlobs final : public MeasuredKernel {
       case 6:
         drawn_.pattern({12, 6, 12, 6, 0, 0, side, 0, side});
         break;
-      default:
+      case 7:
         draw_comb();
         break;
+      case 8:
+        draw_scattered(random, 1);
+        break;
+      default:
+        draw_scattered(random, 8);
+        break;
+    }
+  }
+
+  // Short runs at random, nearly as many as fit; some touch.
+  void draw_scattered(CounterRandom& random, int longest) {
+    const int rows = limits_.height / k_row_bands;
+    for (int band = 0; band < k_row_bands; ++band) {
+      for (int i = 0; i < limits_.runs_per_band; ++i) {
+        const int x = random.below(limits_.width), y = band * rows + random.below(rows);
+        const int end = x + random.between(1, longest);
+        drawn_.pattern({limits_.width, 0, 1, 0, 0, x, end, y, y + 1});
+      }
     }
   }
 
@@ -154,7 +172,7 @@ class MeasuredFindBlobs final : public MeasuredKernel {
       draw(halves);
       run();
       const graph::LoopCounts n = counts();
-      return 100 * n[1] + 8 * n[2] + 500 * n[3] + 7 * n[4];
+      return 60 * n[1] + 7 * n[2] + 600 * n[3] + 6 * n[4];
     }));
   }
 

@@ -1,0 +1,130 @@
+// The sums that a grown centroid needs, eight columns at a time.
+//
+// What:     reflectivity, positions and number of the pixels near the blob; reflectivity and number
+//           of the dark pixels around them; the blob's brightest pixel.
+// Cost:     the same for every eight columns of a row, whatever their masks, and about as much
+//           again for each row.
+// Worst:    none is worse than another.
+// Accuracy: exact: lanes of 16 and 32 bits that cannot overflow, see k_rows_max.
+// Source:   reflectivities less 2^15, which makes them numbers with a sign, as what multiplies
+//           them in pairs takes them; that is added again for each pixel at the end. Rows: a sum of
+//           partial sums has each row once for itself and for every row that comes after it.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+
+#include "kernels/image/grown_box.hpp"
+#include "kernels/image/pair_products.hpp"
+
+namespace glint {
+
+struct GrownSums {
+  std::int64_t weight = 0, x = 0, y = 0;  // in half pixels: a centre is at 2 x + 1
+  std::int64_t pixels = 0, pixels_x = 0, pixels_y = 0;
+  std::int64_t dark = 0, dark_pixels = 0;
+  std::uint16_t peak = 0;
+};
+
+// Bit i of each stands for column box.left + i.
+struct RowMasks {
+  std::uint64_t own = 0;   // the blob itself
+  std::uint64_t near = 0;  // and one pixel around it
+  std::uint64_t rim = 0;   // one further out
+};
+
+class BoxSums {
+ public:
+  // box: at most 64 columns and rows. Rim pixels above the threshold belong to a neighbour.
+  BoxSums(const GrownBox& box, std::uint16_t threshold)
+      : box_(box), threshold_(Words{} + static_cast<std::int16_t>(threshold ^ 0x8000)) {}
+
+  // The rows from box.top on, one by one. row: the pixel of box.left; width: how many the frame has
+  // from there on.
+  template <class Pixel>
+  void add_row(const Pixel* row, int width, const RowMasks& masks) {
+    Pixel padded[64];
+    if (width < 8 * box_.eights) {  // a frame narrower than the box
+      std::memset(padded, 0, sizeof padded);
+      std::memcpy(padded, row, static_cast<std::size_t>(width) * sizeof(Pixel));
+      row = padded;
+    }
+    const Words one = Words{} + std::int16_t{1};
+    Sums weight = weight_, x = x_, dark = dark_;
+    Words pixels = pixels_, pixels_x = pixels_x_, dark_pixels = dark_pixels_, peak = peak_;
+    for (int eight = 0; eight < box_.eights; ++eight) {
+      const Words value = load(row + 8 * eight) ^ k_lowest;
+      const Words column =
+          Words{-32, -31, -30, -29, -28, -27, -26, -25} + static_cast<std::int16_t>(8 * eight);
+      const Words near = chosen(masks.near, eight);
+      const Words near_value = value & near;
+      weight += pair_products(near_value, one);
+      x += pair_products(near_value, column);
+      pixels -= near;
+      pixels_x += column & near;
+      const Words rim = chosen(masks.rim, eight) & ~(value > threshold_);
+      dark += pair_products(value & rim, one);
+      dark_pixels -= rim;
+      const Words own = ((value ^ k_lowest) & chosen(masks.own, eight)) ^ k_lowest;
+      peak = own > peak ? own : peak;
+    }
+    weight_ = weight, x_ = x, dark_ = dark;
+    pixels_ = pixels, pixels_x_ = pixels_x, dark_pixels_ = dark_pixels, peak_ = peak;
+    weight_from_below_ += weight;
+    pixels_from_below_ += pixels;
+  }
+
+  [[nodiscard]] GrownSums total() const {
+    GrownSums out;
+    const std::int64_t x = 2 * box_.left + 65, y = 2 * box_.bottom + 1;  // of column 32, row bottom
+    const std::int64_t pixels_x = sum_of(pixels_x_), from_below = sum_of(pixels_from_below_);
+    out.pixels = sum_of(pixels_);
+    out.pixels_x = x * out.pixels + 2 * pixels_x;
+    out.pixels_y = y * out.pixels - 2 * from_below;
+    out.weight = sum_of(weight_) + k_half * out.pixels;
+    out.x = x * out.weight + 2 * (sum_of(x_) + k_half * pixels_x);
+    out.y = y * out.weight - 2 * (sum_of(weight_from_below_) + k_half * from_below);
+    out.dark_pixels = sum_of(dark_pixels_);
+    out.dark = sum_of(dark_) + k_half * out.dark_pixels;
+    std::int16_t peak = peak_[0];
+    for (int lane = 1; lane < 8; ++lane) peak = std::max(peak, peak_[lane]);
+    out.peak = static_cast<std::uint16_t>(peak ^ 0x8000);
+    return out;
+  }
+
+ private:
+  static constexpr std::int64_t k_half = 1 << 15;
+  // A lane of 32 bits takes 8 pairs below 2^16 from a row, a lane of 16 bits 8 pixels. What sums
+  // them from below has the first row 64 times, the last once: 2080 * 2^19 < 2^31, 2080 * 8 < 2^15.
+  // A lane's columns are 80 together, in pairs 160, counted from column 32: 64 * 160 * 2^15 < 2^31.
+  static constexpr int k_rows_max = 64;
+  static_assert(k_grown_box_max + 4 <= k_rows_max);
+  static constexpr Words k_lowest = Words{} + std::int16_t{-32768};
+
+  static Words load(const std::uint8_t* pixels) {
+    std::uint8_t eight __attribute__((vector_size(8)));
+    std::memcpy(&eight, pixels, sizeof eight);
+    return __builtin_convertvector(eight, Words);
+  }
+  static Words load(const std::uint16_t* pixels) {
+    Words eight;
+    std::memcpy(&eight, pixels, sizeof eight);
+    return eight;
+  }
+
+  // All bits of a lane are set where the column's bit is.
+  static Words chosen(std::uint64_t mask, int eight) {
+    const Words bits = {1, 2, 4, 8, 16, 32, 64, 128};
+    const Words all = Words{} + static_cast<std::int16_t>(mask >> (8 * eight) & 0xFF);
+    return (all & bits) == bits;
+  }
+
+  GrownBox box_;
+  Words threshold_;
+  Sums weight_{}, weight_from_below_{}, x_{}, dark_{};
+  Words pixels_{}, pixels_from_below_{}, pixels_x_{}, dark_pixels_{};
+  Words peak_ = k_lowest;
+};
+
+}  // namespace glint

@@ -1,0 +1,42 @@
+// Sixteen-bit lanes, eight at a time, multiplied and added in pairs.
+//
+// What:     the one product that x86-64 has for them; elsewhere the same from 32-bit lanes.
+// Cost:     one instruction on x86-64, eight elsewhere.
+// Accuracy: exact, as long as a pair's sum fits 32 bits: all but four times -32768.
+#pragma once
+
+#include <cstdint>
+
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+namespace glint {
+
+using Words = std::int16_t __attribute__((vector_size(16)));
+using Sums = std::int32_t __attribute__((vector_size(16)));
+
+// Lane i: a[2 i] b[2 i] + a[2 i + 1] b[2 i + 1].
+inline Sums pair_products(Words a, Words b) {
+#ifdef __SSE2__
+  return reinterpret_cast<Sums>(
+      _mm_madd_epi16(reinterpret_cast<__m128i>(a), reinterpret_cast<__m128i>(b)));
+#else
+  using Bits = std::uint32_t __attribute__((vector_size(16)));
+  const auto low = [](Words words) {
+    return reinterpret_cast<Sums>(reinterpret_cast<Bits>(words) << 16) >> 16;
+  };
+  const auto high = [](Words words) { return reinterpret_cast<Sums>(words) >> 16; };
+  return low(a) * low(b) + high(a) * high(b);
+#endif
+}
+
+inline std::int64_t sum_of(Sums lanes) {
+  return std::int64_t{lanes[0]} + lanes[1] + lanes[2] + lanes[3];
+}
+
+inline std::int64_t sum_of(Words lanes) {
+  return sum_of(pair_products(lanes, Words{} + std::int16_t{1}));
+}
+
+}  // namespace glint
