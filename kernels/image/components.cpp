@@ -59,27 +59,29 @@ void join_runs(std::span<const Runs* const> bands, BlobScratch& scratch, int run
   scratch.run_count = count;
 }
 
-// A parent comes before its runs, so that its component is known when theirs is asked for. Every
-// run does the same, as whether it is a component's first cannot be foreseen: the next free
-// component is made ready by each.
+// A parent comes before its runs, so that its component is known when theirs is asked for.
 void gather_components(BlobScratch& scratch) {
+  const int run_count = scratch.run_count;
   int count = 0;
-  for (int i = 0; i < scratch.run_count; ++i) {
+  for (int i = 0; i < run_count; ++i) {
     const auto self = static_cast<Index>(i);
     const PlacedRun run = scratch.runs[self];
-    const auto y = static_cast<std::uint16_t>(run.y());
+    const auto y0 = static_cast<std::uint16_t>(run.y()), y1 = static_cast<std::uint16_t>(y0 + 1);
     const auto x0 = static_cast<std::uint16_t>(run.x0()), x1 = static_cast<std::uint16_t>(run.x1());
-    scratch.components[static_cast<std::size_t>(count)] = {0, x0, y, x1, y, self, self};
+    const std::uint32_t length = run.end - run.begin;
     const Index parent = scratch.parent[self];
-    const Index known = scratch.parent[parent];
-    const Index index = parent == self ? static_cast<Index>(count) : known;
-    count += parent == self ? 1 : 0;
+    if (parent == self) {
+      scratch.parent[self] = static_cast<Index>(count);
+      scratch.components[static_cast<Index>(count++)] = {length, x0, y0, x1, y1, self, self};
+      continue;
+    }
+    const Index index = scratch.parent[parent];
     scratch.parent[self] = index;
     Component& component = scratch.components[index];
-    component.area_px += run.end - run.begin;
+    component.area_px += length;
     component.x0 = std::min(component.x0, x0);
     component.x1 = std::max(component.x1, x1);
-    component.y1 = static_cast<std::uint16_t>(y + 1);
+    component.y1 = y1;
     scratch.next_run[component.last_run] = self;
     component.last_run = self;
   }

@@ -14,6 +14,7 @@ constexpr int k_nearest = -512, k_farthest = 1536;
 constexpr std::int32_t k_too_far = 1 << 23;
 static_assert(2 * std::max(k_width_max, k_height_max) - k_nearest <= 1536);
 static_assert(2 * 1536 * 1536 < k_too_far);
+constexpr int k_at_once = 16;  // distances compared in one round
 
 // The smaller of numbers up to k_too_far: in the place of a float's fraction they are in the order
 // of the floats, for which every x86-64 has an instruction that chooses.
@@ -84,19 +85,25 @@ struct Cut {
 };
 
 // The distance of place `kept` in the order, bit by bit: as many are below it as it has room for.
-// Behind the candidates' distances come those that fill up two vectors.
+// Behind the candidates' distances come those that fill up k_at_once, which are below none.
 Cut find_cut(const BlobScratch& scratch, int candidates, int kept) {
+  const int padded = (candidates + k_at_once - 1) / k_at_once * k_at_once;
+  const auto at = [&](int i) {
+    Sums four;
+    std::memcpy(&four, &scratch.distance[static_cast<std::size_t>(i)], sizeof four);
+    return four;
+  };
   Cut cut{0, kept};
   for (std::int32_t bit = k_too_far / 2; bit > 0; bit /= 2) {
-    const Sums tried = Sums{} + (cut.distance + bit);
-    Sums even{}, odd{};
-    for (int i = 0; i < candidates; i += 8) {
-      Sums distances[2];
-      std::memcpy(&distances, &scratch.distance[static_cast<std::size_t>(i)], sizeof distances);
-      even -= distances[0] < tried;
-      odd -= distances[1] < tried;
+    const Sums last_below = Sums{} + (cut.distance + bit - 1);
+    Sums even{}, odd{};  // counts of the others, negative
+    for (int i = 0; i < padded; i += k_at_once) {
+      even += at(i) > last_below;
+      odd += at(i + 4) > last_below;
+      even += at(i + 8) > last_below;
+      odd += at(i + 12) > last_below;
     }
-    const auto below = static_cast<int>(sum_of(even + odd));
+    const int below = padded + static_cast<int>(sum_of(even + odd));
     if (below < kept) {
       cut.distance += bit;
       cut.equal = kept - below;
@@ -116,8 +123,8 @@ void measure_distances(const Predictions& predictions, BlobScratch& scratch, int
     const Sums distances = nearest(reinterpret_cast<Words>(middles), predictions);
     std::memcpy(&scratch.distance[static_cast<std::size_t>(i)], &distances, sizeof distances);
   }
-  static_assert(k_runs_max % 8 == 0);
-  for (int i = candidates; i % 8 != 0; ++i) {
+  static_assert(k_runs_max % k_at_once == 0);
+  for (int i = candidates; i % k_at_once != 0; ++i) {
     scratch.distance[static_cast<std::size_t>(i)] = k_too_far;
   }
 }
