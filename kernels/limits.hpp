@@ -18,7 +18,6 @@ inline constexpr int k_range_pixels_a_blob = 128;      // looked at for depth
 inline constexpr int k_range_samples_a_blob = 16;      // ranges that are averaged
 inline constexpr int k_labelings_max = 8;              // kept for each tool, best first
 inline constexpr int k_lens_steps_max = 40;            // of a search in a lens table, a projection
-inline constexpr int k_pair_tests_max = 16'384;        // of a distance against a tool's, a tool
 inline constexpr int k_search_steps_max = 4'096;       // of the correspondence search, a tool
 inline constexpr int k_background_steps_max = 50'000;  // of one background slice
 
@@ -32,7 +31,6 @@ struct Limits {
   int blobs = k_blobs_max;
   int runs_per_band = k_runs_per_band_max;
   int lens_steps = k_lens_steps_max;  // 0 for a lens without a table
-  int pair_tests = k_pair_tests_max;
   int search_steps = k_search_steps_max;
   int background_steps = k_background_steps_max;
   int reflectivity_bytes = k_reflectivity_bytes_max;

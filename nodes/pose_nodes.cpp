@@ -54,7 +54,6 @@ void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
   const int count = tools_within(set, limits);
   CorrespondSettings gated = settings;
   gated.markers_max = limits.blobs;
-  gated.pair_tests_max = 0;
   gated.search_steps_max = 0;
   for (int t = slice.index; t < count; t += slice.count) {
     const auto i = static_cast<std::size_t>(t);
@@ -67,15 +66,13 @@ void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
     }
     const Prediction& prediction = predictions.tools[i];
     gated.prior_gate_m = settings.prior_gate_m + prediction.reach_m;
-    gated.pair_tests_max += limits.pair_tests;
     gated.search_steps_max += limits.search_steps;
     const CorrespondWork work = propose_labelings(
         markers, tool, gated, prediction.has_prior ? &prediction.T_camera_tool : nullptr, scratch_,
         out);
-    gated.pair_tests_max -= work.pairs.tests;
     gated.search_steps_max -= work.search.steps;
-    const graph::LoopCounts done = {{0, 1, work.markers, work.pairs.pairs, work.pairs.words_cleared,
-                                     work.pairs.tests, work.search.steps,
+    const graph::LoopCounts done = {{0, 1, work.markers, work.pairs.pairs, work.pairs.tests,
+                                     work.pairs.words_written, work.search.steps,
                                      work.search.words_narrowed}};
     for (std::size_t loop = 0; loop < k_loops.size(); ++loop) counts_[loop] += done[loop];
   }

@@ -18,12 +18,12 @@
 
 namespace glint {
 
-// The labelings that each tool of this slice could have. What a tool leaves of its budgets the next
+// The labelings that each tool of this slice could have. What a tool leaves of its steps the next
 // ones of the slice may use.
 struct Correspond {
   static constexpr std::array<std::string_view, 8> k_loops = {
-      "call",          "tools",      "markers", "pairs",
-      "words_cleared", "pair_tests", "steps",   "words_narrowed"};
+      "call",       "tools",         "markers", "pairs",
+      "pair_tests", "words_written", "steps",   "words_narrowed"};
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
     return worst(limits, {0, k_tool_slices});
   }
@@ -31,10 +31,12 @@ struct Correspond {
                                                          graph::Slice slice) noexcept {
     const std::int64_t tools = tools_of(limits, slice);
     const std::int64_t blobs = limits.blobs;
-    const std::int64_t row = limits.markers_per_tool * ((blobs + 63) / 64);
-    return {{1, tools, tools * blobs, tools * blobs * (blobs - 1) / 2,
-             tools * limits.markers_per_tool * blobs * row, tools * limits.pair_tests,
-             tools * limits.search_steps, tools * limits.search_steps * row}};
+    const std::int64_t pairs = blobs * (blobs - 1) / 2;
+    const std::int64_t distances = limits.markers_per_tool * (limits.markers_per_tool - 1) / 2;
+    const std::int64_t words = (blobs + 63) / 64;  // of a set of candidates
+    return {{1, tools, tools * blobs, tools * pairs, tools * pairs * distances,
+             tools * distances * blobs * words, tools * limits.search_steps,
+             tools * limits.search_steps * limits.markers_per_tool * words}};
   }
   [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
 

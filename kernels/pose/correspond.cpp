@@ -86,7 +86,7 @@ CorrespondWork propose_labelings(const Markers& markers, const Tool& tool,
   }
   run_levels(search, all_of(candidates), settings, most, least_alone, labelings);
   if (predicted) prefer_predicted(labelings, tool, settings, *prior_T_camera_tool);
-  if (search.full() || work.pairs.full) {
+  if (search.full()) {
     labelings.reason = Reason::search_full;
   } else if (labelings.count == 0) {
     labelings.reason = search.rejected_a_fit() ? Reason::bad_fit : Reason::no_labeling;

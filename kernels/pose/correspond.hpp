@@ -4,13 +4,11 @@
 //           pairwise (pair_matches.hpp), most markers first; of those the k_labelings_max best by
 //           the rigid fit's rms. The least rms over all of them decides, not the first that fits: a
 //           nearly symmetric tool has several.
-// Cost:     one pass over the markers, one over all pairs of candidates, pair_tests_max tests,
-//           search_steps_max steps of naming a marker, of which a fit takes k_fit_steps.
-// Worst:    candidates as dense as the tool itself: the budgets end the search,
-// Reason::search_full;
-//           the best so far are kept, and what lies near the prediction was matched and tried
-//           first.
-// Accuracy: complete within the budgets. With the default gate of 6 sigma a true labeling is lost
+// Cost:     one pass over the markers, one over all pairs of candidates, search_steps_max steps of
+//           naming a marker, of which a fit takes k_fit_steps.
+// Worst:    candidates as dense as the tool itself: the steps end the search, Reason::search_full;
+//           the best so far are kept, and what lies near the prediction was tried first.
+// Accuracy: complete within the steps. With the default gate of 6 sigma a true labeling is lost
 //           once in 10^4 frames (correspond_test.cpp prints the figure).
 // Source:   distance matrix comparison as the seed's; the search: labeling_search.hpp.
 //

@@ -21,7 +21,6 @@ struct CorrespondSettings {
   int fewer_kept = 1;             // labelings with this many markers fewer than the best are kept
                                   // too, in case another tool holds a marker; 0 where there is none
   int markers_max = k_blobs_max;  // looked at; of these at most, in their order
-  int pair_tests_max = k_pair_tests_max;      // of a distance against one of the tool's
   int search_steps_max = k_search_steps_max;  // of the search; a fit counts as k_fit_steps
 };
 

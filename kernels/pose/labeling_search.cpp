@@ -54,14 +54,14 @@ int LabelingSearch::narrow(int level, int i, int a) {
   work_.words_narrowed += matches_.words_a_row();
   int possible = 0;
   if (words == 1) {  // the usual case, without the inner loop
-    for (int j = 0; j < tool_.marker_count; ++j) {
+    for (int j = i + 1; j < tool_.marker_count; ++j) {
       const std::uint64_t both = from[j] & row[j];
       to[j] = both;
       possible += both != 0 ? 1 : 0;
     }
     return possible;
   }
-  for (int j = 0, at = 0; j < tool_.marker_count; ++j) {
+  for (int j = i + 1, at = (i + 1) * words; j < tool_.marker_count; ++j) {
     std::uint64_t any = 0;
     for (int w = 0; w < words; ++w, ++at) {
       to[at] = from[at] & row[at];

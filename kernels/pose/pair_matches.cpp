@@ -3,58 +3,33 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/pose/near_distances.hpp"
+
 namespace glint {
 namespace {
 
-constexpr float k_too_far_m2 = 1e6F;
+constexpr float k_too_far_m = 1e3F;
+constexpr float k_too_far_m2 = k_too_far_m * k_too_far_m;
 
-struct ToolPair {
-  float distance_m = 0;
-  int row = 0;  // of the first candidate as marker i, at the set for marker j
-};
+static_assert(k_blobs_max % k_lanes == 0);
 
-// The tool's distances in order of their bins.
+// The next whole number of lanes.
+int whole_lanes(int count) { return (count + k_lanes - 1) / k_lanes * k_lanes; }
+
+// The tool's distances, each in all lanes, and where the rows for its two markers begin.
 struct ToolPairs {
-  std::array<ToolPair, k_tool_pairs_max> pair;
-  std::array<std::uint8_t, k_distance_bins + 2> before{};  // pairs in lower bins
-  float bins_a_metre = 0;
+  std::array<FloatLanes, k_tool_pairs_max> distance_m;
+  std::array<int, k_tool_pairs_max> row;  // of the first candidate as marker i, the set for j
+  int count = 0;
 };
-
-// A distance's bin; what is longer than all of the tool's gets the one after the last.
-std::int32_t bin_of(float distance_m, float bins_a_metre) {
-  const float bin = distance_m * bins_a_metre;
-  const float low = bin > 0 ? bin : 0.0F;
-  return static_cast<std::int32_t>(low < 1.0F * k_distance_bins ? low : 1.0F * k_distance_bins);
-}
-
-float distance_of(const Tool& tool, int i, int j) {
-  return static_cast<float>(tool.distance_m[i][j]);
-}
 
 ToolPairs pairs_of(const Tool& tool, const PairMatches& matches) {
   ToolPairs pairs;
-  float longest = 0;
   for (int i = 0; i < tool.marker_count; ++i) {
     for (int j = i + 1; j < tool.marker_count; ++j) {
-      longest = std::max(longest, distance_of(tool, i, j));
-    }
-  }
-  // The longest itself stays inside the last bin.
-  pairs.bins_a_metre = k_distance_bins / longest * (1 - 1e-6F);
-  for (int i = 0; i < tool.marker_count; ++i) {
-    for (int j = i + 1; j < tool.marker_count; ++j) {
-      ++pairs.before[bin_of(distance_of(tool, i, j), pairs.bins_a_metre) + 1];
-    }
-  }
-  for (int bin = 0; bin <= k_distance_bins; ++bin) {
-    pairs.before[bin + 1] = static_cast<std::uint8_t>(pairs.before[bin + 1] + pairs.before[bin]);
-  }
-  std::array<std::uint8_t, k_distance_bins + 2> next = pairs.before;
-  for (int i = 0; i < tool.marker_count; ++i) {
-    for (int j = i + 1; j < tool.marker_count; ++j) {
-      const float distance = distance_of(tool, i, j);
-      pairs.pair[next[bin_of(distance, pairs.bins_a_metre)]++] = {distance,
-                                                                  matches.set_of(i, 0, j)};
+      pairs.distance_m[pairs.count] = FloatLanes{} + static_cast<float>(tool.distance_m[i][j]);
+      pairs.row[pairs.count] = matches.set_of(i, 0, j);
+      ++pairs.count;
     }
   }
   return pairs;
@@ -77,18 +52,22 @@ Columns columns_of(const Candidates& candidates) {
     columns.ray_z[a] = static_cast<float>(candidates.ray[a].z());
     columns.variance[a] = static_cast<float>(candidates.across_variance_m2[a]);
   }
+  for (int a = candidates.count; a < whole_lanes(candidates.count); ++a) {
+    columns.x[a] = columns.y[a] = columns.z[a] = k_too_far_m;
+    columns.ray_x[a] = columns.ray_y[a] = columns.ray_z[a] = 0;
+    columns.variance[a] = 0;
+  }
   return columns;
 }
 
-// Of one candidate with each one before it.
+// Of one candidate with others.
 struct Gates {
   std::array<float, k_blobs_max> distance_m, delta_m;
-  std::array<std::int32_t, k_blobs_max> bin_low, bin_high;  // of the tool's distances within
 };
 
-// Candidate a's distance to each one before it, and how far the true one may be from that.
-void gates_of(const Columns& __restrict c, int a, float bins_a_metre,
-              const CorrespondSettings& settings, Gates& __restrict gates) {
+// Candidate a's distance to each of the first `end`, and how far the true one may be from that.
+void gates_of(const Columns& __restrict c, int a, int end, const CorrespondSettings& settings,
+              Gates& __restrict gates) {
   const auto sigma = static_cast<float>(settings.range_sigma_m);
   const float range_variance = sigma * sigma;
   const auto k = static_cast<float>(settings.gate_sigmas);
@@ -96,11 +75,11 @@ void gates_of(const Columns& __restrict c, int a, float bins_a_metre,
   const float x = c.x[a], y = c.y[a], z = c.z[a];
   const float ray_x = c.ray_x[a], ray_y = c.ray_y[a], ray_z = c.ray_z[a];
   const float variance = c.variance[a];
-  for (int b = 0; b < a; ++b) {
+  for (int b = 0; b < end; ++b) {
     const float dx = x - c.x[b], dy = y - c.y[b], dz = z - c.z[b];
     const float square = dx * dx + dy * dy + dz * dz;
     // Two blobs in one place have no direction, and no distance that a tool has.
-    const float apart = square > 0 ? square : k_too_far_m2;
+    const float apart = square + (square > 0 ? 0.0F : k_too_far_m2);
     const float inverse = 1.0F / apart;
     const float distance = std::sqrt(apart);
     const float along_a = dx * ray_x + dy * ray_y + dz * ray_z;
@@ -111,11 +90,44 @@ void gates_of(const Columns& __restrict c, int a, float bins_a_metre,
                                    inverse;
     const float across = 2 * (range_variance + both) - along;
     const float delta = k * std::sqrt(along) + k * k * 0.5F * across * (distance * inverse);
-    const float gate = delta > least ? delta : least;
     gates.distance_m[b] = distance;
-    gates.delta_m[b] = gate;
-    gates.bin_low[b] = bin_of(distance - gate, bins_a_metre);
-    gates.bin_high[b] = bin_of(distance + gate, bins_a_metre);
+    gates.delta_m[b] = delta > least ? delta : least;
+  }
+}
+
+// What the candidates of a block found among those before them, for the rows of those: bit a -
+// block of [b / k_lanes][p], lane b % k_lanes, says that a and b are as far apart as the tool's
+// pair p.
+constexpr int k_block = 32;
+using Found = std::array<std::array<BitLanes, k_tool_pairs_max>, k_blobs_max / k_lanes>;
+
+// Compares candidate a's distances to 64 others at most with the tool's.
+void compare(const Gates& gates, const ToolPairs& pairs, int begin, int end, std::uint32_t mark,
+             Found& found, std::uint64_t* row) {
+  std::array<std::uint64_t, k_tool_pairs_max> near_a{};
+  for (int b = begin; b < end; b += k_lanes) {
+    const FloatLanes distance = lanes_at(&gates.distance_m[b]);
+    const FloatLanes gate = lanes_at(&gates.delta_m[b]);
+    std::array<BitLanes, k_tool_pairs_max>& found_b = found[b / k_lanes];
+    for (int p = 0; p < pairs.count; ++p) {
+      const BitLanes lanes = near(distance, pairs.distance_m[p], gate);
+      near_a[p] |= gathered(lanes) << (b - begin);
+      found_b[p] |= lanes & mark;
+    }
+  }
+  for (int p = 0; p < pairs.count; ++p) row[pairs.row[p]] = near_a[p];
+}
+
+// Copies a block's findings into the rows of those found, which end before `end`.
+void note_for_the_found(const ToolPairs& pairs, const Found& found, int block, int end,
+                        PairMatches& matches) {
+  const int row_words = matches.words_a_row();
+  for (int b = 0; b < end; ++b) {
+    std::uint64_t* const row = &matches.word[b * row_words + block / 64];
+    for (int p = 0; p < pairs.count; ++p) {
+      const std::uint64_t near_b = found[b / k_lanes][p][b % k_lanes];
+      row[pairs.row[p]] |= near_b << (block % 64);
+    }
   }
 }
 
@@ -123,39 +135,32 @@ void gates_of(const Columns& __restrict c, int a, float bins_a_metre,
 
 PairWork match_pairs(const Candidates& candidates, const Tool& tool,
                      const CorrespondSettings& settings, PairMatches& matches) noexcept {
-  PairWork work;
   matches.candidates = candidates.count;
   matches.markers = tool.marker_count;
   matches.words = candidates.words;
-  work.words_cleared = tool.marker_count * candidates.count * matches.words_a_row();
-  std::fill_n(matches.word.begin(), work.words_cleared, std::uint64_t{0});
   const ToolPairs pairs = pairs_of(tool, matches);
+  PairWork work;
+  work.pairs = candidates.count * (candidates.count - 1) / 2;
+  work.tests = work.pairs * pairs.count;
+  work.words_written = pairs.count * candidates.count * matches.words;
   const Columns columns = columns_of(candidates);
-  const int row_words = matches.words_a_row();
   Gates gates;
-  for (int a = 1; a < candidates.count; ++a) {
-    gates_of(columns, a, pairs.bins_a_metre, settings, gates);
-    work.pairs += a;
-    std::uint64_t* const rows_of_a = &matches.word[a * row_words];
-    for (int b = 0; b < a; ++b) {
-      const int first = pairs.before[gates.bin_low[b]];
-      const int last = pairs.before[gates.bin_high[b] + 1];
-      if (first >= last) continue;
-      const float distance = gates.distance_m[b];
-      const float delta = gates.delta_m[b];
-      const int left = settings.pair_tests_max - work.tests;
-      if (last - first > left) work.full = true;
-      const int end = std::min(last, first + left);
-      work.tests += end - first;
-      std::uint64_t* const with_b = rows_of_a + b / 64;
-      std::uint64_t* const with_a = &matches.word[b * row_words + a / 64];
-      for (int p = first; p < end; ++p) {
-        const ToolPair& pair = pairs.pair[p];
-        const std::uint64_t fits = std::abs(distance - pair.distance_m) < delta ? 1 : 0;
-        with_b[pair.row] |= fits << (b % 64);
-        with_a[pair.row] |= fits << (a % 64);
+  Found found;
+  for (int block = 0; block < candidates.count; block += k_block) {
+    const int end = std::min(block + k_block, candidates.count);
+    for (int b = 0; b < end; b += k_lanes)
+      std::fill_n(found[b / k_lanes].begin(), pairs.count, BitLanes{});
+    for (int a = block; a < end; ++a) {
+      // A few after a, and a itself, which is too far away from itself, fill the last lanes.
+      const int others = whole_lanes(a);
+      gates_of(columns, a, others, settings, gates);
+      for (int w = 0; w < matches.words; ++w) {
+        compare(gates, pairs, 64 * w, std::min(others, 64 * (w + 1)),
+                std::uint32_t{1} << (a - block), found,
+                &matches.word[a * matches.words_a_row() + w]);
       }
     }
+    note_for_the_found(pairs, found, block, end, matches);
   }
   return work;
 }

@@ -5,15 +5,14 @@
 // where
 //           delta follows from the noise of these two: a range error moves a marker along its ray,
 //           so a pair beside each other keeps its distance, a pair behind each other does not.
-// Cost:     the same for every one of candidates^2 / 2 pairs, and a test for each distance of the
-//           tool that lies near a pair's: the tool's distances are kept in k_distance_bins bins.
-//           Clears (tool markers)^2 x candidates x words of the table.
-// Worst:    candidates within a hand's breadth of each other: pair_tests_max tests, then no more.
+// Cost:     candidates^2 / 2 pairs, each tested against each of the tool's distances, which is
+//           cheaper than to look up which of them might fit; and the words of the table are
+//           written. The same wherever the candidates are.
+// Worst:    all candidates there may be; none are worse than others.
 // Accuracy: exact to second order in the noise. With d the measured distance, e its direction, r
-// the
-//           rays, S the markers' covariances: true - measured = -e.(n_a - n_b) + |perpendicular|^2
-//           / (2d), so delta = k s + k^2 p / (2d), s^2 = e'(S_a + S_b)e, p = trace(S_a + S_b) -
-//           s^2.
+//           the rays, S the markers' covariances: true - measured = -e.(n_a - n_b) +
+//           |perpendicular|^2 / (2d), so delta = k s + k^2 p / (2d), s^2 = e'(S_a + S_b)e, p =
+//           trace(S_a + S_b) - s^2.
 // Source:   series of |d e - n| in n to second order.
 #pragma once
 
@@ -26,10 +25,10 @@
 namespace glint {
 
 inline constexpr int k_tool_pairs_max = k_markers_per_tool_max * (k_markers_per_tool_max - 1) / 2;
-inline constexpr int k_distance_bins = 64;  // of the tool's longest: about a gate's width each
 
 // For tool marker i being candidate a: the candidates that may then be tool marker j > i. A row
-// holds the sets of all j side by side, empty for j <= i, so that a search narrows all in one go.
+// holds the sets of all j side by side, so that a search narrows all in one go; those for j <= i
+// are unused and hold nothing.
 struct PairMatches {
   static constexpr std::size_t k_words_max = std::size_t{k_markers_per_tool_max} *
                                              k_markers_per_tool_max * k_blobs_max *
@@ -46,9 +45,8 @@ struct PairMatches {
 
 struct PairWork {
   int pairs = 0;
-  int words_cleared = 0;
   int tests = 0;
-  bool full = false;  // pairs after these were not tested
+  int words_written = 0;
 };
 
 PairWork match_pairs(const Candidates& candidates, const Tool& tool,

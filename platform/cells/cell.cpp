@@ -176,10 +176,10 @@ void read_budget(const toml::table* table, Cell& cell) {
   // As many strays as there are markers; the blobs that a budget leaves out may be a tool's.
   const int usual = std::clamp(2 * markers_of(cell.tools), budget.blobs, k_blobs_max);
   budget.blobs = static_cast<int>(reader.integer("blobs", usual, 8, k_blobs_max));
-  budget.runs_per_band = static_cast<int>(
-      reader.integer("runs_per_band", budget.runs_per_band, 64, k_runs_per_band_max));
-  budget.pair_tests =
-      static_cast<int>(reader.integer("pair_tests", budget.pair_tests, 64, k_pair_tests_max));
+  // All of them in one band; a marker of 6 mm radius has eight rows at 0.3 m from an AHAT camera.
+  const int usual_runs = std::clamp(8 * budget.blobs, budget.runs_per_band, k_runs_per_band_max);
+  budget.runs_per_band =
+      static_cast<int>(reader.integer("runs_per_band", usual_runs, 64, k_runs_per_band_max));
   budget.search_steps =
       static_cast<int>(reader.integer("search_steps", budget.search_steps, 64, k_search_steps_max));
   reader.done();
@@ -309,7 +309,6 @@ Limits limits_of(const Cell& cell) {
   }
   limits.blobs = cell.budget.blobs;
   limits.runs_per_band = cell.budget.runs_per_band;
-  limits.pair_tests = cell.budget.pair_tests;
   limits.search_steps = cell.budget.search_steps;
   return limits;
 }

@@ -77,8 +77,7 @@ struct OverrunSettings {
 struct BudgetSettings {
   int tools = 0;   // at least as many as are listed
   int blobs = 64;  // or twice the markers of the listed tools
-  int runs_per_band = 1024;
-  int pair_tests = 1024;
+  int runs_per_band = 512;  // or eight a blob
   int search_steps = 768;
 };
 

@@ -42,7 +42,6 @@ Play make_play() {
   play.cell.budget = {.tools = k_tools_max,
                       .blobs = k_blobs_max,
                       .runs_per_band = k_runs_per_band_max,
-                      .pair_tests = k_pair_tests_max,
                       .search_steps = k_search_steps_max};
   sim::SimFrame rendered;
   for (int i = 0; i < k_crowd_frames; ++i) {

@@ -31,7 +31,6 @@ Cell crowd_cell(int tools) {
   if (tools > k_usual_tools) {
     cell.budget.blobs = k_blobs_max;
     cell.budget.runs_per_band = k_runs_per_band_max;
-    cell.budget.pair_tests = k_pair_tests_max;
     cell.budget.search_steps = k_search_steps_max;
   }
   return cell;

@@ -156,7 +156,7 @@ class CorrespondKernel final : public NodeKernel<Correspond> {
       rewind();
       run();
       const graph::LoopCounts counts = node_.counts();
-      const std::int64_t effort = 6 * counts[6] + 2 * counts[5];
+      const std::int64_t effort = counts[6];
       if (effort <= most) continue;
       most = effort;
       best_seed = step;

@@ -15,9 +15,8 @@ namespace glint {
   limits.tools = 5;
   limits.blobs = 64;
   limits.markers_per_tool = 5;
-  limits.runs_per_band = 1024;
+  limits.runs_per_band = 512;
   limits.lens_steps = 0;
-  limits.pair_tests = 1024;
   limits.search_steps = 768;
   return limits;
 }

@@ -46,7 +46,7 @@ Crowd crowd_of(double sigma_m, test::Random& random) {
 }
 
 struct Outcome {
-  int searches = 0, full = 0, none = 0, wrong = 0, steps_most = 0, tests_most = 0;
+  int searches = 0, full = 0, none = 0, wrong = 0, steps_most = 0;
 };
 
 Outcome outcome_of(double sigma_m, const CorrespondSettings& settings, bool predicted) {
@@ -69,7 +69,6 @@ Outcome outcome_of(double sigma_m, const CorrespondSettings& settings, bool pred
                            ? 1
                            : 0;
       outcome.steps_most = std::max(outcome.steps_most, work.search.steps);
-      outcome.tests_most = std::max(outcome.tests_most, work.pairs.tests);
     }
   }
   return outcome;
@@ -80,24 +79,22 @@ CorrespondSettings within_a_cell() {
   CorrespondSettings settings;
   settings.focal_px = 253;
   settings.markers_max = 64;
-  settings.pair_tests_max = 1024;
   settings.search_steps_max = 768;
   return settings;
 }
 
 TEST(CorrespondCrowd, LosesNothingToTheBudgetsOfACell) {
   CorrespondSettings unhurried = within_a_cell();
-  unhurried.pair_tests_max = k_pair_tests_max;
   unhurried.search_steps_max = 1'000'000;
   for (const bool predicted : {false, true}) {
     for (const double sigma_m : {0.0, 0.001, 0.002, 0.003, 0.005}) {
       const Outcome free = outcome_of(sigma_m, unhurried, predicted);
       const Outcome cell = outcome_of(sigma_m, within_a_cell(), predicted);
       std::printf(
-          "  %s prior, %.0f mm: of %d searches none %d, wrong %d, steps %d, tests %d; "
+          "  %s prior, %.0f mm: of %d searches none %d, wrong %d, steps %d; "
           "in a cell none %d, wrong %d, full %d\n",
           predicted ? "with" : "without", 1e3 * sigma_m, free.searches, free.none, free.wrong,
-          free.steps_most, free.tests_most, cell.none, cell.wrong, cell.full);
+          free.steps_most, cell.none, cell.wrong, cell.full);
       EXPECT_LE(cell.none, free.none + cell.searches / 500);
       EXPECT_LE(cell.wrong, free.wrong + cell.searches / 500);
       EXPECT_LE(cell.full, cell.searches / (sigma_m < 0.004 ? 40 : 10));

@@ -27,7 +27,6 @@ Limits five_tools() {
   limits.markers_per_tool = 5;
   limits.blobs = 64;
   limits.lens_steps = 0;
-  limits.pair_tests = 1024;
   limits.search_steps = 768;
   return limits;
 }

@@ -27,20 +27,18 @@ TEST(CellBudget, FollowsTheCellsToolsAndCameraWhereNothingIsSaid) {
   EXPECT_EQ(limits.lens_steps, 0);  // without a ray table nothing is searched in one
   const Limits built_in = limits_of(default_cell());
   EXPECT_EQ(built_in.search_steps, limits.search_steps);
-  EXPECT_EQ(built_in.pair_tests, limits.pair_tests);
   EXPECT_EQ(built_in.runs_per_band, limits.runs_per_band);
 }
 
 TEST(CellBudget, TakesTheProblemThatACellStates) {
   const Cell cell = cell_from_text(
-      "[budget]\ntools = 5\nblobs = 100\nruns_per_band = 300\npair_tests = 400\n"
+      "[budget]\ntools = 5\nblobs = 100\nruns_per_band = 300\n"
       "search_steps = 500\n",
       "cell.toml");
   const Limits limits = limits_of(cell);
   EXPECT_EQ(limits.tools, 5);
   EXPECT_EQ(limits.blobs, 100);
   EXPECT_EQ(limits.runs_per_band, 300);
-  EXPECT_EQ(limits.pair_tests, 400);
   EXPECT_EQ(limits.search_steps, 500);
 }
 
@@ -60,7 +58,6 @@ TEST(CellBudget, RefusesALoopMaximumThatIsNoneWithTheRangeThatFits) {
   } ranges[] = {{"tools", 1, k_tools_max},
                 {"blobs", 8, k_blobs_max},
                 {"runs_per_band", 64, k_runs_per_band_max},
-                {"pair_tests", 64, k_pair_tests_max},
                 {"search_steps", 64, k_search_steps_max}};
   for (const auto& [key, least, most] : ranges) {
     const std::string found = "cell.toml:2: budget." + std::string(key) + " is ";
@@ -121,6 +118,16 @@ TEST(CellBudget, RefusesFewerBlobsThanTheListedToolsHaveMarkers) {
                  "cell.toml:4: budget.blobs is 24, but the listed tools have 25 markers, each a "
                  "blob; expected at least 25");
   }
+}
+
+TEST(CellBudget, HasRoomForEightRowsOfEachBlobInOneBandWhereNothingIsSaid) {
+  const auto runs_with = [](const std::string& budget) {
+    return limits_of(cell_from_text("[budget]\n" + budget, "cell.toml")).runs_per_band;
+  };
+  EXPECT_EQ(runs_with(""), 512);
+  EXPECT_EQ(runs_with("blobs = 20\n"), 512);
+  EXPECT_EQ(runs_with("blobs = 100\n"), 800);
+  EXPECT_EQ(runs_with("blobs = 100\nruns_per_band = 300\n"), 300);
 }
 
 TEST(CellBudget, CoversToolsThatJoinAfterReading) {
