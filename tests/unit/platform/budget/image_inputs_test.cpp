@@ -15,7 +15,7 @@ std::vector<Limits> several_limits() {
   cell.tools = 5;
   cell.blobs = 64;
   cell.markers_per_tool = 5;
-  cell.runs_per_band = 1024;
+  cell.runs_per_band = 512;
   Limits small = cell;
   small.width = 448;
   small.height = 450;
