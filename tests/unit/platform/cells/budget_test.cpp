@@ -130,16 +130,6 @@ TEST(CellBudget, HasRoomForEightRowsOfEachBlobInOneBandWhereNothingIsSaid) {
   EXPECT_EQ(runs_with("blobs = 100\nruns_per_band = 300\n"), 300);
 }
 
-TEST(CellBudget, HasRoomForEightRowsOfEachBlobInOneBandWhereNothingIsSaid) {
-  const auto runs_with = [](const std::string& budget) {
-    return limits_of(cell_from_text("[budget]\n" + budget, "cell.toml")).runs_per_band;
-  };
-  EXPECT_EQ(runs_with(""), 512);
-  EXPECT_EQ(runs_with("blobs = 20\n"), 512);
-  EXPECT_EQ(runs_with("blobs = 100\n"), 800);
-  EXPECT_EQ(runs_with("blobs = 100\nruns_per_band = 300\n"), 300);
-}
-
 TEST(CellBudget, CoversToolsThatJoinAfterReading) {
   Cell cell = default_cell();
   cell.tools.items[1] = cell.tools.items[0];
