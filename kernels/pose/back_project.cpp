@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kernels/pose/depth_samples.hpp"
 #include "kernels/pose/local_rays.hpp"
@@ -17,14 +18,17 @@ constexpr double k_curl_part = 0.95;
 // The inner half counts as there if this part of its pixels has depth.
 constexpr double k_inner_valid_part = 0.25;
 
-// To the front point of a sphere (radius > 0) of which the sample's pixel sees another point.
-double front_of(const DepthSample& sample, double wrapped_m, double radius_m) {
-  const double range = (sample.range_m + wrapped_m) * sample.radial_factor;
+// To the front points of a sphere (radius > 0) of which the samples' pixels see other points.
+TwoDoubles fronts_of(const DepthSamples& samples, std::size_t at, double wrapped_m,
+                     double radius_m) {
+  const TwoDoubles range =
+      (load_two(&samples.range_m[at]) + both(wrapped_m)) * load_two(&samples.radial_factor[at]);
   if (!(radius_m > 0)) return range;
   const double curl = k_curl_part * radius_m;
-  const double beside = std::min(range * range * sample.beside_square, curl * curl);
-  return range -
-         (radius_m - std::sqrt(radius_m * radius_m - beside) - 0.5 * beside / (range + radius_m));
+  const TwoDoubles beside =
+      lesser(range * range * load_two(&samples.beside_square[at]), both(curl * curl));
+  const TwoDoubles depth = both(radius_m) - square_root(both(radius_m * radius_m) - beside);
+  return range - (depth - both(0.5) * beside / (range + both(radius_m)));
 }
 
 // The mean of the samples' fronts; of those again that count, with what the sensor left out of
@@ -32,29 +36,28 @@ double front_of(const DepthSample& sample, double wrapped_m, double radius_m) {
 class FrontMean {
  public:
   FrontMean(const DepthSamples& samples, double radius_m, double unit_m)
-      : samples_(samples), radius_m_(radius_m) {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(samples.count); ++i) {
-      fronts_[i] = front_of(samples.items[i], 0, radius_m);
+      : samples_(samples), radius_m_(radius_m), count_(static_cast<std::size_t>(samples.count)) {
+    for (std::size_t i = 0; i < count_; i += 2) {
+      store_two(fronts_of(samples, i, 0, radius_m), &fronts_[i]);
     }
     // Never narrower than one step of the sensor's counting.
     found_ = robust_mean(fronts_, samples.count, unit_m);
+    // What stands where a pair needs it must not count.
+    if (count_ % 2 == 1) fronts_[count_] = std::numeric_limits<double>::infinity();
   }
   [[nodiscard]] double value() const { return found_.mean; }
   [[nodiscard]] double unwrapped(double wrapped_m) const {
-    double sum = 0;
-    int inliers = 0;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(samples_.count); ++i) {
-      const bool near = found_.counts(fronts_[i]);
-      const double front = front_of(samples_.items[i], wrapped_m, radius_m_);
-      sum += near ? front : 0.0;
-      inliers += near ? 1 : 0;
+    NearSum near;
+    for (std::size_t i = 0; i < count_; i += 2) {
+      near.add(found_, load_two(&fronts_[i]), fronts_of(samples_, i, wrapped_m, radius_m_));
     }
-    return inliers > 0 ? sum / inliers : found_.mean + wrapped_m;
+    return near.mean_or(found_.mean + wrapped_m);
   }
 
  private:
   const DepthSamples& samples_;
   double radius_m_;
+  std::size_t count_;
   RangeValues fronts_;
   RobustMean found_;
 };
@@ -84,7 +87,7 @@ BackProjectWork measure_range(const DepthView& view, const NominalMarker& nomina
     const double radius_px = std::sqrt(std::min<double>(view.blob.area_px, 1e6) / k_pi);
     inner_samples(view, radius_px, most.samples, samples);
     work.pixels = samples.pixels;
-    from_ring = samples.count == 0 || samples.count < k_inner_valid_part * samples.tried;
+    from_ring = samples.count == 0 || samples.usable < k_inner_valid_part * samples.tried;
     if (from_ring) {
       ring_samples(view, radius_px, most.samples, most.pixels - samples.pixels, samples);
       work.pixels += samples.pixels;

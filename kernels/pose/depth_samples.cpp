@@ -1,104 +1,217 @@
 #include "kernels/pose/depth_samples.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace glint {
 namespace {
 
-constexpr double k_pi = 3.14159265358979323846;
 constexpr double k_inner_part = 0.7;           // of the radius: half of the disc's area
 constexpr double k_inner_radius_max_px = 3.7;  // holds at most k_inner_samples_max pixel centres
 constexpr double k_rim_margin_px = 0.5;        // half a pixel beyond the rim still sees the marker
 
-std::uint16_t reflectivity_at(const Frame& frame, int x, int y) {
-  return frame.reflectivity_8.empty() ? frame.reflectivity_16.row(y)[x]
-                                      : std::uint16_t{frame.reflectivity_8.row(y)[x]};
-}
-
-// The lens around the middle as a quadratic form: how far beside it a pixel's ray lies.
-struct Beside {
-  double xx, xy, yy;
-  explicit Beside(const LocalRays& rays)
-      : xx(rays.along_x.squaredNorm()),
-        xy(2 * rays.along_x.dot(rays.along_y)),
-        yy(rays.along_y.squaredNorm()) {}
-  [[nodiscard]] double square(double dx, double dy) const {
-    return xx * dx * dx + xy * dx * dy + yy * dy * dy;
-  }
-};
-
-// Adds the pixel if its depth is of use.
-void take(const DepthView& view, const Beside& beside, int x, int y, DepthSamples& out) {
-  const std::uint16_t raw = view.frame.depth.row(y)[x];
-  if (raw == 0 || raw >= view.depth.invalid_from) return;
-  if (reflectivity_at(view.frame, x, y) >= view.depth.saturated_from) return;
-  const double dx = x + 0.5 - view.blob.centroid_px.x(), dy = y + 0.5 - view.blob.centroid_px.y();
-  DepthSample& sample = out.items[static_cast<std::size_t>(out.count++)];
-  sample.range_m = raw * view.depth.unit_m;
-  sample.beside_square = beside.square(dx, dy);
-  sample.radial_factor = 1;
-  if (view.depth.kind == DepthKind::z) {
-    const LocalRays& rays = view.rays;
-    const double z = rays.ray.z() + rays.along_x.z() * dx + rays.along_y.z() * dy;
-    sample.radial_factor = std::sqrt(1 + sample.beside_square) / std::max(z, 0.01);
-  }
-}
+constexpr int k_square_side_max_px = 2 * k_scan_radius_max_px;
 
 // A square of the frame's pixels, every `step`-th in both directions.
 struct Square {
-  int x0, y0, x1, y1, step = 1;
-  [[nodiscard]] int pixels() const {
-    return ((x1 - x0 + step - 1) / step) * ((y1 - y0 + step - 1) / step);
+  int x0, y0, columns, rows, step = 1;
+  [[nodiscard]] int pixels() const { return columns * rows; }
+  // So that it has at most so many pixels; one is never too many.
+  void widen_step(int most) {
+    const int width = columns, height = rows;
+    while (pixels() > std::max(most, 1)) {
+      ++step;
+      columns = (width + step - 1) / step;
+      rows = (height + step - 1) / step;
+    }
   }
 };
+
+// To the pixel that holds this place, of an axis that begins at 0.
+int pixel_at(double place) { return place > 0 ? static_cast<int>(place) : 0; }
 
 Square square_around(const DepthView& view, double outer) {
   const Vector2& middle = view.blob.centroid_px;
   const int width = std::min(view.frame.width(), view.frame.depth.width);
   const int height = std::min(view.frame.height(), view.frame.depth.height);
   Square square;
-  square.x0 = std::max(static_cast<int>(std::floor(middle.x() - outer)), 0);
-  square.y0 = std::max(static_cast<int>(std::floor(middle.y() - outer)), 0);
-  square.x1 =
-      std::max(std::min(static_cast<int>(std::floor(middle.x() + outer)) + 1, width), square.x0);
-  square.y1 =
-      std::max(std::min(static_cast<int>(std::floor(middle.y() + outer)) + 1, height), square.y0);
+  square.x0 = pixel_at(middle.x() - outer);
+  square.y0 = pixel_at(middle.y() - outer);
+  square.columns = std::max(std::min(pixel_at(middle.x() + outer) + 1, width) - square.x0, 0);
+  square.rows = std::max(std::min(pixel_at(middle.y() + outer) + 1, height) - square.y0, 0);
   return square;
 }
 
-// Visits the square's pixels with inner <= distance < outer from the centroid, by rows.
-template <class Visit>
-void for_each_within(const Square& square, const Vector2& middle, double inner, double outer,
-                     Visit visit) {
-  const double least = inner * inner, most = outer * outer;
-  for (int y = square.y0; y < square.y1; y += square.step) {
-    const double dy = y + 0.5 - middle.y();
-    for (int x = square.x0; x < square.x1; x += square.step) {
-      const double dx = x + 0.5 - middle.x();
-      const double distance = dx * dx + dy * dy;
-      if (distance >= least && distance < most) visit(x, y);
+// A pixel of use, in one word: what is written at once is read at once.
+class Reading {
+ public:
+  Reading() = default;
+  Reading(int column, int row, std::uint16_t raw)
+      : all_(static_cast<std::uint32_t>(column | row << 8) | std::uint32_t{raw} << 16) {}
+  [[nodiscard]] std::size_t column() const { return all_ & 0xFF; }
+  [[nodiscard]] std::size_t row() const { return all_ >> 8 & 0xFF; }
+  [[nodiscard]] std::uint32_t raw() const { return all_ >> 16; }
+
+ private:
+  std::uint32_t all_;
+};
+static_assert(k_square_side_max_px <= 256);
+
+struct Readings {
+  std::array<Reading, k_square_max_px + 1> items;  // one more is written to, never kept
+  int count = 0;
+  int tried = 0;
+};
+
+// How far a square's columns and rows lie from the blob's middle.
+struct Offsets {
+  std::array<double, k_square_side_max_px> x, y;
+
+  Offsets(const Square& square, const Vector2& middle) {
+    for (int i = 0; i < square.columns; ++i) {
+      x[static_cast<std::size_t>(i)] = square.x0 + i * square.step + 0.5 - middle.x();
+    }
+    for (int i = 0; i < square.rows; ++i) {
+      y[static_cast<std::size_t>(i)] = square.y0 + i * square.step + 0.5 - middle.y();
     }
   }
+};
+
+// The pixels with inner <= distance < outer from the middle that are not mostly background.
+struct Ring {
+  double inner_square, outer_square;
+  int reflectivity_least;
+  [[nodiscard]] int holds(double distance_square, int reflectivity) const {
+    return static_cast<int>(distance_square >= inner_square) &
+           static_cast<int>(distance_square < outer_square) &
+           static_cast<int>(reflectivity >= reflectivity_least);
+  }
+};
+
+// All pixels nearer than that.
+struct Disc {
+  double outer_square;
+  [[nodiscard]] int holds(double distance_square, int) const {
+    return static_cast<int>(distance_square < outer_square);
+  }
+};
+
+// The square's pixels that the shape holds and whose depth is of use, by rows. Each is written, and
+// kept by counting on: no branch depends on what a pixel holds.
+template <class Shape, class Pixel>
+void read(const DepthView& view, const ImageView<Pixel>& reflectivity, const Square& square,
+          const Offsets& offsets, const Shape& shape, Readings& out) {
+  // Below 0, which means none, an unsigned number is large.
+  const unsigned raw_end = std::max<unsigned>(view.depth.invalid_from, 1) - 1;
+  const int saturated_from = view.depth.saturated_from;
+  int count = 0, tried = 0;
+  for (int row = 0; row < square.rows; ++row) {
+    const int y = square.y0 + row * square.step;
+    const std::uint16_t* depth = view.frame.depth.row(y) + square.x0;
+    const Pixel* bright = reflectivity.row(y) + square.x0;
+    const double dy = offsets.y[static_cast<std::size_t>(row)], dy_square = dy * dy;
+    for (int column = 0; column < square.columns; ++column) {
+      const double dx = offsets.x[static_cast<std::size_t>(column)];
+      const int held = shape.holds(dx * dx + dy_square, *bright);
+      out.items[static_cast<std::size_t>(count)] = Reading(column, row, *depth);
+      tried += held;
+      count += held & static_cast<int>(*depth - 1U < raw_end) &
+               static_cast<int>(*bright < saturated_from);
+      depth += square.step;
+      bright += square.step;
+    }
+  }
+  out.count = count;
+  out.tried = tried;
 }
 
-// Takes so many of the candidates that come, evenly spread, so that all round is heard.
+// Which of so many are taken, evenly spread, so that all round is heard: each the last of its part.
+// Source: Bresenham, IBM Systems Journal 4 (1965): the line's error term.
 class Thinning {
  public:
-  Thinning(double candidates, int most)
-      : candidates_(std::max(static_cast<int>(candidates), 1)), most_(std::max(most, 0)) {}
-  // Source: Bresenham, IBM Systems Journal 4 (1965): the line's error term.
-  [[nodiscard]] bool take_next() {
-    due_ += std::min(most_, candidates_);
-    if (due_ < candidates_) return false;
-    due_ -= candidates_;
-    return true;
+  // 1 <= taken <= all.
+  Thinning(int all, int taken)
+      : taken_(taken),
+        stride_(all / taken),
+        stride_rest_(all % taken),
+        next_((all - 1) / taken),
+        rest_((all - 1) % taken) {}
+  [[nodiscard]] std::size_t next() {
+    const int place = next_;
+    rest_ += stride_rest_;
+    const bool over = rest_ >= taken_;
+    next_ += stride_ + (over ? 1 : 0);
+    rest_ -= over ? taken_ : 0;
+    return static_cast<std::size_t>(place);
   }
 
  private:
-  int candidates_, most_;
-  int due_ = 0;
+  int taken_, stride_, stride_rest_, next_, rest_;
 };
+
+// The lens around the middle as a quadratic form, how far beside it a pixel's ray lies; and what
+// makes a depth along the axis radial.
+class Placing {
+ public:
+  explicit Placing(const DepthView& view)
+      : rays_(view.rays),
+        xx_(both(rays_.along_x.squaredNorm())),
+        xy_(both(2 * rays_.along_x.dot(rays_.along_y))),
+        yy_(both(rays_.along_y.squaredNorm())),
+        unit_m_(both(view.depth.unit_m)),
+        is_along_axis_(view.depth.kind == DepthKind::z) {}
+
+  void place(std::size_t at, const TwoDoubles& raw, const TwoDoubles& dx, const TwoDoubles& dy,
+             DepthSamples& out) const {
+    const TwoDoubles beside = xx_ * dx * dx + xy_ * dx * dy + yy_ * dy * dy;
+    TwoDoubles factor = both(1);
+    if (is_along_axis_) {
+      const TwoDoubles z =
+          both(rays_.ray.z()) + both(rays_.along_x.z()) * dx + both(rays_.along_y.z()) * dy;
+      factor = square_root(both(1) + beside) / greater(z, both(0.01));
+    }
+    store_two(raw * unit_m_, &out.range_m[at]);
+    store_two(beside, &out.beside_square[at]);
+    store_two(factor, &out.radial_factor[at]);
+  }
+
+ private:
+  const LocalRays& rays_;
+  TwoDoubles xx_, xy_, yy_, unit_m_;
+  bool is_along_axis_;
+};
+
+// Of the readings at most `most`, by pairs; an odd last one stands twice.
+void take(const DepthView& view, const Offsets& offsets, const Readings& readings, int most,
+          DepthSamples& out) {
+  out.count = std::min(readings.count, most);
+  if (out.count <= 0) return;
+  Thinning thinning(readings.count, out.count);
+  const Placing placing(view);
+  for (int i = 0; i < out.count; i += 2) {
+    const Reading a = readings.items[thinning.next()];
+    const Reading b = i + 1 < out.count ? readings.items[thinning.next()] : a;
+    const TwoDoubles raw{static_cast<double>(a.raw()), static_cast<double>(b.raw())};
+    const TwoDoubles dx{offsets.x[a.column()], offsets.x[b.column()]};
+    const TwoDoubles dy{offsets.y[a.row()], offsets.y[b.row()]};
+    placing.place(static_cast<std::size_t>(i), raw, dx, dy, out);
+  }
+}
+
+template <class Shape>
+void sample(const DepthView& view, const Square& square, const Shape& shape, int most,
+            DepthSamples& out) {
+  const Offsets offsets(square, view.blob.centroid_px);
+  Readings readings;
+  if (view.frame.reflectivity_8.empty()) {
+    read(view, view.frame.reflectivity_16, square, offsets, shape, readings);
+  } else {
+    read(view, view.frame.reflectivity_8, square, offsets, shape, readings);
+  }
+  out.pixels = square.pixels();
+  out.tried = readings.tried;
+  out.usable = readings.count;
+  take(view, offsets, readings, most, out);
+}
 
 }  // namespace
 
@@ -106,37 +219,18 @@ void inner_samples(const DepthView& view, double radius_px, int most_samples,
                    DepthSamples& out) noexcept {
   // A pixel's centre is at most 0.71 px from any point.
   const double outer = std::clamp(k_inner_part * radius_px, 0.72, k_inner_radius_max_px);
-  const int most = std::min(most_samples, k_inner_samples_max);
-  Thinning thinning(k_pi * outer * outer, most);
-  const Beside beside(view.rays);
-  const Square square = square_around(view, outer);
-  out.count = out.tried = 0;
-  out.pixels = square.pixels();
-  for_each_within(square, view.blob.centroid_px, 0, outer, [&](int x, int y) {
-    if (!thinning.take_next() || out.tried >= most) return;
-    ++out.tried;
-    take(view, beside, x, y, out);
-  });
+  sample(view, square_around(view, outer), Disc{outer * outer},
+         std::min(most_samples, k_inner_samples_max), out);
 }
 
 void ring_samples(const DepthView& view, double radius_px, int most_samples, int most_pixels,
                   DepthSamples& out) noexcept {
   const double outer = std::min(radius_px + k_rim_margin_px, k_scan_radius_max_px - 1.0);
   const double inner = std::min(k_inner_part * radius_px, outer);
-  const int most = std::min(most_samples, k_ring_samples_max);
   Square square = square_around(view, outer);
-  while (square.pixels() > most_pixels && square.step < 2 * k_scan_radius_max_px) ++square.step;
-  const double area = k_pi * (outer * outer - inner * inner) / (square.step * square.step);
-  Thinning thinning(area, most);
-  const Beside beside(view.rays);
-  out.count = out.tried = 0;
-  out.pixels = square.pixels();
-  for_each_within(square, view.blob.centroid_px, inner, outer, [&](int x, int y) {
-    if (reflectivity_at(view.frame, x, y) < view.blob.peak / 4) return;  // mostly background
-    if (!thinning.take_next() || out.count >= most) return;
-    ++out.tried;
-    take(view, beside, x, y, out);
-  });
+  square.widen_step(std::min(most_pixels, k_square_max_px));
+  sample(view, square, Ring{inner * inner, outer * outer, view.blob.peak / 4},
+         std::min(most_samples, k_ring_samples_max), out);
 }
 
 }  // namespace glint

@@ -1,54 +1,63 @@
 #include "kernels/pose/robust_mean.hpp"
 
 #include <algorithm>
+#include <limits>
 
-#include "kernels/merge_sort.hpp"
+#include "kernels/sort_pairs.hpp"
 
 namespace glint {
 namespace {
 
 constexpr double k_inlier_deviations = 3 * 1.4826;
+constexpr double k_infinite = std::numeric_limits<double>::infinity();
 
-double middle_of(const RangeValues& sorted, int count) {
+// In order, infinite from the last value on; two more than there may be, as pairs are read.
+using Sorted = std::array<double, k_range_values_max + 2>;
+static_assert(k_range_values_max == k_sort_pairs_max);
+
+double middle_of(const Sorted& sorted, int count) {
   const auto middle = static_cast<std::size_t>(count / 2);
   return count % 2 == 1 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
 }
 
-// Both sides of the median are in order already: their deviations only have to be merged.
-double median_deviation(const RangeValues& sorted, int count, double median) {
-  const auto value = [&](int i) { return sorted[static_cast<std::size_t>(i)]; };
-  int left = count / 2 - 1, right = count / 2;
-  double before = 0, here = 0;  // the two newest of the merged deviations
-  for (int i = 0; i <= count / 2; ++i) {
-    const bool from_left =
-        right >= count || (left >= 0 && median - value(left) < value(right) - median);
-    before = here;
-    here = from_left ? median - value(left) : value(right) - median;
-    left -= from_left ? 1 : 0;
-    right += from_left ? 0 : 1;
+// The deviation from the median that `others` others do not exceed. Those nearest to the median
+// stand side by side: of all stretches so long it is the one whose worse end is nearest.
+double nearest_stretch(const Sorted& sorted, int count, double median, int others) {
+  const double* const from = sorted.data();
+  TwoDoubles least = both(k_infinite);
+  for (int i = 0; i < count - others; i += 2) {
+    const TwoDoubles below = both(median) - load_two(from + i);
+    const TwoDoubles above = load_two(from + i + others) - both(median);
+    least = lesser(least, greater(below, above));
   }
-  return count % 2 == 1 ? here : 0.5 * (before + here);
+  return std::min(least[0], least[1]);
+}
+
+double median_deviation(const Sorted& sorted, int count, double median) {
+  const double here = nearest_stretch(sorted, count, median, count / 2);
+  if (count % 2 == 1) return here;
+  return 0.5 * (nearest_stretch(sorted, count, median, count / 2 - 1) + here);
 }
 
 }  // namespace
 
 RobustMean robust_mean(const RangeValues& values, int count, double gate_least) noexcept {
-  RangeValues sorted, spare;
+  Sorted sorted;
+  sorted.fill(k_infinite);
   std::copy_n(values.begin(), count, sorted.begin());
-  merge_sort(sorted, spare, count);
+  sort_pairs(sorted.data(), count);
   RobustMean out;
   out.median = middle_of(sorted, count);
   out.gate =
       std::max(k_inlier_deviations * median_deviation(sorted, count, out.median), gate_least);
-  double sum = 0;
-  int inliers = 0;
-  for (int i = 0; i < count; ++i) {
-    const double value = sorted[static_cast<std::size_t>(i)];
-    const bool near = out.counts(value);
-    sum += near ? value : 0.0;
-    inliers += near ? 1 : 0;
+  NearSum near, near_too;  // two, so that neither waits for the other
+  for (int i = 0; i < count; i += 4) {
+    const TwoDoubles two = load_two(sorted.data() + i), next = load_two(sorted.data() + i + 2);
+    near.add(out, two, two);
+    near_too.add(out, next, next);
   }
-  out.mean = inliers > 0 ? sum / inliers : out.median;
+  near.add(near_too);
+  out.mean = near.mean_or(out.median);
   return out;
 }
 

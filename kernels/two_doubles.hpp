@@ -1,0 +1,66 @@
+// Two doubles that are worked on at once, for a loop whose steps do not wait for each other.
+//
+// What:     sums, products, quotients and comparisons by lane are the language's; here what it
+//           lacks: loading, storing, square root, the lesser and the greater.
+// Cost:     one instruction each where the machine has lanes of doubles, else two.
+// Worst:    none is worse than another.
+// Accuracy: each lane has the bits that a double alone would have: IEEE 754 rounds all of these.
+// Source:   vector types as g++ and clang have them; x86-64's SSE2 for the square root.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+namespace glint {
+
+using TwoDoubles = double __attribute__((vector_size(16)));
+// What a comparison gives: all bits of a lane are set, or none.
+using TwoMasks = std::int64_t __attribute__((vector_size(16)));
+
+[[nodiscard]] inline TwoDoubles load_two(const double* from) {
+  TwoDoubles loaded;
+  std::memcpy(&loaded, from, sizeof loaded);
+  return loaded;
+}
+
+inline void store_two(const TwoDoubles& from, double* to) { std::memcpy(to, &from, sizeof from); }
+
+[[nodiscard]] inline TwoDoubles both(double value) { return TwoDoubles{value, value}; }
+
+// The lanes that are set as they are, the others 0.
+[[nodiscard]] inline TwoDoubles where(const TwoMasks& set, const TwoDoubles& value) {
+  return reinterpret_cast<TwoDoubles>(set & reinterpret_cast<TwoMasks>(value));
+}
+
+[[nodiscard]] inline TwoDoubles lesser(const TwoDoubles& a, const TwoDoubles& b) {
+#ifdef __SSE2__
+  return reinterpret_cast<TwoDoubles>(
+      _mm_min_pd(reinterpret_cast<__m128d>(a), reinterpret_cast<__m128d>(b)));
+#else
+  return a < b ? a : b;
+#endif
+}
+[[nodiscard]] inline TwoDoubles greater(const TwoDoubles& a, const TwoDoubles& b) {
+#ifdef __SSE2__
+  return reinterpret_cast<TwoDoubles>(
+      _mm_max_pd(reinterpret_cast<__m128d>(a), reinterpret_cast<__m128d>(b)));
+#else
+  return a > b ? a : b;
+#endif
+}
+
+// Of numbers that are not negative.
+[[nodiscard]] inline TwoDoubles square_root(const TwoDoubles& of) {
+#ifdef __SSE2__
+  return reinterpret_cast<TwoDoubles>(_mm_sqrt_pd(reinterpret_cast<__m128d>(of)));
+#else
+  return TwoDoubles{std::sqrt(of[0]), std::sqrt(of[1])};
+#endif
+}
+
+}  // namespace glint
