@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "platform/budget/check.hpp"
+#include "platform/budget/slack_table.hpp"
 #include "platform/budget/task_model_of.hpp"
 #include "platform/input_error.hpp"
 #include "schedules/sensitivity.hpp"
@@ -112,10 +113,6 @@ std::string line(const char* format, ...) {
 std::string shown(const std::optional<std::int64_t>& ns) {
   return ns ? line("%10.1f", us(*ns)) : "      none";
 }
-std::string shown_percent(const std::optional<double>& factor) {
-  if (!factor) return "    none";
-  return *factor >= k_factor_max ? "  > 99900" : line("%+8.1f", slack_percent(*factor));
-}
 
 }  // namespace
 
@@ -175,7 +172,7 @@ std::string check_table(const CheckInput& input, const CheckResult& result) {
     const GroupResponse& group = result.assessment.groups[g];
     text += line("%-16s%8d %10.1f %s %10.1f %s\n", group.name.c_str(), group.priority,
                  us(group.times.makespan_ns), shown(group.response_ns).c_str(),
-                 us(group.deadline_ns), shown_percent(result.groups[g]).c_str());
+                 us(group.deadline_ns), shown_slack(result.groups[g]).c_str());
   }
   for (std::size_t c = 0; c < result.assessment.chains.size(); ++c) {
     const Chain& chain = result.assessment.chains[c];
@@ -186,21 +183,12 @@ std::string check_table(const CheckInput& input, const CheckResult& result) {
     }
     text += line("  %-38s %10.1f us  of it %.1f us estimate; deadline %.1f us, slack %s %%\n",
                  "total", us(chain.total_ns), us(chain.estimate_ns), us(chain.deadline_ns),
-                 shown_percent(result.chains[c]).c_str());
+                 shown_slack(result.chains[c]).c_str());
     text += line("  maximum reaction time %.1f us, maximum data age %.1f us, jitter %.1f us\n",
                  us(chain.maximum_reaction_time_ns), us(chain.maximum_data_age_ns),
                  us(chain.jitter_ns));
   }
-  text += "\nnode                       bound us   may grow %\n";
-  for (const KernelSlack& slack : result.kernels) {
-    for (const TaskNode& node : result.question.model.groups[slack.group].nodes) {
-      if (node.name != slack.name || node.copy != 0) continue;
-      const std::string copies =
-          node.copies > 1 ? std::string(" x").append(std::to_string(node.copies)) : std::string();
-      text += line("%-24s %10.1f   %s\n", (node.name + copies).c_str(), us(node.bound_ns),
-                   shown_percent(slack.all_copies).c_str());
-    }
-  }
+  text += "\n                                  bound us   may grow %\n" + node_slack_rows(result);
   std::size_t slowest = 0;
   for (std::size_t f = 1; f < result.question.frames.size(); ++f) {
     if (result.question.frames[f].deadline_ns == result.question.frames[0].deadline_ns &&
@@ -211,7 +199,7 @@ std::string check_table(const CheckInput& input, const CheckResult& result) {
   text += line("\nCAN      %.1f %% of the bus; slowest frame of a tick: %s,%s us after it\n",
                100 * result.bus_load, result.question.frames[slowest].name.c_str(),
                shown(result.assessment.can[slowest].response_ns).c_str());
-  text += line("system   slack %s %%", shown_percent(result.system).c_str());
+  text += line("system   slack %s %%", shown_slack(result.system).c_str());
   if (result.system && *result.system > 0) {
     text += line(", holds down to %.3f of the clock", 1 / *result.system);
   }

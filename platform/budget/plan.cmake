@@ -4,6 +4,6 @@ target_link_libraries(glint_plan PUBLIC glint_schedules glint_cells glint_nodes 
 
 # What `glint budget schedule` and `check` compute.
 add_library(glint_budget_check STATIC bus_frames.cpp check.cpp check_report.cpp
-  typical_load.cpp)
+  slack_table.cpp typical_load.cpp)
 target_link_libraries(glint_budget_check PUBLIC glint_plan glint_board_file
   glint_trace_export nlohmann_json::nlohmann_json)

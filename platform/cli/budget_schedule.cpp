@@ -6,6 +6,7 @@
 #include "platform/budget/check.hpp"
 #include "platform/budget/expected_board.hpp"
 #include "platform/budget/plan_file.hpp"
+#include "platform/budget/slack_table.hpp"
 #include "platform/budget/task_model_of.hpp"
 #include "platform/budget/typical_load.hpp"
 #include "platform/cli/budget_commands.hpp"
@@ -72,6 +73,8 @@ int schedule(const ScheduleArguments& arguments) {
       std::printf("%s\n", plan.groups[g].optimal ? "yes" : "not proven");
     }
   }
+  const CheckInput input{cell, board, plan, limits, {}};
+  std::printf("\n%s\n", slack_table(check(input, {})).c_str());
   std::printf("written  %s\n", arguments.out.c_str());
   return check_plan(plan, model).empty() ? 0 : 1;
 }

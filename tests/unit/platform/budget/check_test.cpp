@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 
 #include "platform/budget/bus_frames.hpp"
 #include "platform/budget/expected_board.hpp"
 #include "platform/budget/plan_file.hpp"
+#include "platform/budget/slack_table.hpp"
 #include "platform/budget/task_model_of.hpp"
 #include "platform/input_error.hpp"
 #include "schedules/sensitivity.hpp"
@@ -88,6 +91,40 @@ TEST(Check, BreakEvenClockHoldsAndABitLessDoesNot) {
   const CheckResult slow = check(fixture.input(), options);
   EXPECT_FALSE(slow.fails.empty());
   EXPECT_EQ(check_json(fixture.input(), options, slow)["void"].size(), 1U);
+}
+
+// The percentage at the end of the row that begins with these words.
+double percent_in(const std::string& table, const std::string& words) {
+  const std::size_t at = table.find("\n" + words + " ");
+  EXPECT_NE(at, std::string::npos) << words << " has no row in\n" << table;
+  if (at == std::string::npos) return 0;
+  const std::string row = table.substr(at + 1, table.find('\n', at + 1) - at - 1);
+  EXPECT_EQ(row.find_last_of("0123456789"), row.size() - 1) << row;
+  return std::strtod(row.c_str() + row.rfind(' '), nullptr);
+}
+
+TEST(Check, ShowsTheSlackOfEveryNodeOfEveryChainAndOfTheSystem) {
+  const Fixture fixture(5.0);
+  const CheckResult result = check(fixture.input(), {});
+  const std::string table = slack_table(result);
+  for (const KernelSlack& slack : result.kernels) {
+    ASSERT_TRUE(slack.all_copies);
+    const std::string name = "node   " + slack.name;
+    if (*slack.all_copies < k_factor_max) {
+      EXPECT_NEAR(percent_in(table, name), slack_percent(*slack.all_copies), 0.051) << name;
+    } else {
+      EXPECT_NE(table.find(name), std::string::npos);
+    }
+  }
+  ASSERT_EQ(result.chains.size(), 2U);
+  for (std::size_t c = 0; c < result.chains.size(); ++c) {
+    EXPECT_NEAR(percent_in(table, "chain  " + result.assessment.chains[c].name),
+                slack_percent(*result.chains[c]), 0.051);
+  }
+  EXPECT_NEAR(percent_in(table, "system"), slack_percent(*result.system), 0.051);
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'),
+            static_cast<std::ptrdiff_t>(1 + result.kernels.size() + 2 + 1));
+  EXPECT_NE(check_table(fixture.input(), result).find(node_slack_rows(result)), std::string::npos);
 }
 
 TEST(Check, ScalesOneKernelUpToItsSlackAndNoFurther) {
