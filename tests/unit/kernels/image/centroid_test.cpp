@@ -143,6 +143,57 @@ TEST(Centroids, OfTheLargestGrownBoxAreRight) {
             Vector2(33, 33));
 }
 
+// By the definition, pixel by pixel: all that is bright is one blob.
+Vector2 plain_grown_centroid(Picture& p) {
+  const auto near = [&](int x, int y, int reach) {
+    for (int dy = -reach; dy <= reach; ++dy) {
+      for (int dx = -reach; dx <= reach; ++dx) {
+        const bool inside = x + dx >= 0 && x + dx < p.width && y + dy >= 0 && y + dy < p.height;
+        if (inside && p(x + dx, y + dy) > k_threshold) return true;
+      }
+    }
+    return false;
+  };
+  double dark = 0, dark_pixels = 0;
+  for (int i = 0; i < p.width * p.height; ++i) {
+    const int x = i % p.width, y = i / p.width;
+    if (near(x, y, 1) || !near(x, y, 2)) continue;
+    dark += p(x, y);
+    dark_pixels += 1;
+  }
+  double weights = 0;
+  Vector2 sum = Vector2::Zero();
+  for (int i = 0; i < p.width * p.height; ++i) {
+    const int x = i % p.width, y = i / p.width;
+    if (!near(x, y, 1)) continue;
+    const double weight = p(x, y) - dark / std::max(dark_pixels, 1.0);
+    weights += weight;
+    sum += weight * Vector2(x + 0.5, y + 0.5);
+  }
+  return sum / weights;
+}
+
+TEST(Centroids, AreThoseOfTheDefinitionInFramesOfAnyWidth) {
+  std::mt19937 random(4);
+  for (int round = 0; round < 200; ++round) {
+    const auto below = [&](unsigned n) { return static_cast<int>(random() % n); };
+    Picture p(6 + below(80), 6 + below(40));
+    for (auto& value : p.wide) value = static_cast<std::uint16_t>(200 + random() % 300);
+    const int x0 = below(static_cast<unsigned>(p.width - 3)),
+              y0 = below(static_cast<unsigned>(p.height - 3));
+    const int x1 = std::min(x0 + 2 + below(40), p.width),
+              y1 = std::min(y0 + 2 + below(20), p.height);
+    for (int y = y0; y < y1; ++y) {
+      for (int x = x0; x < x1; ++x) p(x, y) = static_cast<std::uint16_t>(5000 + random() % 3000);
+    }
+    const Frame frame = p.frame();
+    const Found found(frame);
+    const Vector2 at =
+        grown_centroid(frame, *found.scratch, found.component(), k_threshold).position_px;
+    ASSERT_LT((at - plain_grown_centroid(p)).norm(), 1e-9) << "round " << round;
+  }
+}
+
 // A blob whose surroundings are as bright as itself: no weight is left.
 TEST(Centroids, FallBackToThePlainMeanWithoutContrast) {
   Picture p(9, 9, 1280);
