@@ -21,7 +21,7 @@ enum class Reason : std::uint8_t {
   frame_invalid = 10,      // no usable pixels, size or stamp
   head_pose_missing = 11,  // the pose holds in the camera's frame only
   too_old = 12,            // the newest measurement is older than the limit
-  runs_full = 13,          // more runs of bright pixels than the budget; the rest were counted
+  runs_full = 13,          // more runs of bright pixels than the budget; the first ones count
   blobs_full = 14,         // more blobs, or pixels of theirs, than the budget; the best were kept
   search_full = 15,        // the hypothesis budget ended the search; the best so far was kept
   not_prepared = 16,       // the node or table it needs was never prepared
