@@ -8,7 +8,8 @@
 // Cost:     linear in runs; distances only when full (components x predictions); linear in the
 //           grown boxes' pixels.
 // Worst:    as many single runs inside the gate as fit, as many predictions as tools have markers,
-//           and wide boxes among those that stay.
+//           and wide boxes among those that stay. A run is dearest where rows of dots lie at
+//           random, as the processor cannot foresee which of them touch.
 // Accuracy: see centroid.hpp. Integers up to one division a coordinate.
 // Source:   the seed, section III, finds blobs in the binary picture; here from its runs.
 #pragma once
