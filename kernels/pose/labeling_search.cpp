@@ -19,7 +19,12 @@ bool stands_before(const Labeling& a, const Labeling& b) {
 LabelingSearch::LabelingSearch(const Tool& tool, const CorrespondSettings& settings,
                                const Candidates& candidates, const PairMatches& matches,
                                Labelings& found) noexcept
-    : tool_(tool), settings_(settings), candidates_(candidates), matches_(matches), found_(found) {
+    : tool_(tool),
+      settings_(settings),
+      candidates_(candidates),
+      matches_(matches),
+      found_(found),
+      partners_(matches) {
   chosen_.fill(-1);
 }
 
@@ -80,8 +85,9 @@ void LabelingSearch::run(const CandidateSets& allowed, int target) noexcept {
   for (int j = 0; j < markers; ++j) {
     std::uint64_t any = 0;
     for (int w = 0; w < words; ++w) {
-      sets_[0].word[j * words + w] = allowed[j].word[w];
-      any |= allowed[j].word[w];
+      const std::uint64_t viable = allowed[j].word[w] & partners_.with_at_least(target - 1, j, w);
+      sets_[0].word[j * words + w] = viable;
+      any |= viable;
     }
     root.possible += any != 0 ? 1 : 0;
   }

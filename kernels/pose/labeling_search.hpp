@@ -1,7 +1,8 @@
 // Walks the table of pair matches for ways to name the tool's markers, and keeps the best.
 //
 // What:     names tool marker after tool marker; each name narrows what the later ones may still be
-//           to those at the right distance. Where enough are named, the rigid fit judges.
+//           to those at the right distance. Where enough are named, the rigid fit judges. Who has
+//           too few partners for a labeling of the wanted size is never named.
 // Cost:     one step for each name tried, in which the sets of all markers are narrowed, and
 //           k_fit_steps for each fit.
 // Worst:    the steps are used up: `full`, and what was found so far stands.
@@ -13,6 +14,7 @@
 #include "kernels/nonblocking.hpp"
 #include "kernels/pose/labeling.hpp"
 #include "kernels/pose/pair_matches.hpp"
+#include "kernels/pose/partner_counts.hpp"
 
 namespace glint {
 
@@ -59,6 +61,7 @@ class LabelingSearch {
   const Candidates& candidates_;
   const PairMatches& matches_;
   Labelings& found_;
+  PartnerCounts partners_;
   std::array<Sets, k_markers_per_tool_max + 1> sets_;
   std::array<Place, k_markers_per_tool_max + 1> place_;
   std::array<std::int16_t, k_markers_per_tool_max> chosen_{};

@@ -20,6 +20,7 @@ int whole_lanes(int count) { return (count + k_lanes - 1) / k_lanes * k_lanes; }
 struct ToolPairs {
   std::array<FloatLanes, k_tool_pairs_max> distance_m;
   std::array<int, k_tool_pairs_max> row;  // of the first candidate as marker i, the set for j
+  std::array<int, k_tool_pairs_max> i, j;
   int count = 0;
 };
 
@@ -29,6 +30,8 @@ ToolPairs pairs_of(const Tool& tool, const PairMatches& matches) {
     for (int j = i + 1; j < tool.marker_count; ++j) {
       pairs.distance_m[pairs.count] = FloatLanes{} + static_cast<float>(tool.distance_m[i][j]);
       pairs.row[pairs.count] = matches.set_of(i, 0, j);
+      pairs.i[pairs.count] = i;
+      pairs.j[pairs.count] = j;
       ++pairs.count;
     }
   }
@@ -118,6 +121,19 @@ void compare(const Gates& gates, const ToolPairs& pairs, int begin, int end, std
   for (int p = 0; p < pairs.count; ++p) row[pairs.row[p]] = near_a[p];
 }
 
+// By the tool's distances: who has a partner that far away.
+using Partnered = std::array<CandidateSet, k_tool_pairs_max>;
+
+// Word w of candidate a's row names partners, and makes a one.
+void note_partners(const ToolPairs& pairs, const std::uint64_t* row, int a, int w,
+                   Partnered& partnered) {
+  for (int p = 0; p < pairs.count; ++p) {
+    const std::uint64_t near_a = row[pairs.row[p]];
+    partnered[p].word[w] |= near_a;
+    partnered[p].word[a / 64] |= static_cast<std::uint64_t>(near_a != 0) << (a % 64);
+  }
+}
+
 // Copies a block's findings into the rows of those found, which end before `end`.
 void note_for_the_found(const ToolPairs& pairs, const Found& found, int block, int end,
                         PairMatches& matches) {
@@ -146,6 +162,7 @@ PairWork match_pairs(const Candidates& candidates, const Tool& tool,
   const Columns columns = columns_of(candidates);
   Gates gates;
   Found found;
+  Partnered partnered{};
   for (int block = 0; block < candidates.count; block += k_block) {
     const int end = std::min(block + k_block, candidates.count);
     for (int b = 0; b < end; b += k_lanes)
@@ -158,9 +175,14 @@ PairWork match_pairs(const Candidates& candidates, const Tool& tool,
         compare(gates, pairs, 64 * w, std::min(others, 64 * (w + 1)),
                 std::uint32_t{1} << (a - block), found,
                 &matches.word[a * matches.words_a_row() + w]);
+        note_partners(pairs, &matches.word[a * matches.words_a_row() + w], a, w, partnered);
       }
     }
     note_for_the_found(pairs, found, block, end, matches);
+  }
+  for (int p = 0; p < pairs.count; ++p) {
+    matches.partnered[pairs.i[p]][pairs.j[p]] = partnered[p];
+    matches.partnered[pairs.j[p]][pairs.i[p]] = partnered[p];
   }
   return work;
 }

@@ -34,6 +34,8 @@ struct PairMatches {
                                              k_markers_per_tool_max * k_blobs_max *
                                              (k_blobs_max / 64);
   std::array<std::uint64_t, k_words_max> word;
+  // Of the pair (i, j) and of (j, i): the candidates that have another at its distance.
+  std::array<CandidateSets, k_markers_per_tool_max> partnered;
   int candidates = 0, markers = 0, words = 0;  // in use, and so the rows' places
 
   [[nodiscard]] int words_a_row() const { return markers * words; }
