@@ -7,8 +7,9 @@ Result<LocalRays> from_table(const CameraModel& camera, const Vector2& pixel, in
   LocalRays local;
   local.pixel = pixel;
   const auto look_up = [&](const Vector2& at) {
-    ++lens_steps;
-    return unproject(camera, at);
+    const Result<Vector3> found = unproject(camera, at);
+    lens_steps += found ? k_lens_steps_a_ray_looked_up : 0;
+    return found;
   };
   const Result<Vector3> middle = look_up(pixel);
   if (!middle) return {local, middle.reason};

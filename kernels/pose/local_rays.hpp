@@ -1,7 +1,8 @@
 // The lens around one pixel, made linear: rays of neighbouring pixels without searching for each.
 //
 // What:     the ray through a pixel and how it turns from there to its neighbours.
-// Cost:     k_turning_ray_steps_max steps of a lens's polynomial, or five look-ups in its table.
+// Cost:     k_turning_ray_steps_max steps of a lens's polynomial, or at most five look-ups in its
+//           table, of which three find a ray.
 // Worst:    a pixel at the rim of a wide lens.
 // Accuracy: a hundredth of a pixel within 10 px.
 // Source:   the lens's own derivative; of a table the difference to a neighbour.
@@ -25,13 +26,15 @@ struct LocalRays {
   [[nodiscard]] double steradian_per_pixel() const { return along_x.cross(along_y).norm(); }
 };
 
-// Adds the lens's steps to `lens_steps`: a look-up in a table is no dearer than one.
+// Adds the lens's steps to `lens_steps`: a ray looked up in a table is less than two, and leaves
+// room for a look-up that ends where a neighbour has none.
 [[nodiscard]] Result<LocalRays> local_rays(const CameraModel& camera, const Vector2& pixel,
                                            int& lens_steps) noexcept GLINT_NONBLOCKING;
 
-inline constexpr int k_look_ups_max = 5;  // the middle, and two on either side
+inline constexpr int k_lens_steps_a_ray_looked_up = 2;
+inline constexpr int k_rays_looked_up_max = 3;  // the middle one and a neighbour in x and y
 // What local_rays may take at most, whatever the lens.
 inline constexpr int k_local_rays_steps_max = k_turning_ray_steps_max;
-static_assert(k_look_ups_max <= k_local_rays_steps_max);
+static_assert(k_rays_looked_up_max * k_lens_steps_a_ray_looked_up <= k_local_rays_steps_max);
 
 }  // namespace glint
