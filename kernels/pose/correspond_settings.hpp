@@ -25,7 +25,7 @@ struct CorrespondSettings {
 };
 
 // What a fit costs beside naming one more marker, in time and, nearly, in instructions.
-inline constexpr int k_fit_steps = 40;
+inline constexpr int k_fit_steps = 32;
 
 // A blob of a few pixels may be wider than its marker by this much whatever the factor.
 inline constexpr double k_area_slack_px = 8;

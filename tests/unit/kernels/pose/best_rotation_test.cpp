@@ -75,7 +75,7 @@ TEST(BestRotation, IsAsGoodAsASingularValueDecompositionForAnyMatrix) {
   }
   for (std::size_t kind = 0; kind < worst.size(); ++kind) {
     std::printf("  %s: at most %.1e of the norm is missing\n", k_kinds[kind], worst[kind]);
-    EXPECT_LT(worst[kind], kind == 7 ? 1e-11 : 1e-14) << k_kinds[kind];
+    EXPECT_LT(worst[kind], 1e-14) << k_kinds[kind];
   }
 }
 
@@ -96,7 +96,7 @@ TEST(BestRotation, GivesTheSameBitsEverywhere) {
   for (std::size_t i = 0; i < 8000; ++i) {
     hash.add(Pose{best_rotation(matrix_of(random, i % k_kinds.size())), Vector3::Zero()});
   }
-  EXPECT_EQ(hash.value(), 14856742785816515976u);
+  EXPECT_EQ(hash.value(), 15648917445715279792u);
 }
 
 }  // namespace
