@@ -1,6 +1,7 @@
 // The processor's own steady counter: the time-stamp counter, or arm64's virtual count.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 
@@ -36,6 +37,19 @@ namespace glint {
   const std::uint64_t last = cycle_count();
   const std::chrono::duration<double, std::nano> elapsed = Clock::now() - begin;
   return elapsed.count() / static_cast<double>(last - first);
+}
+
+// The least by which two readings differ that are not the same: some machines' counters go in steps
+// of many counts.
+[[nodiscard]] inline std::uint64_t step_of_the_count() {
+  std::uint64_t least = ~std::uint64_t{0};
+  std::uint64_t before = cycle_count();
+  for (int reading = 0; reading < 10'000; ++reading) {
+    const std::uint64_t now = cycle_count();
+    if (now != before) least = std::min(least, now - before);
+    before = now;
+  }
+  return least;
 }
 
 }  // namespace glint
