@@ -12,6 +12,7 @@
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/progress.hpp"
 #include "platform/input_error.hpp"
+#include "platform/rt/processor_name.hpp"
 
 namespace glint {
 namespace {
@@ -35,7 +36,7 @@ MeasureRequest request_of(const MeasureCommand& command) {
 
 std::string machine_of(const MeasureRequest& request) {
   if (request.count_instructions) return request.emulator + " -cpu " + request.cpu_model;
-  return "this machine's time-stamp counter, core 0";
+  return processor_name() + ", its time-stamp counter, core 0";
 }
 
 Observations observe(const MeasureRequest& request, const std::string& what) {

@@ -6,7 +6,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
+
+#include "platform/rt/processor_name.hpp"
 
 namespace glint::bench {
 namespace {
@@ -16,15 +17,6 @@ double nanoseconds_of(const std::function<void()>& run) {
   const Clock::time_point begin = Clock::now();
   run();
   return std::chrono::duration<double, std::nano>(Clock::now() - begin).count();
-}
-
-std::string processor() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);) {
-    const std::size_t colon = line.find(": ");
-    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
-  }
-  return "unknown";
 }
 
 }  // namespace
@@ -65,7 +57,7 @@ bool print_bar(const char* what, double found, const char* unit, double bar, boo
 void print_machine() {
   utsname system{};
   uname(&system);
-  std::printf("%s, %s %s, compiler %s, flags %s\n", processor().c_str(), system.sysname,
+  std::printf("%s, %s %s, compiler %s, flags %s\n", processor_name().c_str(), system.sysname,
               system.release, __VERSION__, GLINT_BENCH_FLAGS);
 }
 
