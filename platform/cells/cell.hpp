@@ -75,8 +75,8 @@ struct OverrunSettings {
 
 // The problem that the cell takes on: what its nodes stop at and its bounds are computed from.
 struct BudgetSettings {
-  int tools = 0;   // at least as many as are listed
-  int blobs = 64;  // or twice the markers of the listed tools
+  int tools = 0;            // at least as many as are listed
+  int blobs = 64;           // or twice the markers of the listed tools
   int runs_per_band = 512;  // or eight a blob
   int search_steps = 768;
 };
