@@ -212,8 +212,10 @@ std::string check_table(const CheckInput& input, const CheckResult& result) {
 
 void compare_observed(const std::string& summary_file, CheckResult& result) {
   std::ifstream in(summary_file);
+  if (!in)
+    throw InputError(summary_file + ": cannot be read; expected a summary.json of `glint run`");
   const auto summary = nlohmann::json::parse(in, nullptr, false);
-  if (!in || summary.is_discarded() || !summary.contains("frame_to_can_us") ||
+  if (summary.is_discarded() || !summary.contains("frame_to_can_us") ||
       !summary["frame_to_can_us"].contains("max")) {
     throw InputError(summary_file +
                      ":1: no frame_to_can_us.max; expected a summary.json of `glint run`");
