@@ -1,5 +1,5 @@
 # cmake -DGLINT_PRECOMPILE=ON: Eigen takes a third of what most files take to compile; here it is read
-# once, in two variants: with exceptions and without. The objects stay the same, bit by bit. Off by
+# once, in two variants: with exceptions and without. Off by
 # default, so that each file has to name what it uses.
 file(WRITE ${CMAKE_BINARY_DIR}/precompiled.cpp "")
 foreach(variant precompiled precompiled_core)
