@@ -1,4 +1,4 @@
-// glint experiment: the published method's experiments, with its figures beside Glint's.
+// glint experiment: how good the estimates are, case by case, beside the published method.
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -6,6 +6,7 @@
 #include "platform/cli/commands.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/progress.hpp"
+#include "platform/experiments/case_experiments.hpp"
 #include "platform/experiments/experiment.hpp"
 #include "platform/experiments/experiment_report.hpp"
 
@@ -13,12 +14,13 @@ namespace glint {
 namespace {
 
 struct ExperimentArguments {
-  std::string json, out = "out";
+  std::string json, out = "out", data;
   bool quick = false;
   std::uint64_t seed = 1;
 };
+using Arguments = std::shared_ptr<ExperimentArguments>;
 
-int run_one(ExperimentKind kind, const ExperimentArguments& arguments) {
+int run_published(ExperimentKind kind, const ExperimentArguments& arguments) {
   Progress progress("experiment " + name_of(kind));
   ExperimentOptions options;
   options.quick = arguments.quick;
@@ -35,29 +37,59 @@ int run_one(ExperimentKind kind, const ExperimentArguments& arguments) {
   return 0;
 }
 
-void add_kind(CLI::App& command, const char* name, const char* what, ExperimentKind kind,
-              const std::shared_ptr<ExperimentArguments>& arguments, int& exit_code) {
+int run_cases(const CaseExperiment& experiment, const ExperimentArguments& arguments) {
+  Progress progress(std::string("experiment ") + experiment.name);
+  CaseOptions options{arguments.quick, arguments.seed, arguments.out, arguments.data,
+                      [&](int done, int all) { progress.show(done, all); }};
+  make_folder(options.out);
+  const CaseList list = experiment.run(options);
+  std::fputs(case_table(list).c_str(), stdout);
+  if (!arguments.json.empty()) write_text(arguments.json, case_json(list, options));
+  for (const std::string& file : list.plots) std::printf("written  %s\n", file.c_str());
+  return missed_bars(list) == 0 ? 0 : 1;
+}
+
+CLI::App& add_one(CLI::App& command, const std::string& name, const char* what,
+                  const Arguments& arguments) {
   CLI::App* sub = command.add_subcommand(name, what);
-  sub->add_flag("--quick", arguments->quick, "a tenth of the frames: to see that it works");
-  sub->add_option("--seed", arguments->seed, "of the simulator")->capture_default_str();
+  sub->add_flag("--quick", arguments->quick, "few samples: to see that it works");
+  sub->add_option("--seed", arguments->seed, "of the random numbers")->capture_default_str();
   sub->add_option("--json", arguments->json, "write the figures here");
   sub->add_option("--out", arguments->out, "folder of the plots")->capture_default_str();
-  sub->footer(std::string("Example: glint experiment ") + name + " --json " + name + ".json");
-  sub->callback([kind, arguments, &exit_code] { exit_code = run_one(kind, *arguments); });
+  sub->footer("Example: glint experiment " + name + " --json " + name + ".json");
+  return *sub;
+}
+
+void add_published(CLI::App& command, const char* name, const char* what, ExperimentKind kind,
+                   const Arguments& arguments, int& exit_code) {
+  add_one(command, name, what, arguments).callback([kind, arguments, &exit_code] {
+    exit_code = run_published(kind, *arguments);
+  });
 }
 
 }  // namespace
 
 void add_experiment(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "experiment", "The published method and Glint on the same simulated frames");
+      "experiment", "How good the estimates are, beside the published method and other rivals");
   command->require_subcommand(1);
-  command->footer("Example: glint experiment static --json static.json");
+  command->footer(
+      "Example: glint experiment static --json static.json\n"
+      "Exit: 0 every bar is met (or the experiment has none), 1 one is missed, 2 bad use.");
   auto arguments = std::make_shared<ExperimentArguments>();
-  add_kind(*command, "static", "headset and pen still, an arm's length apart",
-           ExperimentKind::still, arguments, exit_code);
-  add_kind(*command, "dynamic", "headset and pen both moving", ExperimentKind::moving, arguments,
-           exit_code);
+  add_published(*command, "static", "headset and pen still, an arm's length apart",
+                ExperimentKind::still, arguments, exit_code);
+  add_published(*command, "dynamic", "headset and pen both moving", ExperimentKind::moving,
+                arguments, exit_code);
+  for (const CaseExperiment& experiment : case_experiments()) {
+    CLI::App& sub = add_one(*command, experiment.name, experiment.what, arguments);
+    if (experiment.wants_data) {
+      sub.add_option("--data", arguments->data, "folder of the recordings")->required();
+      sub.footer(std::string("Example: glint experiment ") + experiment.name + " --data DIR");
+    }
+    sub.callback(
+        [&experiment, arguments, &exit_code] { exit_code = run_cases(experiment, *arguments); });
+  }
 }
 
 }  // namespace glint

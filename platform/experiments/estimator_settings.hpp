@@ -1,0 +1,22 @@
+// The one built-in configuration of the estimator that every experiment runs, and its name.
+#pragma once
+
+#include <string>
+
+#include "kernels/pose/correspond_settings.hpp"
+
+namespace glint {
+
+// Default-constructed it is the configuration. Whoever adds a part of the estimator adds its
+// settings here, and their fields to estimator_text().
+struct EstimatorSettings {
+  CorrespondSettings correspond;
+};
+
+// Every field by name, as JSON.
+[[nodiscard]] std::string estimator_text();
+
+// FNV-1a of that text, 16 hexadecimal digits: experiments with equal names ran the same estimator.
+[[nodiscard]] std::string estimator_hash();
+
+}  // namespace glint
