@@ -18,6 +18,7 @@ inline constexpr int k_range_pixels_a_blob = 128;      // looked at for depth
 inline constexpr int k_range_samples_a_blob = 16;      // ranges that are averaged
 inline constexpr int k_labelings_max = 8;              // kept for each tool, best first
 inline constexpr int k_lens_steps_max = 40;            // of a search in a lens table, a projection
+inline constexpr int k_ray_steps_max = 20;             // of finding a ray through a lens
 inline constexpr int k_search_steps_max = 4'096;       // of the correspondence search, a tool
 inline constexpr int k_background_steps_max = 50'000;  // of one background slice
 
@@ -31,6 +32,7 @@ struct Limits {
   int blobs = k_blobs_max;
   int runs_per_band = k_runs_per_band_max;
   int lens_steps = k_lens_steps_max;  // 0 for a lens without a table
+  int ray_steps = k_ray_steps_max;    // what the cell's lens takes: ray_steps_needed()
   int search_steps = k_search_steps_max;
   int background_steps = k_background_steps_max;
   int reflectivity_bytes = k_reflectivity_bytes_max;

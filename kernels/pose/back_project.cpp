@@ -120,7 +120,7 @@ Measured measure(const Frame& frame, const Blob& blob, std::uint16_t blob_index,
                  const NominalMarker& nominal, const MarkerWorkLimits& most, Marker& out) {
   Measured measured;
   int lens_steps = 0;
-  const Result<LocalRays> rays = local_rays(camera, blob.centroid_px, lens_steps);
+  const Result<LocalRays> rays = local_rays(camera, blob.centroid_px, most.ray_steps, lens_steps);
   measured.has_ray = static_cast<bool>(rays);
   if (rays) {
     out = {};
@@ -155,10 +155,10 @@ BackProjectWork back_project(const Frame& frame, const Blobs& blobs, const Camer
   SharedBudget pixels(limits.range_pixels_a_blob, limits.blobs, count);
   SharedBudget samples(limits.range_samples_a_blob, limits.blobs, count);
   for (int i = 0; i < count; ++i) {
-    const Measured one =
-        measure(frame, blobs.items[static_cast<std::size_t>(i)], static_cast<std::uint16_t>(i),
-                camera, depth, nominal, {pixels.most_for_next(), samples.most_for_next()},
-                out.items[static_cast<std::size_t>(out.count)]);
+    const Measured one = measure(
+        frame, blobs.items[static_cast<std::size_t>(i)], static_cast<std::uint16_t>(i), camera,
+        depth, nominal, {pixels.most_for_next(), samples.most_for_next(), limits.ray_steps},
+        out.items[static_cast<std::size_t>(out.count)]);
     out.count += one.has_ray ? 1 : 0;
     pixels.spend(one.work.pixels);
     samples.spend(one.work.samples);
@@ -174,7 +174,7 @@ BackProjectWork back_project(const Frame& frame, const Blobs& blobs, const Camer
 double expected_area_px(const CameraModel& camera, const Vector2& pixel, double radius_m,
                         double range_m) noexcept {
   int lens_steps = 0;
-  const Result<LocalRays> rays = local_rays(camera, pixel, lens_steps);
+  const Result<LocalRays> rays = local_rays(camera, pixel, k_ray_steps_max, lens_steps);
   if (!rays || !(range_m > 0)) return 0;
   const double steradian = rays.value.steradian_per_pixel();
   const double part = radius_m / range_m;

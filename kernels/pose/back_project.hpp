@@ -39,10 +39,11 @@ struct NominalMarker {
   MarkerShape shape = MarkerShape::sphere;
 };
 
-// What one blob may take: pixels looked at for depth, samples averaged.
+// What one blob may take: pixels looked at for depth, samples averaged, steps to find its ray.
 struct MarkerWorkLimits {
   int pixels = k_blobs_max * k_range_pixels_a_blob;
   int samples = k_blobs_max * k_range_samples_a_blob;
+  int ray_steps = k_ray_steps_max;
 };
 
 // blob_index: its place in Blobs. True: out has a ray; without any depth k_marker_no_depth is set
@@ -71,8 +72,8 @@ BackProjectWork back_project(const Frame& frame, const Blobs& blobs, const Camer
 // What back_project may do at most.
 [[nodiscard]] constexpr BackProjectWork back_project_work_max(const Limits& limits) {
   const int samples = limits.blobs * limits.range_samples_a_blob;
-  return {limits.blobs, limits.blobs * k_local_rays_steps_max,
-          limits.blobs * limits.range_pixels_a_blob, samples, samples};
+  return {limits.blobs, limits.blobs * limits.ray_steps, limits.blobs * limits.range_pixels_a_blob,
+          samples, samples};
 }
 
 // Pixels that a sphere (or a disc that faces the camera) of this radius covers around a pixel with

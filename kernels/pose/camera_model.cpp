@@ -100,7 +100,7 @@ Result<Vector3> unproject(const CameraModel& camera, const Vector2& pixel) noexc
   if (camera.lens != Lens::pinhole) {
     int steps = 0;
     Undistorted found;
-    const Reason reason = undistort(camera, p, k_undistort_iterations_max, steps, found);
+    const Reason reason = undistort(camera, p, k_ray_steps_max, steps, found);
     if (reason != Reason::none) return {Vector3::Zero(), reason};
     p = found.position;
   }
@@ -108,7 +108,7 @@ Result<Vector3> unproject(const CameraModel& camera, const Vector2& pixel) noexc
   return {Vector3{p.x() / length, p.y() / length, 1 / length}};
 }
 
-Result<TurningRay> unproject_turning(const CameraModel& camera, const Vector2& pixel,
+Result<TurningRay> unproject_turning(const CameraModel& camera, const Vector2& pixel, int steps_max,
                                      int& lens_steps) noexcept {
   Vector2 p{(pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy};
   if (!(p.squaredNorm() < 1e6)) return {{}, Reason::out_of_range};
@@ -116,7 +116,7 @@ Result<TurningRay> unproject_turning(const CameraModel& camera, const Vector2& p
   Vector2 dx{1 / camera.fx, 0}, dy{0, 1 / camera.fy};
   if (camera.lens != Lens::pinhole) {
     Undistorted found;
-    const Reason reason = undistort(camera, p, k_turning_ray_steps_max, lens_steps, found);
+    const Reason reason = undistort(camera, p, steps_max, lens_steps, found);
     if (reason != Reason::none) return {{}, reason};
     p = found.position;
     const Distorted& d = found.there;

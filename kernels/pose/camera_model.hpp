@@ -1,7 +1,7 @@
 // Pixel <-> ray, for the lenses that time-of-flight headsets have.
 //
 // What:     unproject: pixel -> unit ray in the camera frame; project: point -> pixel.
-// Cost:     pinhole a division; brown and rational at most k_undistort_iterations_max Newton steps;
+// Cost:     pinhole a division; brown and rational at most k_ray_steps_max Newton steps;
 //           lut one bilinear look-up to unproject, at most k_lut_search_iterations_max to project.
 // Worst:    a pixel or point outside the lens: all iterations, then Reason::out_of_range.
 // Accuracy: against OpenCV within 1e-6 px; there and back within 1e-6 px, the table included.
@@ -40,12 +40,10 @@ struct CameraModel {
   RayTable table;                         // lut only
 };
 
-inline constexpr int k_undistort_iterations_max = 20;
-// Of the lenses that we ship none takes more than 5, rim included: one of room.
-inline constexpr int k_turning_ray_steps_max = 6;
 inline constexpr int k_lut_search_iterations_max = k_lens_steps_max;
 
-// Reason::out_of_range: outside the table, or the lens has no ray there.
+// Reason::out_of_range: outside the table, or the lens has no ray there, or none that
+// k_ray_steps_max Newton steps find.
 [[nodiscard]] Result<Vector3> unproject(const CameraModel& camera,
                                         const Vector2& pixel) noexcept GLINT_NONBLOCKING;
 
@@ -55,8 +53,9 @@ struct TurningRay {
   Vector3 along_x = Vector3::Zero(), along_y = Vector3::Zero();
 };
 // For every lens but a table, which has neighbours to ask. Reason::out_of_range: no ray there, or
-// not found in k_turning_ray_steps_max Newton steps; those taken are added to `lens_steps`.
+// not found in steps_max Newton steps; those taken are added to `lens_steps`.
 [[nodiscard]] Result<TurningRay> unproject_turning(const CameraModel& camera, const Vector2& pixel,
+                                                   int steps_max,
                                                    int& lens_steps) noexcept GLINT_NONBLOCKING;
 
 // Reason::out_of_range: behind the camera or outside the lens; the pixel may lie outside the frame.

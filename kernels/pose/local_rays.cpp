@@ -1,7 +1,11 @@
 #include "kernels/pose/local_rays.hpp"
 
+#include <algorithm>
+
 namespace glint {
 namespace {
+
+constexpr int k_grid_cells = 128;  // each way
 
 Result<LocalRays> from_table(const CameraModel& camera, const Vector2& pixel, int& lens_steps) {
   LocalRays local;
@@ -32,12 +36,28 @@ Result<LocalRays> from_table(const CameraModel& camera, const Vector2& pixel, in
 
 }  // namespace
 
-Result<LocalRays> local_rays(const CameraModel& camera, const Vector2& pixel,
+Result<LocalRays> local_rays(const CameraModel& camera, const Vector2& pixel, int steps_max,
                              int& lens_steps) noexcept {
   if (camera.lens == Lens::lut) return from_table(camera, pixel, lens_steps);
-  const Result<TurningRay> turning = unproject_turning(camera, pixel, lens_steps);
+  const Result<TurningRay> turning = unproject_turning(camera, pixel, steps_max, lens_steps);
   const TurningRay& found = turning.value;
   return {{pixel, found.ray, found.along_x, found.along_y}, turning.reason};
+}
+
+int ray_steps_needed(const CameraModel& camera) noexcept {
+  if (camera.lens == Lens::lut) return k_table_ray_steps;
+  if (camera.lens == Lens::pinhole) return 0;
+  int most = 0;
+  // Both borders are on the grid: the rim takes the most.
+  for (int row = 0; row <= k_grid_cells; ++row) {
+    for (int column = 0; column <= k_grid_cells; ++column) {
+      const Vector2 pixel{static_cast<double>(column) * camera.width / k_grid_cells,
+                          static_cast<double>(row) * camera.height / k_grid_cells};
+      int steps = 0;
+      if (unproject_turning(camera, pixel, k_ray_steps_max, steps)) most = std::max(most, steps);
+    }
+  }
+  return std::min(most + 1, k_ray_steps_max);
 }
 
 }  // namespace glint

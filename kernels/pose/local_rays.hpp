@@ -1,7 +1,7 @@
 // The lens around one pixel, made linear: rays of neighbouring pixels without searching for each.
 //
 // What:     the ray through a pixel and how it turns from there to its neighbours.
-// Cost:     k_turning_ray_steps_max steps of a lens's polynomial, or at most five look-ups in its
+// Cost:     steps_max steps of a lens's polynomial, or at most five look-ups in its
 //           table, of which three find a ray.
 // Worst:    a pixel at the rim of a wide lens.
 // Accuracy: a hundredth of a pixel within 10 px.
@@ -29,12 +29,18 @@ struct LocalRays {
 // Adds the lens's steps to `lens_steps`: a ray looked up in a table is less than two, and leaves
 // room for a look-up that ends where a neighbour has none.
 [[nodiscard]] Result<LocalRays> local_rays(const CameraModel& camera, const Vector2& pixel,
+                                           int steps_max,
                                            int& lens_steps) noexcept GLINT_NONBLOCKING;
 
 inline constexpr int k_lens_steps_a_ray_looked_up = 2;
 inline constexpr int k_rays_looked_up_max = 3;  // the middle one and a neighbour in x and y
-// What local_rays may take at most, whatever the lens.
-inline constexpr int k_local_rays_steps_max = k_turning_ray_steps_max;
-static_assert(k_rays_looked_up_max * k_lens_steps_a_ray_looked_up <= k_local_rays_steps_max);
+// What a table takes, whatever steps_max is.
+inline constexpr int k_table_ray_steps = k_rays_looked_up_max * k_lens_steps_a_ray_looked_up;
+static_assert(k_table_ray_steps <= k_ray_steps_max);
+
+// The steps after which this lens has its rays: the most that any of a grid of pixels over the
+// frame takes, and one more; k_ray_steps_max at most. For configuring: as long as a few thousand
+// rays take.
+[[nodiscard]] int ray_steps_needed(const CameraModel& camera) noexcept;
 
 }  // namespace glint

@@ -6,6 +6,7 @@
 
 #include "glint_default_cell.hpp"
 #include "kernels/elementary.hpp"
+#include "kernels/pose/local_rays.hpp"
 #include "kernels/wire/can_frames.hpp"
 #include "platform/cells/toml_reader.hpp"
 #include "platform/cells/tool_file.hpp"
@@ -301,6 +302,7 @@ Limits limits_of(const Cell& cell) {
   limits.height = camera.height;
   limits.reflectivity_bytes = (cell.camera.reflectivity_bits + 7) / 8;
   limits.lens_steps = camera.lens == Lens::lut ? k_lens_steps_max : 0;
+  limits.ray_steps = ray_steps_needed(camera);
   limits.tools = std::max(cell.budget.tools, cell.tools.count);  // some join after reading
   limits.markers_per_tool = 3;
   for (int t = 0; t < cell.tools.count; ++t) {

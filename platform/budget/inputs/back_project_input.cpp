@@ -21,11 +21,11 @@ CameraModel wide_lens(const Vector2& pixel, int steps) {
   camera.height = k_height_max;
   camera.fx = camera.fy = 250;
   camera.cy = pixel.y();
-  camera.distortion = {0, 0, 0, 0, 0, 0.02, 0, 0};
-  for (int i = 0; i < 1000; ++i) {
+  camera.distortion = {0, 0, 0, 0, 0, 0.002, 0, 0};
+  for (int i = 0; i < 3000; ++i) {
     camera.cx = pixel.x() - i;
     int taken = 0;
-    if (unproject_turning(camera, pixel, taken) && taken == steps) break;
+    if (unproject_turning(camera, pixel, steps, taken) && taken == steps) break;
   }
   return camera;
 }
@@ -75,7 +75,7 @@ class MeasuredBackProject final : public MeasuredKernel {
     int blobs = 1;
     std::uint32_t area_px = k_blind_area_px;
     double blind_px = 3.7;
-    int lens_steps = k_turning_ray_steps_max;
+    int lens_steps = k_ray_steps_max;
     DepthKind kind = DepthKind::z;
     double nominal_radius_m = 0.05;
     double off_px = 0;  // of the middle from a corner of four pixels
@@ -85,6 +85,7 @@ class MeasuredBackProject final : public MeasuredKernel {
   static Blind worst_blind(std::uint64_t variant, const Limits& limits) {
     Blind blind;
     blind.blobs = limits.blobs;
+    blind.lens_steps = limits.ray_steps;
     switch (variant % 6) {
       case 1:
         blind.blind_px = 0;
@@ -148,7 +149,7 @@ class MeasuredBackProject final : public MeasuredKernel {
           input.blind_px = random.below(9);
           break;
         case 3:
-          input.lens_steps = random.between(3, k_turning_ray_steps_max);
+          input.lens_steps = random.between(3, limits.ray_steps);
           break;
         case 4:
           input.nominal_radius_m = 0.002 * random.between(1, 50);
@@ -160,6 +161,7 @@ class MeasuredBackProject final : public MeasuredKernel {
       return input;
     };
     Blind first;
+    first.lens_steps = limits.ray_steps;
     for (int i = 0; i < 6; ++i) first = change(first);
     blind(climb(first, change, [&](const Blind& input) {
       blind(input);

@@ -17,6 +17,7 @@ namespace glint {
   limits.markers_per_tool = 5;
   limits.runs_per_band = 512;
   limits.lens_steps = 0;
+  limits.ray_steps = 6;
   limits.search_steps = 768;
   return limits;
 }

@@ -44,7 +44,7 @@ class DepthSamplesOf : public testing::Test {
     frame.reflectivity_16 = {bright_.data(), k_side, k_side};
     frame.depth = {depth_.data(), k_side, k_side};
     int steps = 0;
-    const LocalRays rays = local_rays(camera_, blob_.centroid_px, steps).value;
+    const LocalRays rays = local_rays(camera_, blob_.centroid_px, k_ray_steps_max, steps).value;
     DepthSamples out;
     take({frame, blob_, settings_, rays}, out);
     return out;

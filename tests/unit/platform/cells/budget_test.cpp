@@ -25,6 +25,7 @@ TEST(CellBudget, FollowsTheCellsToolsAndCameraWhereNothingIsSaid) {
   EXPECT_EQ(limits.blobs, 64);
   EXPECT_EQ(limits.width, 512);
   EXPECT_EQ(limits.lens_steps, 0);  // without a ray table nothing is searched in one
+  EXPECT_EQ(limits.ray_steps, 6);   // what the AHAT lens takes, and one more
   const Limits built_in = limits_of(default_cell());
   EXPECT_EQ(built_in.search_steps, limits.search_steps);
   EXPECT_EQ(built_in.runs_per_band, limits.runs_per_band);
