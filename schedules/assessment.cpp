@@ -25,11 +25,12 @@ void judge(std::vector<std::string>& fails, const std::string& name,
 SharedResponse shared(const TaskModel& model, const TaskGroup& group, const GroupResponse& with,
                       const GroupResponse& without) {
   SharedResponse response;
-  response.bound_ns = *without.response_ns - without.jitter_ns;
+  response.blocking_ns = without.blocking_ns;
+  response.bound_ns = *without.response_ns - without.jitter_ns - response.blocking_ns;
   response.wake_up_ns = model.system.wake_up_ns * (with.times.cores_used > 1 ? 2 : 1);
   response.writes_ns = model.system.can_write_ns * group.can_writes;
   response.system_ns = *with.response_ns - with.jitter_ns - response.bound_ns -
-                       response.wake_up_ns - response.writes_ns;
+                       response.blocking_ns - response.wake_up_ns - response.writes_ns;
   return response;
 }
 

@@ -8,7 +8,9 @@
 //           waits delays nothing. All preemptions of all used cores together therefore delay the
 //           end by at most their sum. A more urgent group that spans several cores holds each of
 //           them, waiting included, for no longer than its own response.
-// Accuracy: exact on one core for independent releases; an upper bound on several.
+// Accuracy: exact on one core for independent releases; an upper bound on several. B counts one
+//           slice of a less urgent group a core as if nothing could interrupt it: more than happens
+//           where a core preempts it at once.
 // Worst:    all more urgent releases together with the group's own.
 // Source:   response_time.hpp for the recurrence; the argument above is Glint's own.
 #pragma once

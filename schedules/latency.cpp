@@ -9,12 +9,19 @@ void add(Chain& chain, const char* name, StageKind kind, std::int64_t ns) {
   if (kind == StageKind::estimate) chain.estimate_ns += ns;
 }
 
+// A row of its own where there is anything: without a resumable group nothing blocks.
+void add_blocking(Chain& chain, const char* name, const SharedResponse& response) {
+  if (response.blocking_ns > 0) add(chain, name, StageKind::bound, response.blocking_ns);
+}
+
 void add_groups(Chain& chain, const ChainParts& parts, std::int64_t writes_ns) {
   add(chain, "frame: wake-up", StageKind::estimate, parts.frame.wake_up_ns);
+  add_blocking(chain, "frame: blocked by a slice", parts.frame);
   add(chain, "frame: nodes and preemption", StageKind::bound, parts.frame.bound_ns);
   add(chain, "frame: interrupts, hand-over, writes", StageKind::estimate, parts.frame.system_ns);
   add(chain, "sampling", StageKind::bound, parts.tick_gap_ns);
   add(chain, "tick: wake-up", StageKind::estimate, parts.tick.wake_up_ns);
+  add_blocking(chain, "tick: blocked by a slice", parts.tick);
   add(chain, "tick: nodes and preemption", StageKind::bound, parts.tick.bound_ns);
   add(chain, "tick: interrupts", StageKind::estimate, parts.tick.system_ns);
   add(chain, "CAN write", StageKind::estimate, writes_ns);

@@ -55,7 +55,8 @@ struct Chain {
 
 // One group's response with and without the operating system's share.
 struct SharedResponse {
-  std::int64_t bound_ns = 0;  // nodes, blocking and preemption; without jitter
+  std::int64_t bound_ns = 0;     // nodes and preemption; without jitter and blocking
+  std::int64_t blocking_ns = 0;  // by a slice of a resumable group on the same core
   std::int64_t wake_up_ns = 0;
   std::int64_t system_ns = 0;  // interrupts, hand-overs, and writes of those that preempt
   std::int64_t writes_ns = 0;

@@ -48,6 +48,18 @@ class Checker {
         add(plan_.groups[other].name + " and " + plan_.groups[g].name + ": both have priority " +
             std::to_string(priority) + "; expected one each");
       }
+      check_lowest(g);
+    }
+  }
+
+  void check_lowest(std::size_t g) {
+    if (!model_.groups[g].resumable) return;
+    for (std::size_t other = 0; other < plan_.groups.size(); ++other) {
+      const int limit = plan_.groups[other].priority;
+      if (model_.groups[other].resumable || plan_.groups[g].priority < limit) continue;
+      add(plan_.groups[g].name + ": priority " + std::to_string(plan_.groups[g].priority) +
+          "; expected below " + std::to_string(limit) + ", that of " + plan_.groups[other].name +
+          ": what runs in slices gives way");
     }
   }
 

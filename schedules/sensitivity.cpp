@@ -15,10 +15,16 @@ TaskModel scaled(const TaskModel& model, double factor, const Grows& grows, bool
   TaskModel result = model;
   for (std::size_t g = 0; g < result.groups.size(); ++g) {
     TaskGroup& group = result.groups[g];
+    std::size_t changed = 0;
     for (std::size_t n = 0; n < group.nodes.size(); ++n) {
-      if (grows(g, n)) group.nodes[n].bound_ns = grown(group.nodes[n].bound_ns, factor);
+      if (!grows(g, n)) continue;
+      group.nodes[n].bound_ns = grown(group.nodes[n].bound_ns, factor);
+      ++changed;
     }
-    if (system_too) group.longest_slice_ns = grown(group.longest_slice_ns, factor);
+    // A slice is made of these nodes: it grows with any of them, and shrinks only with all.
+    if (factor > 1 ? changed > 0 : changed == group.nodes.size()) {
+      group.longest_slice_ns = grown(group.longest_slice_ns, factor);
+    }
   }
   if (system_too) {
     SystemShare& system = result.system;

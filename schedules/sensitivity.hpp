@@ -22,8 +22,8 @@ inline constexpr double k_factor_max = 1000;
 // Which nodes grow: by group and node index.
 using Grows = std::function<bool(std::size_t group, std::size_t node)>;
 
-// Every bound rounded up. `system_too`: the operating system's share grows alike, as by a slower
-// clock.
+// Every bound rounded up, the longest slice of a group that grows too. `system_too`: the operating
+// system's share grows alike, as by a slower clock.
 [[nodiscard]] TaskModel scaled(const TaskModel& model, double factor, const Grows& grows,
                                bool system_too = false);
 

@@ -1,7 +1,9 @@
 #include "schedules/synthesis.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <utility>
 
 #include "schedules/group_response.hpp"
 #include "schedules/static_order.hpp"
@@ -49,7 +51,9 @@ void assign_priorities(const TaskModel& model, Plan& plan) {
   std::vector<std::size_t> open;
   for (std::size_t g = 0; g < count; ++g) open.push_back(g);
   std::stable_sort(open.begin(), open.end(), [&](std::size_t a, std::size_t b) {
-    return model.groups[a].deadline_ns < model.groups[b].deadline_ns;
+    const TaskGroup &first = model.groups[a], &second = model.groups[b];
+    if (first.resumable != second.resumable) return second.resumable;
+    return first.deadline_ns < second.deadline_ns;
   });
   // Until a level is given away, deadline monotonic.
   const auto number = [&] {
@@ -64,6 +68,7 @@ void assign_priorities(const TaskModel& model, Plan& plan) {
     const int lowest = plan.groups[open.back()].priority;
     std::size_t chosen = open.size() - 1;
     for (std::size_t candidate = open.size(); candidate-- > 0;) {
+      if (model.groups[open.back()].resumable != model.groups[open[candidate]].resumable) break;
       open = by_deadline;
       std::rotate(open.begin() + static_cast<std::ptrdiff_t>(candidate),
                   open.begin() + static_cast<std::ptrdiff_t>(candidate) + 1, open.end());
@@ -78,15 +83,16 @@ void assign_priorities(const TaskModel& model, Plan& plan) {
   }
 }
 
-// The largest response over deadline; what no bound exists for is worst.
-double tightness(const TaskModel& model, const Plan& plan) {
-  double worst = 0;
+// Every group's response over its deadline, the largest first; what no bound exists for is worst.
+std::vector<double> tightness(const TaskModel& model, const Plan& plan) {
+  std::vector<double> shares;
   for (const GroupResponse& group : group_responses(model, plan)) {
-    if (!group.response_ns) return std::numeric_limits<double>::max();
-    worst = std::max(
-        worst, double(*group.response_ns) / double(std::max<std::int64_t>(group.deadline_ns, 1)));
+    if (!group.response_ns) return {std::numeric_limits<double>::max()};
+    shares.push_back(double(*group.response_ns) /
+                     double(std::max<std::int64_t>(group.deadline_ns, 1)));
   }
-  return worst;
+  std::sort(shares.begin(), shares.end(), std::greater<>());
+  return shares;
 }
 
 }  // namespace
@@ -107,7 +113,7 @@ Plan synthesize(const TaskModel& model, std::int64_t search_nodes_max) {
     placements *= static_cast<std::size_t>(model.cores);
   }
   Plan best;
-  double best_tightness = 0;
+  std::vector<double> best_tightness;
   for (std::size_t choice = 0; choice < placements; ++choice) {
     Placement placement = shortest;
     std::size_t rest = choice;
@@ -120,10 +126,10 @@ Plan synthesize(const TaskModel& model, std::int64_t search_nodes_max) {
     }
     Plan plan = plan_of(model, placement);
     assign_priorities(model, plan);
-    const double tight = tightness(model, plan);
+    std::vector<double> tight = tightness(model, plan);
     if (choice > 0 && tight >= best_tightness) continue;
     best = std::move(plan);
-    best_tightness = tight;
+    best_tightness = std::move(tight);
   }
   for (std::size_t g = 0; g < found.size(); ++g) {
     best.groups[g].least_possible_ns = found[g].least_possible_ns;

@@ -2,9 +2,11 @@
 //
 // What:     each group alone gets the shortest makespan on the cores (exact_schedule.hpp); groups
 //           that use one core are then tried on every core, and the placement is kept whose
-//           tightest response is the best against its deadline. Priorities after Audsley: from the
-//           least urgent up, each goes to the group with the longest deadline that still meets it
-//           below all others; where none does, to the longest deadline (deadline monotonic).
+//           tightest response is the best against its deadline, then the second tightest, and so
+//           on: a slice goes where it blocks least. Priorities after Audsley: from the least urgent
+//           up, each goes to the group with the longest deadline that still meets it below all
+//           others; where none does, to the longest deadline (deadline monotonic). A resumable
+//           group is given the lowest priority whatever its deadline.
 // Cost:     one search a group; (cores to the number of one-core groups) analyses, at most 64.
 // Source:   Audsley 1991 (optimal priorities); Leung and Whitehead 1982 (deadline monotonic).
 #pragma once

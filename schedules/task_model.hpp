@@ -25,7 +25,8 @@ struct TaskGroup {
   std::int64_t min_gap_ns = 0;        // between releases: the period, or the sporadic minimum
   std::int64_t jitter_ns = 0;         // how late a release may come after its nominal time
   std::int64_t deadline_ns = 0;       // from the nominal release, at most min_gap_ns
-  std::int64_t longest_slice_ns = 0;  // background: the longest run that is not given up; else 0
+  bool resumable = false;             // the background: runs in slices, below every other group
+  std::int64_t longest_slice_ns = 0;  // the longest run that such a group does not give up; else 0
   int can_writes = 0;                 // CAN frames that an activation writes after its nodes
   std::vector<TaskNode> nodes;        // in an order that respects `after`
 };
