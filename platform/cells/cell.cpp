@@ -160,6 +160,17 @@ void read_overrun(const toml::table* table, Cell& cell) {
   reader.done();
 }
 
+void read_background(const toml::table* table, Cell& cell) {
+  if (table == nullptr) return;
+  TomlReader reader(*table, cell.file, "background.");
+  BackgroundSettings background;
+  background.period = from_ms(reader.real("period_ms", background.period.seconds() * 1e3, 1, 1000));
+  background.steps =
+      static_cast<int>(reader.integer("steps", background.steps, 1, k_background_steps_max));
+  reader.done();
+  cell.background = background;
+}
+
 int markers_of(const ToolSet& tools) {
   int count = 0;
   for (int t = 0; t < tools.count; ++t) {
@@ -289,6 +300,7 @@ Cell cell_from_text(const std::string& text, const std::string& file, const Cell
   read_deadlines(root.table("deadlines"), cell);
   read_overrun(root.table("overrun"), cell);
   read_budget(root.table("budget"), cell);
+  read_background(root.table("background"), cell);
   read_sinks(root, cell);
   read_robot(root.table("robot"), cell);
   root.done();
@@ -312,6 +324,7 @@ Limits limits_of(const Cell& cell) {
   limits.blobs = cell.budget.blobs;
   limits.runs_per_band = cell.budget.runs_per_band;
   limits.search_steps = cell.budget.search_steps;
+  if (cell.background) limits.background_steps = cell.background->steps;
   return limits;
 }
 

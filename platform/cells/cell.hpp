@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -81,6 +82,13 @@ struct BudgetSettings {
   int search_steps = 768;
 };
 
+// What runs beneath the frame and tick groups, slice by slice; mapping has yet to come, and work of
+// declared length stands in for it.
+struct BackgroundSettings {
+  Duration period = milliseconds(100);  // from one slice's release to the next; its deadline
+  int steps = k_background_steps_max;   // of the longest slice
+};
+
 struct Cell {
   std::string file;  // where it was read, for messages
   std::string text;  // as read: goes into every recording
@@ -98,6 +106,7 @@ struct Cell {
   DeadlineSettings deadlines;
   OverrunSettings overrun;
   BudgetSettings budget;
+  std::optional<BackgroundSettings> background;  // nothing: there is no such group
   CanSettings can;
   DdsCellSettings dds;
   RecordSettings record;
