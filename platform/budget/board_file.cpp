@@ -69,16 +69,26 @@ class BoardReader {
   void read_graphs(Board& board) {
     const toml::table& table = section("graphs", "the signatures of the graphs it was made for");
     TomlReader reader(table, file_, "graphs.");
-    for (const GraphName& graph : expected_.graphs) {
-      const std::string found = required_text(graph.name.c_str(), reader, table, "graphs.");
-      if (found != graph.signature) {
-        complain(*table.get(graph.name), "graphs." + graph.name + " is \"" + found +
-                                             "\"; expected \"" + graph.signature +
-                                             "\": the graph is another one (measure again)");
-      }
-      board.graphs.push_back({graph.name, found});
+    kernels_ = expected_.kernels;
+    for (const GraphName& graph : expected_.graphs) read_graph(graph, table, reader, board);
+    for (const BoardExpectation::Optional& optional : expected_.optional) {
+      const char* const name = optional.graph.name.c_str();
+      (void)reader.text(name, "");  // known, whether it is there or not
+      if (table.get(name) == nullptr) continue;
+      read_graph(optional.graph, table, reader, board);
+      kernels_.insert(kernels_.end(), optional.kernels.begin(), optional.kernels.end());
     }
     reader.done();
+  }
+  void read_graph(const GraphName& graph, const toml::table& table, TomlReader& reader,
+                  Board& board) const {
+    const std::string found = required_text(graph.name.c_str(), reader, table, "graphs.");
+    if (found != graph.signature) {
+      complain(*table.get(graph.name), "graphs." + graph.name + " is \"" + found +
+                                           "\"; expected \"" + graph.signature +
+                                           "\": the graph is another one (measure again)");
+    }
+    board.graphs.push_back({graph.name, found});
   }
 
   void read_provenance(Board& board) {
@@ -112,7 +122,7 @@ class BoardReader {
   void read_kernels(Board& board) {
     const toml::table& table = section("kernels", "a table for each kernel");
     TomlReader reader(table, file_, "kernels.");
-    for (const KernelLoops& kernel : expected_.kernels) {
+    for (const KernelLoops& kernel : kernels_) {
       const std::string name(kernel.kernel);
       const toml::table* costs = reader.table(name.c_str());
       if (costs == nullptr) {
@@ -151,6 +161,7 @@ class BoardReader {
   TomlReader reader_;
   const std::string& file_;
   const BoardExpectation& expected_;
+  std::vector<KernelLoops> kernels_;  // of the graphs that the board prices
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 //   build = "x86_64 GNU 12.2.0 -O3 .."      # refused by any other build
 //   [graphs]                                # refused by any other wiring
 //   Tracker = "0x.."
+//   Background = "0x.."                     # may be left out, with the costs of its kernels
 //   [provenance] ..                         # machine, kernel, governor, date, inputs, margin
 //   [system] ..                             # the operating system's share: estimates
 //   [kernels.FindBlobs]                     # a count of each loop, in the counter's unit
@@ -59,9 +60,15 @@ struct Board {
 
 // What a program can use: made from its own graphs by expected_board().
 struct BoardExpectation {
+  // A graph that not every cell runs: a board need not price it.
+  struct Optional {
+    GraphName graph;
+    std::vector<KernelLoops> kernels;
+  };
   std::string build;
   std::vector<GraphName> graphs;
   std::vector<KernelLoops> kernels;
+  std::vector<Optional> optional;
 };
 
 // Whether the costs are to hold for this very program, or for one like it on another architecture

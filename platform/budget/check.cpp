@@ -91,7 +91,7 @@ void add_largest(const CheckInput& input, const CheckOptions& options, CheckResu
 }  // namespace
 
 Plan validated_plan(const std::string& file, TaskModel& model, const Limits& limits) {
-  Plan plan = load_plan(file, model, graphs_signature());
+  Plan plan = load_plan(file, model, graphs_signature(model));
   model.cores = plan.cores;
   if (const auto faults = check_plan(plan, model); !faults.empty()) {
     throw InputError(file + ": " + faults.front());

@@ -1,12 +1,9 @@
 // What a check found, as JSON for programs and as a table for people.
 #include <cstdarg>
 #include <cstdio>
-#include <fstream>
 
 #include "platform/budget/check.hpp"
 #include "platform/budget/slack_table.hpp"
-#include "platform/budget/task_model_of.hpp"
-#include "platform/input_error.hpp"
 #include "schedules/sensitivity.hpp"
 
 namespace glint {
@@ -208,37 +205,6 @@ std::string check_table(const CheckInput& input, const CheckResult& result) {
   for (const std::string& fail : result.fails) text += "FAILS    " + fail + "\n";
   if (result.fails.empty()) text += "holds    every deadline, with the margin asked for\n";
   return text;
-}
-
-void compare_observed(const std::string& summary_file, CheckResult& result) {
-  std::ifstream in(summary_file);
-  if (!in)
-    throw InputError(summary_file + ": cannot be read; expected a summary.json of `glint run`");
-  const auto summary = nlohmann::json::parse(in, nullptr, false);
-  if (summary.is_discarded() || !summary.contains("frame_to_can_us") ||
-      !summary["frame_to_can_us"].contains("max")) {
-    throw InputError(summary_file +
-                     ":1: no frame_to_can_us.max; expected a summary.json of `glint run`");
-  }
-  if (summary.value("frame_to_can_kind", "observed") != "observed") {
-    throw InputError(summary_file +
-                     ":1: frame_to_can_us was computed, no clock saw it; expected the summary of a "
-                     "run in real time, without --fast");
-  }
-  const auto compare = [&](const std::string& what, const nlohmann::json& seen, double bound_us) {
-    const double seen_us = seen.value("max", 0.0);
-    if (seen_us <= bound_us) return;
-    result.fails.push_back(
-        line("%s: observed %.1f us, bound %.1f us", what.c_str(), seen_us, bound_us));
-  };
-  const nlohmann::json& seen = summary["frame_to_can_us"];
-  for (const Chain& chain : result.assessment.chains) {
-    if (chain.name == "frame_to_can") compare("frame to CAN", seen, us(chain.total_ns));
-  }
-  const GroupResponse& frame = result.assessment.groups[k_frame_group_index];
-  if (frame.response_ns && seen.contains("computing")) {
-    compare("frame group", seen["computing"], us(*frame.response_ns - frame.jitter_ns));
-  }
 }
 
 }  // namespace glint

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "glint_build_signature.hpp"
+#include "nodes/background.hpp"
 #include "nodes/output.hpp"
 #include "nodes/tracker.hpp"
 
@@ -22,6 +23,10 @@ BoardExpectation expected_board() {
   for (const KernelLoops& kernel : kernels_of<Tracker, Output>) {
     expected.kernels.push_back(kernel);
   }
+  BoardExpectation::Optional background;
+  background.graph = {"Background", signature_text(graph::Description<Background>::signature)};
+  for (const KernelLoops& kernel : kernels_of<Background>) background.kernels.push_back(kernel);
+  expected.optional.push_back(background);
   return expected;
 }
 

@@ -21,8 +21,9 @@ class PlanParser {
     TomlReader root(table, file_, "");
     plan_.graph_signature = root.text("graph", "");
     if (plan_.graph_signature != signature_) {
-      complain(table.get("graph"), "graph is \"" + plan_.graph_signature + "\"; expected \"" +
-                                       signature_ + "\", the graphs of this program");
+      complain(table.get("graph"),
+               "graph is \"" + plan_.graph_signature + "\"; expected \"" + signature_ +
+                   "\", this program's graphs of the cell's groups " + group_names());
     }
     plan_.board = root.text("board", "");
     plan_.board_sha256 = root.text("board_sha256", "");

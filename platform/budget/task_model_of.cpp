@@ -4,6 +4,7 @@
 
 #include "graph/describe.hpp"
 #include "graph/plan_tables.hpp"
+#include "nodes/background.hpp"
 #include "nodes/output.hpp"
 #include "nodes/tracker.hpp"
 #include "platform/input_error.hpp"
@@ -57,12 +58,22 @@ TaskModel task_structure_of(const Cell& cell) {
   tick.can_writes = can_frames_per_tick_max(cell, cell.tools.count);
   tick.nodes = nodes_of<Output>();
   model.groups = {frame, tick};
+  if (cell.background) {
+    TaskGroup background;
+    background.name = "background";
+    background.min_gap_ns = background.deadline_ns = cell.background->period.nanoseconds;
+    background.resumable = true;
+    background.nodes = nodes_of<Background>();
+    model.groups.push_back(background);
+  }
   return model;
 }
 
 TaskModel task_model_of(const Cell& cell, const CostTable& costs, const SystemShare& system,
                         const Limits& limits) {
-  if (const std::string_view missing = missing_cost<Tracker, Output>(costs); !missing.empty()) {
+  std::string_view missing = missing_cost<Tracker, Output>(costs);
+  if (missing.empty() && cell.background) missing = missing_cost<Background>(costs);
+  if (!missing.empty()) {
     throw InputError(std::string(costs.board) + ": no cost of " + std::string(missing) +
                      "; expected one of each of its loops");
   }
@@ -74,6 +85,12 @@ TaskModel task_model_of(const Cell& cell, const CostTable& costs, const SystemSh
   };
   give(model.groups[k_frame_group_index], node_bounds<Tracker>(costs, limits));
   give(model.groups[k_tick_group_index], node_bounds<Output>(costs, limits));
+  if (cell.background) {
+    TaskGroup& background = model.groups[k_background_group_index];
+    give(background, node_bounds<Background>(costs, limits));
+    // An activation is one slice, and gives up at its end only.
+    for (const TaskNode& node : background.nodes) background.longest_slice_ns += node.bound_ns;
+  }
   return model;
 }
 
@@ -83,9 +100,13 @@ int can_frames_per_tick_max(const Cell& cell, int tools) {
   return tools * (cell.can.fd ? 1 : k_classic_pose_frames) + 1 + tools + 2;
 }
 
-std::string graphs_signature() {
-  return signature_of(graph::Description<Tracker>::signature) + "+" +
-         signature_of(graph::Description<Output>::signature);
+std::string graphs_signature(const TaskModel& model) {
+  std::string text = signature_of(graph::Description<Tracker>::signature) + "+" +
+                     signature_of(graph::Description<Output>::signature);
+  if (model.groups.size() > k_background_group_index) {
+    text.append("+").append(signature_of(graph::Description<Background>::signature));
+  }
+  return text;
 }
 
 CanTraffic traffic_of(const Cell& cell) {

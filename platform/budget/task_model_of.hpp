@@ -13,6 +13,7 @@ namespace glint {
 
 inline constexpr int k_frame_group_index = 0;  // in TaskModel::groups
 inline constexpr int k_tick_group_index = 1;
+inline constexpr int k_background_group_index = 2;  // where the cell has a background
 
 // Groups, nodes and edges, rates and deadlines; every bound is 0 until a board gives it.
 [[nodiscard]] TaskModel task_structure_of(const Cell& cell);
@@ -22,8 +23,8 @@ inline constexpr int k_tick_group_index = 1;
 [[nodiscard]] TaskModel task_model_of(const Cell& cell, const CostTable& costs,
                                       const SystemShare& system, const Limits& limits);
 
-// Of the graphs in that model, "0x..+0x..": what plans and boards are made for.
-[[nodiscard]] std::string graphs_signature();
+// Of the graphs in that model, "0x..+0x..", one for each group: what plans are made for.
+[[nodiscard]] std::string graphs_signature(const TaskModel& model);
 
 // What one tick may write at most: poses, and all that comes beside them at once.
 [[nodiscard]] int can_frames_per_tick_max(const Cell& cell, int tools);

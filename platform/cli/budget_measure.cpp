@@ -117,14 +117,21 @@ void write_board(const MeasureCommand& command, const Measurement& measurement) 
   request.margin_percent = command.margin_percent;
   request.inputs = static_cast<std::int64_t>(command.inputs);
   request.system = system_share_in(command.write);
-  write_text(command.write, board_text(measured_board(measurement, request, expected_board())));
+  const BoardExpectation expected = expected_board();
+  const Board board =
+      command.kernel.empty()
+          ? measured_board(measurement, request, expected)
+          : with_kernels(load_board(std::filesystem::absolute(command.write).string(), expected,
+                                    BoardUse::analyse),
+                         measurement, request, expected);
+  write_text(command.write, board_text(board));
   std::printf("\nwritten  %s\n", command.write.c_str());
 }
 
 int measure_costs(const MeasureCommand& command) {
   const MeasureRequest request = request_of(command);
-  if (!command.write.empty() && (!command.board.empty() || !command.kernel.empty())) {
-    throw InputError("--write makes a whole new board file; expected it without --board, --kernel");
+  if (!command.write.empty() && !command.board.empty()) {
+    throw InputError("--write makes a board file of what it measures; expected it without --board");
   }
   if (request.count_instructions && !command.enemies.empty()) {
     throw InputError("--enemy changes time, not instructions; expected it with --count time");
@@ -189,7 +196,9 @@ void add_budget_measure(CLI::App& budget, int& exit_code) {
       ->capture_default_str();
   command->add_option("--kernel", arguments->kernel, "this one only");
   command->add_option("--board", arguments->board, "judge this board's costs, fit none");
-  command->add_option("--write", arguments->write, "make this board file of the costs");
+  command->add_option("--write", arguments->write,
+                      "make this board file of the costs; with --kernel: put "
+                      "that one's into the file");
   command->add_option("--margin", arguments->margin_percent, "percent on top of fitted costs")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();

@@ -39,7 +39,7 @@ int schedule(const ScheduleArguments& arguments) {
   Plan plan = synthesize(load);
   const Plan placed = plan;
   plan = retimed(plan, model);
-  plan.graph_signature = graphs_signature();
+  plan.graph_signature = graphs_signature(model);
   plan.board = board.name;
   plan.board_sha256 = board.sha256;
   plan.traffic = traffic_of(cell);

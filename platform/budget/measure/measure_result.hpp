@@ -37,6 +37,12 @@ struct BoardRequest {
 [[nodiscard]] Board measured_board(const Measurement& measurement, const BoardRequest& request,
                                    const BoardExpectation& expected);
 
+// A board with these kernels' costs in place of its own, all others as they are; kernels of a graph
+// that it did not price come with their graph. Throws InputError where the measurement is not of
+// the same build, machine and kind as the board's.
+[[nodiscard]] Board with_kernels(const Board& old, const Measurement& measurement,
+                                 const BoardRequest& request, const BoardExpectation& expected);
+
 // The [system] of a board file that is about to be replaced; nothing where there is none.
 [[nodiscard]] SystemShare system_share_in(const std::string& file);
 

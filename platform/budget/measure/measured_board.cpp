@@ -40,6 +40,19 @@ std::string today() {
   return text;
 }
 
+// The kernel's costs, where they are of the loops that the graph's node has.
+const std::vector<double>& costs_in(const Measurement& measurement, const KernelLoops& kernel) {
+  for (const MeasuredCosts& one : measurement.kernels) {
+    if (one.name == kernel.kernel &&
+        std::equal(one.loops.begin(), one.loops.end(), kernel.loops.begin(), kernel.loops.end())) {
+      return one.cost;
+    }
+  }
+  throw InputError("--write: " + std::string(kernel.kernel) +
+                   " was not measured with the loops that the graph's node has; expected a"
+                   " measuring program of this version, and all kernels");
+}
+
 }  // namespace
 
 Board measured_board(const Measurement& measurement, const BoardRequest& request,
@@ -61,17 +74,52 @@ Board measured_board(const Measurement& measurement, const BoardRequest& request
   from.inputs = request.inputs;
   from.margin_percent = request.margin_percent;
   board.system = request.system;
-  for (const KernelLoops& kernel : expected.kernels) {
-    const auto found = std::find_if(measurement.kernels.begin(), measurement.kernels.end(),
-                                    [&](const auto& one) { return one.name == kernel.kernel; });
-    if (found == measurement.kernels.end() ||
-        !std::equal(found->loops.begin(), found->loops.end(), kernel.loops.begin(),
-                    kernel.loops.end())) {
-      throw InputError("--write: " + std::string(kernel.kernel) +
-                       " was not measured with the loops that the graph's node has; expected a" +
-                       " measuring program of this version, and all kernels");
+  std::vector<KernelLoops> kernels = expected.kernels;
+  for (const BoardExpectation::Optional& optional : expected.optional) {
+    board.graphs.push_back(optional.graph);
+    kernels.insert(kernels.end(), optional.kernels.begin(), optional.kernels.end());
+  }
+  for (const KernelLoops& kernel : kernels) {
+    board.kernels.push_back({kernel, costs_in(measurement, kernel)});
+  }
+  price(board);
+  return board;
+}
+
+Board with_kernels(const Board& old, const Measurement& measurement, const BoardRequest& request,
+                   const BoardExpectation& expected) {
+  const auto require = [&](const std::string& what, const std::string& found,
+                           const std::string& wanted) {
+    if (found == wanted) return;
+    throw InputError("--write: " + old.name + " has " + what + " \"" + wanted +
+                     "\", this measurement \"" + found + "\"; expected the same, or all kernels");
+  };
+  const auto counter = [](bool instructions) { return instructions ? "instructions" : "time"; };
+  require("build", measurement.build, old.build);
+  require("machine", measurement.machine, old.provenance.machine);
+  require("counter", counter(measurement.count_instructions),
+          counter(old.counter == CostCounter::instructions));
+  require("inputs", std::to_string(request.inputs), std::to_string(old.provenance.inputs));
+  require("margin_percent", std::to_string(request.margin_percent),
+          std::to_string(old.provenance.margin_percent));
+  Board board = old;
+  for (BoardKernel& kernel : board.kernels) {
+    for (const MeasuredCosts& one : measurement.kernels) {
+      if (one.name == kernel.loops.kernel) kernel.cost = costs_in(measurement, kernel.loops);
     }
-    board.kernels.push_back({kernel, found->cost});
+  }
+  for (const BoardExpectation::Optional& optional : expected.optional) {
+    const bool known =
+        std::any_of(board.graphs.begin(), board.graphs.end(),
+                    [&](const GraphName& graph) { return graph.name == optional.graph.name; });
+    const bool measured = std::any_of(
+        measurement.kernels.begin(), measurement.kernels.end(),
+        [&](const MeasuredCosts& one) { return one.name == optional.kernels.front().kernel; });
+    if (known || !measured) continue;
+    board.graphs.push_back(optional.graph);
+    for (const KernelLoops& kernel : optional.kernels) {
+      board.kernels.push_back({kernel, costs_in(measurement, kernel)});
+    }
   }
   price(board);
   return board;

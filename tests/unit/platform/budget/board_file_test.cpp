@@ -148,10 +148,52 @@ TEST(BoardFile, AnUnknownNameIsAnsweredWithTheKnownOnes) {
   }
 }
 
+// The toy's second graph: not every cell runs it.
+BoardExpectation with_an_optional_graph() {
+  static constexpr std::array<std::string_view, 2> k_loops = {"call", "steps"};
+  BoardExpectation expected = toy_expectation();
+  expected.optional.push_back({{"Spare", "0x0000000000000003"}, {{"Slice", k_loops}}});
+  return expected;
+}
+
+TEST(BoardFile, MayLeaveOutAGraphThatNotEveryCellRunsWithItsCosts) {
+  const auto found = [](const std::string& text) -> std::string {
+    try {
+      const Board board =
+          parse_board(text, "toy.toml", with_an_optional_graph(), BoardUse::run_here);
+      EXPECT_EQ(board_text(parse_board(board_text(board), "again.toml", with_an_optional_graph(),
+                                       BoardUse::run_here)),
+                board_text(board));
+      return std::to_string(board.graphs.size()) + " graphs, " +
+             std::to_string(board.costs.size()) + " kernels";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  const std::string graph = "[graphs]\nSpare = \"0x0000000000000003\"\n";
+  const std::string slice = "[kernels.Slice]\ncall = 1\nsteps = 2\n";
+  EXPECT_EQ(found(k_toy), "1 graphs, 2 kernels");
+  EXPECT_EQ(found(with(k_toy, "[graphs]\n", graph) + slice), "2 graphs, 3 kernels");
+  EXPECT_EQ(found(with(k_toy, "[graphs]\n", graph)),
+            "toy.toml:14: kernels.Slice is missing; expected its costs of call, steps");
+  EXPECT_EQ(found(k_toy + slice).find("toy.toml:20: unknown key kernels.Slice; expected one of"),
+            0u)
+      << found(k_toy + slice);
+  EXPECT_EQ(found(with(with(k_toy, "[graphs]\n", graph), "03\"", "04\"") + slice)
+                .find("toy.toml:6: graphs.Spare is \"0x0000000000000004\"; expected"),
+            0u);
+  EXPECT_EQ(found(with(with(k_toy, "[graphs]\n", graph), "\"0x0000000000000003\"", "\"\"") + slice),
+            "toy.toml:5: graphs.Spare is missing; expected a text in quotes");
+}
+
 TEST(BoardFile, ExpectsEveryNodeOfBothGroupsAndThisBuild) {
   const BoardExpectation expected = expected_board();
   EXPECT_EQ(expected.graphs.size(), 2u);
   EXPECT_GE(expected.kernels.size(), 13u);
+  ASSERT_EQ(expected.optional.size(), 1u);
+  EXPECT_EQ(expected.optional[0].graph.name, "Background");
+  ASSERT_EQ(expected.optional[0].kernels.size(), 1u);
+  EXPECT_EQ(expected.optional[0].kernels[0].kernel, "BackgroundSlice");
   EXPECT_NE(expected.build.find("-ffp-contract=off"), std::string::npos) << expected.build;
   EXPECT_NE(expected.build.find("-DEIGEN_DONT_VECTORIZE"), std::string::npos) << expected.build;
 }

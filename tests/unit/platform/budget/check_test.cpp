@@ -8,37 +8,16 @@
 #include <fstream>
 
 #include "platform/budget/bus_frames.hpp"
-#include "platform/budget/expected_board.hpp"
 #include "platform/budget/plan_file.hpp"
 #include "platform/budget/slack_table.hpp"
 #include "platform/budget/task_model_of.hpp"
 #include "platform/input_error.hpp"
 #include "schedules/sensitivity.hpp"
 #include "schedules/synthesis.hpp"
+#include "tests/unit/platform/budget/flat_board.hpp"
 
 namespace glint {
 namespace {
-
-// Every loop of every kernel at one price.
-Board flat_board(double ns_a_count) {
-  Board board;
-  board.name = "flat";
-  board.sha256 = std::string(64, '0');
-  for (const KernelLoops& loops : expected_board().kernels) {
-    board.kernels.push_back({loops, std::vector<double>(loops.loops.size(), ns_a_count)});
-  }
-  price(board);
-  board.system = {20'000, 2'000, 1'000'000, 5'000, 500};
-  return board;
-}
-
-Limits small_limits() {
-  Limits limits;
-  limits.tools = 1;
-  limits.blobs = 16;
-  limits.markers_per_tool = 4;
-  return limits;
-}
 
 struct Fixture {
   explicit Fixture(double ns_a_count = 0.2, int cores = 2) : board(flat_board(ns_a_count)) {
@@ -183,7 +162,7 @@ TEST(Check, RefusesAPlanMadeForFewerToolsThanTheCellHas) {
   TaskModel model =
       task_model_of(fixture.cell, fixture.board.table(), fixture.board.system, small_limits());
   model.cores = fixture.plan.cores;
-  fixture.plan.graph_signature = graphs_signature();
+  fixture.plan.graph_signature = graphs_signature(model);
   const std::string file = testing::TempDir() + "plan_of_one_tool.toml";
   std::ofstream(file) << plan_text(fixture.plan, model);
   Limits limits = small_limits();

@@ -191,5 +191,54 @@ TEST(CostFit, MakesABoardOfEveryKernelOrNone) {
   EXPECT_EQ(bound_ns(board.costs.at(0), {{1, 10}}), 2000);
 }
 
+// A graph that comes to a board later is priced alone, so that no other cost changes.
+TEST(CostFit, PutsOneKernelsCostsIntoABoardAndLeavesTheOthersAlone) {
+  const std::array<std::string_view, 2> loops = {"call", "steps"};
+  const std::array<std::string_view, 1> call = {"call"};
+  BoardExpectation expected;
+  expected.optional.push_back({{"Spare", "0x3"}, {{"Toy", loops}}});
+  Board old;
+  old.name = "toy";
+  old.build = "a build";
+  old.graphs = {{"Chain", "0x1"}};
+  old.provenance.machine = "a bench";
+  old.provenance.inputs = 20;
+  old.provenance.margin_percent = 5;
+  old.kernels.push_back({{"Other", call}, {7}});
+  price(old);
+  Measurement measurement;
+  measurement.build = "a build";
+  measurement.machine = "a bench";
+  measurement.kernels.push_back(costs_of(parsed(k_seen, {0, 1000}), nullptr, 0));
+  BoardRequest request;
+  request.inputs = 20;
+  request.margin_percent = 5;
+
+  const Board board = with_kernels(old, measurement, request, expected);
+  ASSERT_EQ(board.graphs.size(), 2u);
+  EXPECT_EQ(board.graphs[1].name, "Spare");
+  ASSERT_EQ(board.costs.size(), 2u);
+  EXPECT_EQ(board.costs[0].cost_ps[0], 7'000);
+  EXPECT_EQ(bound_ns(board.costs[1], {{1, 10}}), 1000);
+
+  Board stale = board;
+  stale.kernels[1].cost = {1, 1};
+  const Board again = with_kernels(stale, measurement, request, expected);
+  EXPECT_EQ(again.graphs.size(), 2u);
+  EXPECT_EQ(bound_ns(again.costs[1], {{1, 10}}), 1000);
+
+  const auto refused = [&](const auto& change) {
+    Measurement other = measurement;
+    BoardRequest asked = request;
+    change(other, asked);
+    EXPECT_THROW((void)with_kernels(old, other, asked, expected), InputError);
+  };
+  refused([](Measurement& m, BoardRequest&) { m.build = "another build"; });
+  refused([](Measurement& m, BoardRequest&) { m.machine = "another bench"; });
+  refused([](Measurement& m, BoardRequest&) { m.count_instructions = false; });
+  refused([](Measurement&, BoardRequest& r) { r.inputs = 40; });
+  refused([](Measurement&, BoardRequest& r) { r.margin_percent = 10; });
+}
+
 }  // namespace
 }  // namespace glint

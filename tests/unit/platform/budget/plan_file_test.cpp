@@ -23,7 +23,7 @@ TaskModel bounded_model() {
 
 Plan plan_of(const TaskModel& model) {
   Plan plan = synthesize(model);
-  plan.graph_signature = graphs_signature();
+  plan.graph_signature = graphs_signature(model);
   plan.board = "toy";
   plan.board_sha256 = "00ff";
   plan.traffic = traffic_of(default_cell());
@@ -32,7 +32,7 @@ Plan plan_of(const TaskModel& model) {
 }
 
 Plan read(const std::string& text, const TaskModel& model) {
-  return plan_from_text(text, "plan.toml", model, graphs_signature());
+  return plan_from_text(text, "plan.toml", model, graphs_signature(model));
 }
 
 std::string refusal(const std::string& text) {

@@ -1,0 +1,57 @@
+// What a run saw, held against what a check computed.
+#include <cstdio>
+#include <fstream>
+
+#include "platform/budget/check.hpp"
+#include "platform/budget/task_model_of.hpp"
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+double us(std::int64_t ns) { return static_cast<double>(ns) * 1e-3; }
+
+}  // namespace
+
+void compare_observed(const std::string& summary_file, CheckResult& result) {
+  std::ifstream in(summary_file);
+  if (!in)
+    throw InputError(summary_file + ": cannot be read; expected a summary.json of `glint run`");
+  const auto summary = nlohmann::json::parse(in, nullptr, false);
+  if (summary.is_discarded() || !summary.contains("frame_to_can_us") ||
+      !summary["frame_to_can_us"].contains("max")) {
+    throw InputError(summary_file +
+                     ":1: no frame_to_can_us.max; expected a summary.json of `glint run`");
+  }
+  if (summary.value("frame_to_can_kind", "observed") != "observed") {
+    throw InputError(summary_file +
+                     ":1: frame_to_can_us was computed, no clock saw it; expected the summary of a "
+                     "run in real time, without --fast");
+  }
+  const auto compare = [&](const char* what, const nlohmann::json& seen, double bound_us) {
+    const double seen_us = seen.value("max", 0.0);
+    if (seen_us <= bound_us) return;
+    char text[120];
+    std::snprintf(text, sizeof text, "%s: observed %.1f us, bound %.1f us", what, seen_us,
+                  bound_us);
+    result.fails.emplace_back(text);
+  };
+  const nlohmann::json& seen = summary["frame_to_can_us"];
+  for (const Chain& chain : result.assessment.chains) {
+    if (chain.name == "frame_to_can") compare("frame to CAN", seen, us(chain.total_ns));
+  }
+  const GroupResponse& frame = result.assessment.groups[k_frame_group_index];
+  if (frame.response_ns && seen.contains("computing")) {
+    compare("frame group", seen["computing"], us(*frame.response_ns - frame.jitter_ns));
+  }
+  if (summary.contains("background") &&
+      result.assessment.groups.size() > k_background_group_index) {
+    const auto& bound = result.assessment.groups[k_background_group_index].response_ns;
+    const auto& slices = summary["background"];
+    if (bound && slices.contains("response_us")) {
+      compare("background group", slices["response_us"], us(*bound));
+    }
+  }
+}
+
+}  // namespace glint
