@@ -38,6 +38,14 @@ void require_same_camera(const Cell& cell, const FrameLoop& loop) {
   }
 }
 
+// Otherwise it would run less than what was planned.
+void require_no_background(const Cell& cell) {
+  if (!cell.background) return;
+  throw InputError(cell.file +
+                   ": has a [background]; expected none, for a board runs the frame "
+                   "and tick groups only");
+}
+
 // Runs `body` armed: from here on neither the heap nor a page that is not there may be touched.
 template <class Body>
 void counted(Body body) {
@@ -53,6 +61,7 @@ void counted(Body body) {
 
 BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& options) {
   require_same_camera(cell, loop);
+  require_no_background(cell);
   cell.realtime = true;
   cell.record.file.clear();
   cell.files = {"", ""};

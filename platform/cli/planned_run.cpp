@@ -34,6 +34,9 @@ RunPlan planned_run(const Cell& cell, const std::string& board_name, const std::
   plan.doubts.insert(plan.doubts.end(), result.fails.begin(), result.fails.end());
   plan.frame_bound_us = microseconds_of(result.assessment.groups.at(0).response_ns);
   plan.tick_bound_us = microseconds_of(result.assessment.groups.at(1).response_ns);
+  if (plan.background) {
+    plan.background_bound_us = microseconds_of(result.assessment.groups.at(2).response_ns);
+  }
   return plan;
 }
 

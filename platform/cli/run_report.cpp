@@ -59,6 +59,7 @@ ordered_json budget_of(const RunPlan& plan, const SessionResult& result) {
   };
   add_bound("frame", plan.frame_bound_us);
   add_bound("tick", plan.tick_bound_us);
+  add_bound("background", plan.background_bound_us);
   add_bound("frame_to_can", plan.frame_to_can_bound_us);
   return {{"board", plan.board},
           {"plan", plan.plan_file},
@@ -76,6 +77,13 @@ ordered_json budget_of(const RunPlan& plan, const SessionResult& result) {
           {"trace_dropped", result.trace_dropped},
           {"preempt_rt", result.machine.preempt_rt},
           {"best_effort", result.machine.spoils}};
+}
+
+ordered_json background_of(const BackgroundCounts& counts) {
+  return {{"slices", counts.slices},
+          {"late", counts.late},
+          {"skipped", counts.skipped},
+          {"response_us", {{"max", counts.longest_response.seconds() * 1e6}}}};
 }
 
 void latency_row(const char* name, const ordered_json& item) {
@@ -138,6 +146,7 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
                        {"best_effort", best_effort(result)},
                        {"refused", result.refused},
                        {"budget", budget_of(plan, result)}};
+  if (result.background) summary["background"] = background_of(*result.background);
   return summary;
 }
 
@@ -185,6 +194,12 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
   row("overruns, tick", overruns(result.tick_overruns));
   row("ticks", std::to_string(result.ticks) + " (" + std::to_string(result.ticks_late) + " late, " +
                    std::to_string(result.ticks_skipped) + " skipped)");
+  if (const auto& background = result.background) {
+    row("background slices", std::to_string(background->slices) + " (" +
+                                 std::to_string(background->late) + " late, " +
+                                 std::to_string(background->skipped) + " skipped), longest " +
+                                 fixed(background->longest_response.seconds() * 1e6, 0, "us"));
+  }
   row("heap allocations after start", result.heap_counted
                                           ? std::to_string(result.heap_allocations_after_start)
                                           : "not counted (only in a live run)");

@@ -39,6 +39,10 @@ ThreadReport become(const ThreadSettings& settings) {
     report.real_time = error == 0;
     if (error != 0) {
       add_refusal(report.refused, "SCHED_FIFO " + std::to_string(settings.priority), error);
+      const sched_param none{};
+      const bool idle =
+          settings.idle_otherwise && pthread_setschedparam(self, SCHED_IDLE, &none) == 0;
+      if (idle) report.refused += " (SCHED_IDLE instead)";
     }
   }
   return report;

@@ -9,9 +9,10 @@
 namespace glint {
 
 struct ThreadSettings {
-  std::string name;  // the first 15 characters show in the system's tools
-  int core = -1;     // to run on this core alone; -1: on any
-  int priority = 0;  // SCHED_FIFO, 1 to 99; 0: the usual scheduling
+  std::string name;             // the first 15 characters show in the system's tools
+  int core = -1;                // to run on this core alone; -1: on any
+  int priority = 0;             // SCHED_FIFO, 1 to 99; 0: the usual scheduling
+  bool idle_otherwise = false;  // where SCHED_FIFO is refused: SCHED_IDLE, beneath all others
 };
 
 struct ThreadReport {

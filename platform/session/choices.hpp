@@ -14,6 +14,7 @@ namespace glint {
 
 inline constexpr std::uint8_t k_frame_group = 0;
 inline constexpr std::uint8_t k_tick_group = 1;
+inline constexpr std::uint8_t k_background_group = 2;  // of traces; nothing of it is recorded
 
 struct OverrunNote {
   std::uint8_t group = k_frame_group;

@@ -90,6 +90,7 @@ RunPlan plan_by_rule(const Cell& cell) {
   plan.frame.cores.assign(static_cast<std::size_t>(cell.workers), -1);
   plan.frame.priority = k_frame_priority;
   plan.tick.priority = k_tick_priority;
+  if (cell.background) plan.background.emplace().priority = k_background_priority;
   return plan;
 }
 
@@ -106,6 +107,10 @@ RunPlan plan_of(const Plan& plan, const TaskModel& model, const std::string& fil
   result.tick = group_plan<Output>(plan, model, 1, file);
   result.frame_bound_us = static_cast<double>(plan.groups[0].makespan_ns) * 1e-3;
   result.tick_bound_us = static_cast<double>(plan.groups[1].makespan_ns) * 1e-3;
+  if (plan.groups.size() > 2) {
+    result.background = group_plan<Background>(plan, model, 2, file);
+    result.background_bound_us = static_cast<double>(plan.groups[2].makespan_ns) * 1e-3;
+  }
   return result;
 }
 

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "graph/plan_tables.hpp"
+#include "nodes/background.hpp"
 #include "nodes/output.hpp"
 #include "nodes/tracker.hpp"
 #include "platform/cells/cell.hpp"
@@ -28,15 +30,18 @@ struct RunPlan {
   bool planned = false;  // by a plan file
   std::string board, plan_file;
   // In microseconds; 0: no board.
-  double frame_bound_us = 0, tick_bound_us = 0, frame_to_can_bound_us = 0;
+  double frame_bound_us = 0, tick_bound_us = 0, frame_to_can_bound_us = 0, background_bound_us = 0;
   std::vector<std::string> doubts;  // why these bounds promise less than they say
   GroupPlan<Tracker> frame;
   GroupPlan<Output> tick;
+  std::optional<GroupPlan<Background>> background;  // where the cell has one
 };
 
-// Fixed priorities: on a core, tick preempts frame. Below the kernel's interrupt threads (50).
+// Fixed priorities: on a core, tick preempts frame preempts background. Below the kernel's
+// interrupt threads (50).
 inline constexpr int k_tick_priority = 48;
 inline constexpr int k_frame_priority = 45;
+inline constexpr int k_background_priority = 42;
 
 // What may be needed at worst after each node, where one worker runs them all in the graph's order.
 [[nodiscard]] std::vector<std::int64_t> remaining_in_order(
@@ -45,8 +50,8 @@ inline constexpr int k_frame_priority = 45;
 // By rule, for the cell's number of workers.
 [[nodiscard]] RunPlan plan_by_rule(const Cell& cell);
 
-// As a checked plan says: its first group is the tracker's, its second the output's. Throws
-// InputError naming `file` where a worker would wait for ever.
+// As a checked plan says: its first group is the tracker's, its second the output's, a
+// third one the background's. Throws InputError naming `file` where a worker would wait for ever.
 [[nodiscard]] RunPlan plan_of(const Plan& plan, const TaskModel& model, const std::string& file);
 
 }  // namespace glint

@@ -32,6 +32,7 @@ bool stopped(const SessionOptions& options) noexcept {
 std::vector<int> cores_of(const RunPlan& plan) {
   std::vector<int> cores = plan.frame.cores;
   cores.insert(cores.end(), plan.tick.cores.begin(), plan.tick.cores.end());
+  if (plan.background) cores.push_back(plan.background->cores[0]);
   return cores;
 }
 
@@ -50,7 +51,7 @@ void counted(Body body) {
   AllocationCounter::disarm();
 }
 
-// Frames when they arrive, ticks by the clock, each in a thread of its own.
+// Frames when they arrive, ticks and slices by the clock, each group in a thread of its own.
 void run_live(const Cell& cell, Time epoch, SimulatedSource& source, SessionGroups& groups,
               Time last, const SessionOptions& options, SessionResult& result) {
   std::atomic<bool> frames_done{false};
@@ -84,6 +85,12 @@ void run_live(const Cell& cell, Time epoch, SimulatedSource& source, SessionGrou
       }
     });
   });
+  std::atomic<bool> ended{false};
+  std::optional<RealTimeThread> background_thread;
+  if (BackgroundGroup* const background = groups.background()) {
+    background_thread.emplace(BackgroundGroup::thread_settings(*plan.background),
+                              [background, epoch, &ended] { background->run(epoch, ended); });
+  }
   const double all_s = static_cast<double>(end.nanoseconds) * 1e-9;
   while (!frames_done ||
          (reached_ns < (end - tick_period(cell)).nanoseconds && !stopped(options))) {
@@ -92,6 +99,8 @@ void run_live(const Cell& cell, Time epoch, SimulatedSource& source, SessionGrou
   }
   frame_thread.join();
   tick_thread.join();
+  ended = true;
+  if (background_thread) background_thread->join();
   result.ticks_late = static_cast<std::int64_t>(loop.late());
   result.ticks_skipped = static_cast<std::int64_t>(loop.skipped());
   result.heap_allocations_after_start = AllocationCounter::count() - allocations_before;
@@ -99,6 +108,7 @@ void run_live(const Cell& cell, Time epoch, SimulatedSource& source, SessionGrou
   result.page_faults_after_start = PageFaultCounter::count() - faults_before;
   note(frame_thread.report(), result);
   note(tick_thread.report(), result);
+  if (background_thread) note(background_thread->report(), result);
 }
 
 // Frames and ticks in the order of their nominal times, in one thread: the same bytes every time.

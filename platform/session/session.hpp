@@ -4,12 +4,14 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "platform/cells/cell.hpp"
 #include "platform/rt/machine_check.hpp"
 #include "platform/session/accuracy.hpp"
+#include "platform/session/background_group.hpp"
 #include "platform/session/group_runner.hpp"
 #include "platform/session/latency.hpp"
 #include "platform/session/run_plan.hpp"
@@ -38,8 +40,9 @@ struct SessionResult : SinkOutcome {
   bool heap_counted = false;
   std::uint64_t worker_overruns = 0;  // waits for another worker beyond their declared spins
   OverrunCounts frame_overruns, tick_overruns;
-  std::uint64_t page_faults_after_start = 0;  // of the frame and tick threads
-  MachineCheck machine;                       // what spoils a live run's timing
+  std::optional<BackgroundCounts> background;  // of a live run of a cell that has one
+  std::uint64_t page_faults_after_start = 0;   // of the frame and tick threads
+  MachineCheck machine;                        // what spoils a live run's timing
   std::uint64_t trace_spans = 0, trace_dropped = 0;
   std::uint64_t can_frames = 0;
 };

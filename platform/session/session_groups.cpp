@@ -77,6 +77,9 @@ SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, st
   robot_.write_slot() = declared_robot_frame(cell);
   robot_.publish(1, 0);
   outcomes_.resize(frames);
+  if (cell.realtime && options.plan.background) {
+    background_ = std::make_unique<BackgroundGroup>(cell, *options.plan.background, trace);
+  }
 }
 
 void SessionGroups::process(const ArrivedFrame& arrived) noexcept {
@@ -98,6 +101,7 @@ void SessionGroups::report(SessionResult& result) {
   result.worker_overruns = frame_runner_.late_waits() + tick_runner_.late_waits();
   result.frame_overruns = frame_runner_.overruns();
   result.tick_overruns = tick_runner_.overruns();
+  if (background_ != nullptr) result.background = background_->counts();
   result.can_frames = tick_.can_frames();
   result.output_sha256 = tick_.output_sha256();
   for (const auto& reports : {frame_runner_.reports(), tick_runner_.reports()}) {
@@ -108,11 +112,13 @@ void SessionGroups::report(SessionResult& result) {
 }
 
 std::string trace_header(const Cell& cell, const RunPlan& plan, std::int64_t epoch_unix_ns) {
-  return nlohmann::ordered_json{
-      {"groups", {group_json("frame", plan.frame), group_json("tick", plan.tick)}},
-      {"epoch_unix_ns", epoch_unix_ns},
-      {"board", plan.board},
-      {"cell", cell.file}}
+  nlohmann::ordered_json groups{group_json("frame", plan.frame), group_json("tick", plan.tick)};
+  if (cell.realtime && plan.background)
+    groups.push_back(group_json("background", *plan.background));
+  return nlohmann::ordered_json{{"groups", groups},
+                                {"epoch_unix_ns", epoch_unix_ns},
+                                {"board", plan.board},
+                                {"cell", cell.file}}
       .dump();
 }
 

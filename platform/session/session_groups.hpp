@@ -8,6 +8,7 @@
 
 #include "platform/rt/trace_writer.hpp"
 #include "platform/session/accuracy.hpp"
+#include "platform/session/background_group.hpp"
 #include "platform/session/frame_group.hpp"
 #include "platform/session/session.hpp"
 #include "platform/session/sinks.hpp"
@@ -24,12 +25,16 @@ class SessionGroups {
   void process(const ArrivedFrame& arrived) noexcept;
   void tick(std::uint32_t number, Time nominal, Time woken) noexcept;
 
-  // When both groups have ended.
+  // Null where the cell has none, or where no clock runs.
+  [[nodiscard]] BackgroundGroup* background() noexcept { return background_.get(); }
+
+  // When all groups have ended.
   void report(SessionResult& result);
 
  private:
   GroupRunner<Tracker> frame_runner_;
   GroupRunner<Output> tick_runner_;
+  std::unique_ptr<BackgroundGroup> background_;
   OverrunCounters* counters_;
   graph::TripleBuffer<ToolSet> tool_set_;
   graph::TripleBuffer<RobotFrame> robot_;

@@ -36,6 +36,25 @@ TEST(RealTimeThread, ReportsWhatItGotBeforeItsBodyRuns) {
   EXPECT_EQ(report.refused.empty(), report.pinned && report.real_time) << report.refused;
 }
 
+TEST(RealTimeThread, RunsIdleWhereItIsToGiveWayAndRightsAreRefused) {
+  const auto policy_of = [](bool idle_otherwise, std::string& refused) {
+    int policy = -1;
+    ThreadSettings settings{"slices", -1, 10};
+    settings.idle_otherwise = idle_otherwise;
+    RealTimeThread thread(settings, [&] {
+      sched_param parameter{};
+      pthread_getschedparam(pthread_self(), &policy, &parameter);
+    });
+    refused = thread.report().refused;
+    thread.join();
+    return policy;
+  };
+  std::string refused;
+  const int otherwise = policy_of(true, refused);
+  EXPECT_EQ(otherwise, refused.empty() ? SCHED_FIFO : SCHED_IDLE) << refused;
+  EXPECT_EQ(policy_of(false, refused), refused.empty() ? SCHED_FIFO : SCHED_OTHER);
+}
+
 TEST(RealTimeThread, GoesOnWithoutACoreThatIsNotThere) {
   bool ran = false;
   RealTimeThread thread({"rt", 100'000}, [&] { ran = true; });
