@@ -82,13 +82,18 @@ TEST(BackgroundPlan, IsRefusedWithSlicesAboveAnotherGroup) {
             "slices gives way");
 }
 
-// The frame group uses both cores and is the tightest wherever the slices are; the tick, less
-// tight, decides.
+// The frame group uses both cores, so that its response is the same wherever the slices are. Where
+// it is the tightest, the tick, less tight, decides.
 TEST(BackgroundPlan, PutsSlicesOnTheCoreWhereTheTickDoesNotRun) {
-  const TaskModel model = three_groups(2);
-  const Plan plan = synthesize(model);
-  EXPECT_NE(core_of(plan, k_background), core_of(plan, k_tick));
-  EXPECT_EQ(group_responses(model, plan)[k_tick].blocking_ns, 0);
+  TaskModel model = three_groups(2);
+  for (const std::int64_t frame_deadline : {22'222 * k_us, 800 * k_us}) {
+    model.groups[k_frame].deadline_ns = frame_deadline;
+    const Plan plan = synthesize(model);
+    const auto found = group_responses(model, plan);
+    ASSERT_TRUE(found[k_frame].in_time() && found[k_tick].in_time());
+    EXPECT_NE(core_of(plan, k_background), core_of(plan, k_tick)) << frame_deadline;
+    EXPECT_EQ(found[k_tick].blocking_ns, 0);
+  }
 }
 
 TEST(BackgroundPlan, MovedByHandToTheTicksCoreStillRunsAndBlocksTheTick) {

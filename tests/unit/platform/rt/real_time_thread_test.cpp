@@ -36,23 +36,22 @@ TEST(RealTimeThread, ReportsWhatItGotBeforeItsBodyRuns) {
   EXPECT_EQ(report.refused.empty(), report.pinned && report.real_time) << report.refused;
 }
 
-TEST(RealTimeThread, RunsIdleWhereItIsToGiveWayAndRightsAreRefused) {
-  const auto policy_of = [](bool idle_otherwise, std::string& refused) {
+// A priority that there is not is refused everywhere, also to whoever has all rights.
+TEST(RealTimeThread, RunsIdleWhereItIsToGiveWayAndItsPriorityIsRefused) {
+  for (const bool idle_otherwise : {true, false}) {
     int policy = -1;
-    ThreadSettings settings{"slices", -1, 10};
+    ThreadSettings settings{"slices", -1, 100};
     settings.idle_otherwise = idle_otherwise;
     RealTimeThread thread(settings, [&] {
       sched_param parameter{};
       pthread_getschedparam(pthread_self(), &policy, &parameter);
     });
-    refused = thread.report().refused;
+    const std::string refused = thread.report().refused;
     thread.join();
-    return policy;
-  };
-  std::string refused;
-  const int otherwise = policy_of(true, refused);
-  EXPECT_EQ(otherwise, refused.empty() ? SCHED_FIFO : SCHED_IDLE) << refused;
-  EXPECT_EQ(policy_of(false, refused), refused.empty() ? SCHED_FIFO : SCHED_OTHER);
+    EXPECT_EQ(policy, idle_otherwise ? SCHED_IDLE : SCHED_OTHER);
+    EXPECT_EQ(refused.find("SCHED_FIFO 100: "), 0U) << refused;
+    EXPECT_EQ(refused.find("(SCHED_IDLE instead)") != std::string::npos, idle_otherwise) << refused;
+  }
 }
 
 TEST(RealTimeThread, GoesOnWithoutACoreThatIsNotThere) {

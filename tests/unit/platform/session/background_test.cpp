@@ -42,6 +42,13 @@ TEST(BackgroundGroup, RunsOneSliceAPeriodAndSkipsWhatItDidNotReach) {
   EXPECT_GT(counts.longest_response.nanoseconds, 0);
 }
 
+// 50,000 steps, each of which needs the one before, take longer than 20 us anywhere.
+TEST(BackgroundGroup, CountsAsSkippedWhatComesWhileASliceStillRuns) {
+  const BackgroundCounts counts = counted_for(milliseconds(50), microseconds(20), 50'000);
+  EXPECT_EQ(counts.late, counts.slices);
+  EXPECT_GE(counts.skipped, counts.slices);
+}
+
 TEST(BackgroundGroup, EndsSoonAfterItIsToldHoweverLongItsPeriod) {
   const Time begin = monotonic_now();
   const BackgroundCounts counts = counted_for(milliseconds(10), milliseconds(1000), 1);
