@@ -11,4 +11,4 @@ target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/tool.cpp
 # Nobody reads errno or asks for floating-point traps here; where either might be seen, the pass over
 # all pairs handles one at a time. Neither changes a result.
 set_source_files_properties(${CMAKE_CURRENT_LIST_DIR}/pair_matches.cpp PROPERTIES
-  COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math")
+  COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math" SKIP_PRECOMPILE_HEADERS ON)
