@@ -11,8 +11,10 @@
 namespace glint {
 
 enum BlobFlag : std::uint8_t {
-  k_blob_touches_edge = 1,  // cut by the frame's border
-  k_blob_saturated = 2,     // at least one pixel at the sensor's maximum
+  k_blob_touches_edge = 1,   // cut by the frame's border
+  k_blob_saturated = 2,      // at least one pixel at the sensor's maximum
+  k_blob_has_neighbour = 4,  // another blob's light lies two pixels beside it
+  k_blob_uneven = 8,         // no whole disc's box or area: merged, or partly hidden
 };
 
 struct Blob {
@@ -21,6 +23,9 @@ struct Blob {
   std::uint16_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // bounding box, half open
   std::uint16_t peak = 0;                        // brightest reflectivity, raw
   std::uint8_t flags = 0;                        // BlobFlag
+  // Of the centroid, px^2, x and y: this blob's own share, from its pixels. What moves a whole
+  // blob, as the lens's calibration does, comes on top.
+  std::array<float, 2> variance_px2{};
 };
 
 struct Blobs {

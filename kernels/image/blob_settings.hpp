@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "kernels/image/pixel_noise.hpp"
+
 namespace glint {
 
 struct BlobSettings {
@@ -10,6 +12,7 @@ struct BlobSettings {
   std::uint32_t max_area_px = 4096;       // larger ones are hands and lamps
   std::uint16_t threshold = 0;            // the one that the runs were made with
   std::uint16_t saturated_from = 0xFFFF;  // raw reflectivity at which the sensor clips
+  PixelNoise noise{};                     // what a centroid's variance follows from
 };
 
 struct SizeGate {

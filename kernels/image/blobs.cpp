@@ -3,6 +3,7 @@
 #include <array>
 
 #include "kernels/image/centroid.hpp"
+#include "kernels/image/centroid_variance.hpp"
 #include "kernels/image/components.hpp"
 #include "kernels/merge_sort.hpp"
 #include "kernels/shared_budget.hpp"
@@ -43,7 +44,7 @@ void sort_by_rows(BlobScratch& scratch, int candidates) {
 }
 
 Blob blob_of(const Frame& frame, const Component& component, const Centroid& centroid,
-             std::uint16_t saturated_from) {
+             const BlobSettings& settings) {
   Blob blob;
   blob.centroid_px = centroid.position_px;
   blob.area_px = component.area_px;
@@ -52,10 +53,19 @@ Blob blob_of(const Frame& frame, const Component& component, const Centroid& cen
   blob.x1 = component.x1;
   blob.y1 = component.y1;
   blob.peak = centroid.peak;
-  const bool cut =
-      blob.x0 == 0 || blob.y0 == 0 || blob.x1 >= frame.width() || blob.y1 >= frame.height();
-  if (cut) blob.flags |= k_blob_touches_edge;
-  if (blob.peak >= saturated_from) blob.flags |= k_blob_saturated;
+  const bool cut_x = blob.x0 == 0 || blob.x1 >= frame.width();
+  const bool cut_y = blob.y0 == 0 || blob.y1 >= frame.height();
+  const bool uneven = is_uneven(component);
+  if (cut_x || cut_y) blob.flags |= k_blob_touches_edge;
+  if (blob.peak >= settings.saturated_from) blob.flags |= k_blob_saturated;
+  if (centroid.beside_bright) blob.flags |= k_blob_has_neighbour;
+  if (uneven) blob.flags |= k_blob_uneven;
+  blob.variance_px2 = centroid_variance(centroid, component, settings);
+  if (cut_x || cut_y || uneven) {
+    const std::array<float, 2> shape = shape_variance(component, cut_x, cut_y);
+    blob.variance_px2[0] += shape[0];
+    blob.variance_px2[1] += shape[1];
+  }
   return blob;
 }
 
@@ -97,7 +107,7 @@ BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
                                   ? grown_centroid(frame, scratch, component, settings.threshold)
                                   : binary_centroid(frame, scratch, component);
     out.items[static_cast<std::size_t>(out.count++)] =
-        blob_of(frame, component, centroid, settings.saturated_from);
+        blob_of(frame, component, centroid, settings);
   }
   work.blobs = out.count;
   work.pixels = limits.blobs * limits.centroid_pixels_a_blob - budget.left();

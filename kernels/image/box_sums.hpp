@@ -1,7 +1,7 @@
 // The sums that a grown centroid needs, eight columns at a time.
 //
 // What:     reflectivity, positions and number of the pixels near the blob; reflectivity and number
-//           of the dark pixels around them; the blob's brightest pixel.
+//           of the dark pixels around them, and whether one there is bright; the brightest pixel.
 // Cost:     the same for every eight columns of a row, whatever their masks, and about as much
 //           again for each row.
 // Worst:    none is worse than another.
@@ -25,12 +25,12 @@ struct GrownSums {
   std::int64_t pixels = 0, pixels_x = 0, pixels_y = 0;
   std::int64_t dark = 0, dark_pixels = 0;
   std::uint16_t peak = 0;
+  bool bright_rim = false;  // a neighbour lies one pixel further, or the blob was cut by its ROI
 };
 
 // Bit i of each stands for column box.left + i.
 struct RowMasks {
-  std::uint64_t own = 0;   // the blob itself
-  std::uint64_t near = 0;  // and one pixel around it
+  std::uint64_t near = 0;  // the blob itself and one pixel around it
   std::uint64_t rim = 0;   // one further out
 };
 
@@ -53,6 +53,7 @@ class BoxSums {
     const Words one = Words{} + std::int16_t{1};
     Sums weight = weight_, x = x_, dark = dark_;
     Words pixels = pixels_, pixels_x = pixels_x_, dark_pixels = dark_pixels_, peak = peak_;
+    Words bright = bright_rim_;
     for (int eight = 0; eight < box_.eights; ++eight) {
       const Words value = load(row + 8 * eight) ^ k_lowest;
       const Words column =
@@ -63,14 +64,17 @@ class BoxSums {
       x += pair_products(near_value, column);
       pixels -= near;
       pixels_x += column & near;
-      const Words rim = chosen(masks.rim, eight) & ~(value > threshold_);
-      dark += pair_products(value & rim, one);
-      dark_pixels -= rim;
-      const Words own = ((value ^ k_lowest) & chosen(masks.own, eight)) ^ k_lowest;
-      peak = own > peak ? own : peak;
+      const Words rim = chosen(masks.rim, eight), above = value > threshold_;
+      const Words dark_rim = rim & ~above;
+      dark += pair_products(value & dark_rim, one);
+      dark_pixels -= dark_rim;
+      bright |= rim & above;
+      const Words held = near_value | (k_lowest & ~near);
+      peak = held > peak ? held : peak;
     }
     weight_ = weight, x_ = x, dark_ = dark;
     pixels_ = pixels, pixels_x_ = pixels_x, dark_pixels_ = dark_pixels, peak_ = peak;
+    bright_rim_ = bright;
     weight_from_below_ += weight;
     pixels_from_below_ += pixels;
   }
@@ -90,6 +94,9 @@ class BoxSums {
     std::int16_t peak = peak_[0];
     for (int lane = 1; lane < 8; ++lane) peak = std::max(peak, peak_[lane]);
     out.peak = static_cast<std::uint16_t>(peak ^ 0x8000);
+    std::uint64_t bright[2];
+    std::memcpy(bright, &bright_rim_, sizeof bright);
+    out.bright_rim = (bright[0] | bright[1]) != 0;
     return out;
   }
 
@@ -124,7 +131,7 @@ class BoxSums {
   Words threshold_;
   Sums weight_{}, weight_from_below_{}, x_{}, dark_{};
   Words pixels_{}, pixels_from_below_{}, pixels_x_{}, dark_pixels_{};
-  Words peak_ = k_lowest;
+  Words peak_ = k_lowest, bright_rim_{};
 };
 
 }  // namespace glint

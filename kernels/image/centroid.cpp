@@ -40,7 +40,10 @@ Centroid weighted(const ImageView<Pixel>& image, const BlobScratch& scratch,
     }
   });
   if (weights <= 0) return {};
-  return {from_half_pixels(x_sum, y_sum, weights), peak};
+  Centroid out;
+  out.position_px = from_half_pixels(x_sum, y_sum, weights);
+  out.peak = peak;
+  return out;
 }
 
 template <class Pixel>
@@ -57,7 +60,39 @@ Centroid binary(const ImageView<Pixel>& image, const BlobScratch& scratch,
     x_sum += length * (x0 + x1);  // the sum of 2 x + 1
     y_sum += length * (2 * run.y() + 1);
   });
-  return {from_half_pixels(x_sum, y_sum, pixels), peak};
+  Centroid out;
+  out.position_px = from_half_pixels(x_sum, y_sum, pixels);
+  out.peak = peak;
+  return out;
+}
+
+// plain(): the plain mean, for a blob that is no brighter than what surrounds it.
+template <class Plain>
+Centroid from_sums(const GrownSums& total, const Component& component, Plain plain) {
+  // (I - dark / dark_pixels), times dark_pixels: at most 65535 * 64^2 * 64^2 * 1024 < 2^51.
+  const std::int64_t n = std::max<std::int64_t>(total.dark_pixels, 1);
+  const std::int64_t weight = total.weight * n - total.dark * total.pixels;
+  Centroid out;
+  out.position_px = from_half_pixels(total.x * n - total.dark * total.pixels_x,
+                                     total.y * n - total.dark * total.pixels_y,
+                                     std::max<std::int64_t>(weight, 1));
+  out.peak = total.peak;
+  out.beside_bright = total.bright_rim;
+  const double x = out.position_px.x(), y = out.position_px.y();
+  const bool inside =
+      x >= component.x0 && x <= component.x1 && y >= component.y0 && y <= component.y1;
+  if (weight <= 0 || !inside) {
+    out.position_px = plain().position_px;
+    return out;
+  }
+  const auto pixels = static_cast<double>(total.pixels), dark_pixels = static_cast<double>(n);
+  out.light = static_cast<double>(weight) / dark_pixels;
+  out.background = static_cast<double>(total.dark) / dark_pixels;
+  out.pixels = static_cast<std::int32_t>(total.pixels);
+  out.dark_pixels = static_cast<std::int32_t>(n);
+  out.lever_px = {0.5 * static_cast<double>(total.pixels_x) - pixels * x,
+                  0.5 * static_cast<double>(total.pixels_y) - pixels * y};
+  return out;
 }
 
 constexpr std::uint64_t widened(std::uint64_t row) { return row | row << 1 | row >> 1; }
@@ -88,20 +123,9 @@ Centroid grown(const ImageView<Pixel>& image, const Frame& frame, const BlobScra
     after = widened(own[at] | own[at + 1] | own[at + 2]);
     if (y < box.top) continue;
     const std::uint64_t rim = widened(before | near | after);
-    sums.add_row(image.row(y) + box.left, columns,
-                 {own[at], near & in_frame, rim & in_frame & ~near});
+    sums.add_row(image.row(y) + box.left, columns, {near & in_frame, rim & in_frame & ~near});
   }
-  const GrownSums total = sums.total();
-  // (I - dark / dark_pixels), times dark_pixels: at most 65535 * 64^2 * 64^2 * 1024 < 2^51.
-  const std::int64_t n = std::max<std::int64_t>(total.dark_pixels, 1);
-  const std::int64_t weight = total.weight * n - total.dark * total.pixels;
-  const Vector2 position = from_half_pixels(total.x * n - total.dark * total.pixels_x,
-                                            total.y * n - total.dark * total.pixels_y,
-                                            std::max<std::int64_t>(weight, 1));
-  const bool inside = position.x() >= component.x0 && position.x() <= component.x1 &&
-                      position.y() >= component.y0 && position.y() <= component.y1;
-  if (weight > 0 && inside) return {position, total.peak};
-  return {binary(image, scratch, component).position_px, total.peak};
+  return from_sums(sums.total(), component, [&] { return binary(image, scratch, component); });
 }
 
 }  // namespace

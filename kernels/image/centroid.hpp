@@ -23,8 +23,14 @@ namespace glint {
 
 struct Centroid {
   Vector2 position_px = Vector2::Zero();  // pixel centres at integer + 0.5
-  std::uint16_t peak =
-      0;  // brightest pixel of the blob, raw; binary: of its runs' ends and middles
+  // Of the grown blob, raw; binary: of its runs' ends and middles.
+  std::uint16_t peak = 0;
+  bool beside_bright = false;  // a pixel around the grown blob is above the threshold
+  // What its variance follows from; all 0 where it is not the grown centroid.
+  double light = 0;       // sum of reflectivity less the background
+  double background = 0;  // of a pixel
+  std::int32_t pixels = 0, dark_pixels = 0;
+  Vector2 lever_px = Vector2::Zero();  // sum of the pixels' offsets from the position
 };
 
 // A larger box falls back to binary_centroid; a background as bright as the blob, to its position.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/image/pixel_noise.hpp"
 #include "kernels/pose/camera_model.hpp"
 #include "kernels/pose/depth_settings.hpp"
 #include "kernels/units.hpp"
@@ -18,6 +19,7 @@ struct Camera {
   DepthSettings depth;
   int reflectivity_bits = 16;   // 8: Frame::reflectivity_8, 16: Frame::reflectivity_16
   std::uint16_t threshold = 0;  // a marker's pixels are brighter than this
+  PixelNoise noise{};           // of reflectivity: no device's was ever published
   Duration period;              // nominal gap between frames
   Duration exposure;
   Duration transport;                               // end of exposure -> last byte in memory

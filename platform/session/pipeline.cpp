@@ -35,6 +35,7 @@ BlobSettings blob_settings(const Cell& cell) {
   settings.max_area_px = large.max_area_px;
   settings.threshold = camera.threshold;
   settings.saturated_from = camera.depth.saturated_from;
+  settings.noise = camera.noise;
   return settings;
 }
 

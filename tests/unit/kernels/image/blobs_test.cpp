@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <numeric>
 
@@ -213,6 +214,44 @@ TEST(Blobs, ComeByRowsThenFromLeft) {
     EXPECT_LE(std::pair(a.y0, a.x0), std::pair(b.y0, b.x0));
   }
   EXPECT_EQ(find(Picture(8, 8)).count, 0);
+}
+
+TEST(Blobs, SayThatAnotherLiesTwoPixelsBesideThem) {
+  for (const int gap : {1, 2, 3}) {
+    Picture p(60, 40);
+    for (int y = 10; y < 16; ++y) {
+      for (int x = 10; x < 16; ++x) p(x, y) = p(x + 6 + gap, y) = 9000;
+    }
+    Finder find;
+    const Blobs& blobs = find(p);
+    ASSERT_EQ(blobs.count, 2);
+    for (const int i : {0, 1}) {
+      const Blob& blob = blobs.items[static_cast<std::size_t>(i)];
+      EXPECT_EQ((blob.flags & k_blob_has_neighbour) != 0, gap == 1) << gap;
+    }
+  }
+}
+
+TEST(Blobs, HaveALargerVarianceWhereTheyAreCutOrMerged) {
+  Picture p(90, 40);
+  test::add_disc(p, 20.3, 20.6, 3, 9000);
+  test::add_disc(p, 50.3, 20.6, 3, 9000);
+  test::add_disc(p, 56.3, 20.6, 3, 9000);
+  test::add_disc(p, 89.3, 20.6, 3, 9000);
+  Finder find;
+  const Blobs& blobs = find(p);
+  ASSERT_EQ(blobs.count, 3);
+  const auto at = [&](double x) -> const Blob& {
+    return *std::find_if(blobs.items.begin(), blobs.items.begin() + 3,
+                         [&](const Blob& blob) { return blob.x0 <= x && x < blob.x1; });
+  };
+  EXPECT_EQ(at(20).flags, 0);
+  EXPECT_LT(at(20).variance_px2[0], 0.01F);
+  EXPECT_EQ(at(53).flags, k_blob_uneven);
+  EXPECT_GE(at(53).variance_px2[0], 9.0F);  // either's middle is three pixels away
+  EXPECT_NE(at(89).flags & k_blob_touches_edge, 0);
+  EXPECT_GT(at(89).variance_px2[0], 1.0F);
+  EXPECT_GT(at(89).variance_px2[0], at(89).variance_px2[1] + 0.9F);
 }
 
 }  // namespace

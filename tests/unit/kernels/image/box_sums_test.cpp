@@ -24,8 +24,8 @@ GrownSums plain_sums(const Box& from, std::uint16_t threshold) {
       const std::uint16_t value = from.pixels[static_cast<std::size_t>(64 * row + column)];
       const std::int64_t x = 2 * (from.box.left + column) + 1;
       const auto is_in = [&](std::uint64_t mask) { return (mask >> column & 1) != 0; };
-      if (is_in(masks.own)) out.peak = std::max(out.peak, value);
       if (is_in(masks.near)) {
+        out.peak = std::max(out.peak, value);
         out.weight += value;
         out.x += value * x;
         out.y += value * y;
@@ -37,6 +37,7 @@ GrownSums plain_sums(const Box& from, std::uint16_t threshold) {
         out.dark += value;
         out.dark_pixels += 1;
       }
+      if (is_in(masks.rim) && value > threshold) out.bright_rim = true;
     }
   }
   return out;
@@ -60,6 +61,7 @@ void expect_same(const GrownSums& a, const GrownSums& b) {
   EXPECT_EQ(a.dark, b.dark);
   EXPECT_EQ(a.dark_pixels, b.dark_pixels);
   EXPECT_EQ(a.peak, b.peak);
+  EXPECT_EQ(a.bright_rim, b.bright_rim);
 }
 
 TEST(BoxSums, AreThoseOfAPlainLoop) {
@@ -72,12 +74,27 @@ TEST(BoxSums, AreThoseOfAPlainLoop) {
     from.box.bottom = from.box.top + static_cast<int>(1 + random() % 64);
     for (int row = from.box.top; row < from.box.bottom; ++row) {
       const std::uint64_t near = random() | random();
-      from.masks.push_back({near & random(), near, random() & ~near});
+      from.masks.push_back({near, random() & ~near});
       for (int i = 0; i < 64; ++i) from.pixels.push_back(static_cast<std::uint16_t>(random()));
     }
     const auto threshold = static_cast<std::uint16_t>(random());
     expect_same(sums_of(from, threshold), plain_sums(from, threshold));
     ASSERT_FALSE(HasFailure()) << "round " << round;
+  }
+}
+
+// One bright pixel in the rim, in each column and the last row.
+TEST(BoxSums, SeeASingleBrightPixelOfTheRim) {
+  for (int column = 0; column < 64; ++column) {
+    for (const int brighter : {0, 1}) {
+      Box from;
+      from.box = {0, 8, 0, 3};
+      from.masks.assign(3, RowMasks{0, ~std::uint64_t{0}});
+      from.pixels.assign(3 * 64, 20);
+      from.pixels[static_cast<std::size_t>(2 * 64 + column)] =
+          static_cast<std::uint16_t>(1000 + brighter);
+      EXPECT_EQ(sums_of(from, 1000).bright_rim, brighter == 1) << column;
+    }
   }
 }
 
@@ -88,7 +105,7 @@ TEST(BoxSums, DoNotOverflow) {
       Box from;
       from.box = {448, 8, 448, 512};
       const std::uint64_t all = ~std::uint64_t{0};
-      from.masks.assign(64, rim ? RowMasks{0, 0, all} : RowMasks{all, all, 0});
+      from.masks.assign(64, rim ? RowMasks{0, all} : RowMasks{all, 0});
       from.pixels.assign(64 * 64, value);
       expect_same(sums_of(from, 0xFFFF), plain_sums(from, 0xFFFF));
     }
