@@ -71,8 +71,13 @@ struct BackProject {
   DepthSettings depth;
   NominalMarker nominal;
   Limits limits;
+  // What the lens does to a sphere's image: after the camera was set.
+  [[nodiscard]] Reason prepare() noexcept {
+    shift_ = sphere_shift(camera);
+    return Reason::none;
+  }
   void operator()(const Frame& frame, const Blobs& blobs, Markers& markers) noexcept {
-    work_ = back_project(frame, blobs, camera, depth, nominal, markers, limits);
+    work_ = back_project(frame, blobs, camera, shift_, depth, nominal, markers, limits);
   }
 
   static constexpr std::array<std::string_view, 6> k_loops = {"call",   "blobs",   "lens_steps",
@@ -86,6 +91,7 @@ struct BackProject {
   static constexpr graph::LoopCounts counts_of(const BackProjectWork& work) noexcept {
     return {{1, work.blobs, work.lens_steps, work.pixels, work.samples, work.unwrapped}};
   }
+  SphereShift shift_;
   BackProjectWork work_;
 };
 static_assert(graph::Budgeted<BackProject, Limits>);

@@ -17,6 +17,15 @@ constexpr double k_pi = 3.14159265358979323846;
 constexpr double k_curl_part = 0.95;
 // The inner half counts as there if this part of its pixels has depth.
 constexpr double k_inner_valid_part = 0.25;
+// So many ranges say as much of their spread as what is declared of one.
+constexpr double k_declared_worth = 2;
+// Bias of the front point on a sphere of the nominal radius; by the ring; by the ring of one that
+// is saturated all over, where only pixels are left that a wall behind them shares. See the header.
+constexpr double k_bias_m = 0.0001, k_ring_bias_m = 0.001, k_saturated_bias_m = 0.0035;
+// A blob is more than one marker if it is larger by this than a disc that the lens widens by
+// k_blur_px.
+constexpr double k_merged_part = 1.5;
+constexpr double k_blur_px = 1.0;
 
 // To the front points of a sphere (radius > 0) of which the samples' pixels see other points.
 TwoDoubles fronts_of(const DepthSamples& samples, std::size_t at, double wrapped_m,
@@ -46,6 +55,12 @@ class FrontMean {
     if (count_ % 2 == 1) fronts_[count_] = std::numeric_limits<double>::infinity();
   }
   [[nodiscard]] double value() const { return found_.mean; }
+  // Of the mean of n ranges with the spread s: s / sqrt(n), where few tell little of s.
+  [[nodiscard]] double variance(double declared_sigma_m) const {
+    const double spread = found_.gate / 3, n = std::max(found_.near, 1);
+    return (n * spread * spread + k_declared_worth * declared_sigma_m * declared_sigma_m) /
+           ((n + k_declared_worth) * n);
+  }
   [[nodiscard]] double unwrapped(double wrapped_m) const {
     NearSum near;
     for (std::size_t i = 0; i < count_; i += 2) {
@@ -106,8 +121,33 @@ BackProjectWork measure_range(const DepthView& view, const NominalMarker& nomina
     out.flags |= k_marker_wrapped;
     work.unwrapped = samples.count;
   }
+  out.surface_range_m -= view.depth.bias.at(out.surface_range_m, view.blob.peak);
   if (from_ring) out.flags |= k_marker_ring_depth;
+  const bool saturated = (view.blob.flags & k_blob_saturated) != 0;
+  const double bias = !from_ring ? k_bias_m : saturated ? k_saturated_bias_m : k_ring_bias_m;
+  out.range_sigma_m =
+      static_cast<float>(std::sqrt(front.variance(view.depth.pixel_sigma_m) + bias * bias));
   return work;
+}
+
+// By what it now is known to be: a sphere's centre, or more than one marker.
+void correct_centroid(const DepthView& view, const SphereShift& shift, const NominalMarker& nominal,
+                      Marker& out) {
+  if (!(nominal.radius_m > 0) || !(out.surface_range_m > 0)) return;
+  const LocalRays& rays = view.rays;
+  const bool sphere = nominal.shape == MarkerShape::sphere;
+  const double sine = nominal.radius_m / (out.surface_range_m + (sphere ? nominal.radius_m : 0));
+  if (sphere) {
+    const Vector2 moved = shift_px(shift, out.centroid_px, sine);
+    out.centroid_px -= moved;
+    out.ray = (rays.ray - rays.along_x * moved.x() - rays.along_y * moved.y()).normalized();
+  }
+  const double radius_px = sine / std::sqrt(rays.steradian_per_pixel());
+  const double widened = radius_px + k_blur_px;
+  if (out.flags & k_marker_touches_edge) return;
+  if (!(out.area_px > k_merged_part * k_pi * widened * widened)) return;
+  out.flags |= k_marker_uneven;
+  for (float& sigma : out.sigma_px) sigma += static_cast<float>(radius_px);
 }
 
 struct Measured {
@@ -116,7 +156,7 @@ struct Measured {
 };
 
 Measured measure(const Frame& frame, const Blob& blob, std::uint16_t blob_index,
-                 const CameraModel& camera, const DepthSettings& depth,
+                 const CameraModel& camera, const SphereShift& shift, const DepthSettings& depth,
                  const NominalMarker& nominal, const MarkerWorkLimits& most, Marker& out) {
   Measured measured;
   int lens_steps = 0;
@@ -130,7 +170,12 @@ Measured measure(const Frame& frame, const Blob& blob, std::uint16_t blob_index,
     out.blob = blob_index;
     if (blob.flags & k_blob_saturated) out.flags |= k_marker_saturated;
     if (blob.flags & k_blob_touches_edge) out.flags |= k_marker_touches_edge;
-    measured.work = measure_range({frame, blob, depth, rays.value}, nominal, most, out);
+    if (blob.flags & k_blob_has_neighbour) out.flags |= k_marker_has_neighbour;
+    if (blob.flags & k_blob_uneven) out.flags |= k_marker_uneven;
+    out.sigma_px = {std::sqrt(blob.variance_px2[0]), std::sqrt(blob.variance_px2[1])};
+    const DepthView view{frame, blob, depth, rays.value};
+    measured.work = measure_range(view, nominal, most, out);
+    correct_centroid(view, shift, nominal, out);
   }
   measured.work.blobs = 1;
   measured.work.lens_steps = lens_steps;
@@ -140,14 +185,15 @@ Measured measure(const Frame& frame, const Blob& blob, std::uint16_t blob_index,
 }  // namespace
 
 bool measure_marker(const Frame& frame, const Blob& blob, std::uint16_t blob_index,
-                    const CameraModel& camera, const DepthSettings& depth,
+                    const CameraModel& camera, const SphereShift& shift, const DepthSettings& depth,
                     const NominalMarker& nominal, Marker& out,
                     const MarkerWorkLimits& most) noexcept {
-  return measure(frame, blob, blob_index, camera, depth, nominal, most, out).has_ray;
+  return measure(frame, blob, blob_index, camera, shift, depth, nominal, most, out).has_ray;
 }
 
 BackProjectWork back_project(const Frame& frame, const Blobs& blobs, const CameraModel& camera,
-                             const DepthSettings& depth, const NominalMarker& nominal, Markers& out,
+                             const SphereShift& shift, const DepthSettings& depth,
+                             const NominalMarker& nominal, Markers& out,
                              const Limits& limits) noexcept {
   BackProjectWork work;
   out.count = 0;
@@ -157,7 +203,7 @@ BackProjectWork back_project(const Frame& frame, const Blobs& blobs, const Camer
   for (int i = 0; i < count; ++i) {
     const Measured one = measure(
         frame, blobs.items[static_cast<std::size_t>(i)], static_cast<std::uint16_t>(i), camera,
-        depth, nominal, {pixels.most_for_next(), samples.most_for_next(), limits.ray_steps},
+        shift, depth, nominal, {pixels.most_for_next(), samples.most_for_next(), limits.ray_steps},
         out.items[static_cast<std::size_t>(out.count)]);
     out.count += one.has_ray ? 1 : 0;
     pixels.spend(one.work.pixels);

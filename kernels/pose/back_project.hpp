@@ -6,7 +6,10 @@
 //           a sphere with the nominal radius: a pixel s beside the ray through the middle sees the
 //           sphere r - sqrt(r^2 - s^2) further away. Centre saturated or without depth: the same
 //           over the ring between the inner half and the rim. z depth becomes radial by each
-//           pixel's own ray. A range that has wrapped is told by the blob's size.
+//           pixel's own ray. A range that has wrapped is told by the blob's size; what is known of
+//           the sensor's bias on such markers is taken off. With range and radius the centroid is
+//           moved to where the sphere's centre projects; both get a sigma: the blob's, and that of
+//           the ranges' mean by their number and spread.
 // Cost:     a ray for each blob, and what depth_samples.hpp and robust_mean.hpp say, its
 //           inliers averaged twice if wrapped. All blobs together look at no more pixels and
 //           average no more samples than `limits` says; each may have its share, and what the
@@ -14,7 +17,9 @@
 // Worst:    as many large blobs as there may be, their middles saturated, their ranges wrapped, at
 //           the rim of a wide lens.
 // Accuracy: noise of one pixel / sqrt(samples); bias on a sphere of the nominal radius 0.1 mm, by
-//           the ring 1 mm; a disc taken for a sphere comes out 0.14 of the nominal radius short.
+//           the ring 1 mm, by that of a sphere saturated all over 1.5 to 5 mm, of which the sigma
+//           holds 3.5; smeared by 2 px 0.1 to 0.9 mm, of which it holds nothing (`glint experiment
+//           centroid`). A disc taken for a sphere comes out 0.14 of the nominal radius short.
 // Source:   the seed, section III; AHAT's wrap: hl2ss, "alias".
 #pragma once
 
@@ -28,6 +33,7 @@
 #include "kernels/pose/local_rays.hpp"
 #include "kernels/pose/marker.hpp"
 #include "kernels/pose/robust_mean.hpp"
+#include "kernels/pose/sphere_shift.hpp"
 #include "kernels/pose/tool.hpp"
 
 namespace glint {
@@ -46,12 +52,14 @@ struct MarkerWorkLimits {
   int ray_steps = k_ray_steps_max;
 };
 
-// blob_index: its place in Blobs. True: out has a ray; without any depth k_marker_no_depth is set
-// and surface_range_m is 0. False: the lens has no ray for the centroid.
-// surface_range_m: radial, from the camera to the marker's front point along the centroid's ray.
+// blob_index: its place in Blobs. shift: the camera's sphere_shift(); {} takes nothing off. True:
+// out has a ray; without any depth k_marker_no_depth is set and surface_range_m is 0. False: the
+// lens has no ray for the centroid. surface_range_m: radial, from the camera to the marker's front
+// point along the centroid's ray.
 [[nodiscard]] bool measure_marker(const Frame& frame, const Blob& blob, std::uint16_t blob_index,
-                                  const CameraModel& camera, const DepthSettings& depth,
-                                  const NominalMarker& nominal, Marker& out,
+                                  const CameraModel& camera, const SphereShift& shift,
+                                  const DepthSettings& depth, const NominalMarker& nominal,
+                                  Marker& out,
                                   const MarkerWorkLimits& most = {}) noexcept GLINT_NONBLOCKING;
 
 // How often the loops ran.
@@ -66,7 +74,8 @@ struct BackProjectWork {
 // Every blob's marker, in the blobs' order; those without a ray are left out. Blobs beyond
 // limits.blobs are not looked at.
 BackProjectWork back_project(const Frame& frame, const Blobs& blobs, const CameraModel& camera,
-                             const DepthSettings& depth, const NominalMarker& nominal, Markers& out,
+                             const SphereShift& shift, const DepthSettings& depth,
+                             const NominalMarker& nominal, Markers& out,
                              const Limits& limits = {}) noexcept GLINT_NONBLOCKING;
 
 // What back_project may do at most.

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "kernels/pose/depth_bias.hpp"
+
 namespace glint {
 
 enum class DepthKind : std::uint8_t {
@@ -16,6 +18,8 @@ struct DepthSettings {
   std::uint16_t invalid_from = 4090;      // raw values from here on mean "none", like 0
   double wrap_range_m = 0;                // ranges repeat at this distance; 0: they do not
   std::uint16_t saturated_from = 0xFFFF;  // reflectivity from here on spoils the pixel's own depth
+  DepthBias bias;                         // of the markers that are looked for
+  double pixel_sigma_m = 0.004;           // of one pixel's depth, as far as it does not show itself
 };
 
 }  // namespace glint

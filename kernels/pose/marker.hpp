@@ -15,17 +15,23 @@ enum MarkerFlag : std::uint8_t {
   k_marker_wrapped = 4,     // the range was found to have wrapped and was unwrapped
   k_marker_saturated = 8,
   k_marker_touches_edge = 16,
+  k_marker_has_neighbour = 32,  // another blob's light lies two pixels beside it
+  k_marker_uneven = 64,         // no whole marker by its box or area: merged, or partly hidden
 };
 
 // The marker's surface point is ray * surface_range_m. A sphere's centre lies its radius further
 // along the ray, a disc's at the surface: which of the two is the tool's affair.
 struct Marker {
-  Vector3 ray = Vector3::UnitZ();  // unit, camera frame
-  double surface_range_m = 0;      // radial, along the ray
-  Vector2 centroid_px = Vector2::Zero();
+  Vector3 ray = Vector3::UnitZ();         // unit, camera frame
+  double surface_range_m = 0;             // radial, along the ray
+  Vector2 centroid_px = Vector2::Zero();  // of a sphere: where its centre projects
   std::uint32_t area_px = 0;
   std::uint16_t blob = 0;  // index into Blobs
   std::uint8_t flags = 0;  // MarkerFlag
+  // Of the centroid along x and y, and of the range: this marker's own share, as its pixels tell.
+  // What is common to all of a marker's pixels comes on top. 0: not known.
+  std::array<float, 2> sigma_px{};
+  float range_sigma_m = 0;
 };
 
 struct Markers {

@@ -58,6 +58,7 @@ RobustMean robust_mean(const RangeValues& values, int count, double gate_least) 
   }
   near.add(near_too);
   out.mean = near.mean_or(out.median);
+  out.near = near.count();
   return out;
 }
 

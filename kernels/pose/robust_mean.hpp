@@ -21,7 +21,8 @@ using RangeValues = std::array<double, k_range_values_max>;
 struct RobustMean {
   double mean = 0;
   double median = 0;
-  double gate = 0;  // a value no further from the median counts
+  double gate = 0;  // a value no further from the median counts: three sigma of one
+  int near = 0;     // how many count
 };
 
 // Adds up, two at a time, those of which something is near the median.
@@ -39,9 +40,9 @@ struct NearSum {
     sum += other.sum;
     minus_count += other.minus_count;
   }
+  [[nodiscard]] int count() const { return static_cast<int>(-(minus_count[0] + minus_count[1])); }
   [[nodiscard]] double mean_or(double otherwise) const {
-    const auto count = static_cast<double>(-(minus_count[0] + minus_count[1]));
-    return count > 0 ? (sum[0] + sum[1]) / count : otherwise;
+    return count() > 0 ? (sum[0] + sum[1]) / count() : otherwise;
   }
 };
 

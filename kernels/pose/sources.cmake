@@ -1,6 +1,7 @@
 target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/camera_model.cpp
   ${CMAKE_CURRENT_LIST_DIR}/ray_table.cpp ${CMAKE_CURRENT_LIST_DIR}/local_rays.cpp
   ${CMAKE_CURRENT_LIST_DIR}/back_project.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/sphere_shift.cpp
   ${CMAKE_CURRENT_LIST_DIR}/depth_samples.cpp
   ${CMAKE_CURRENT_LIST_DIR}/robust_mean.cpp)
 target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/tool.cpp

@@ -45,6 +45,7 @@ struct CellParser {
     return carried != nullptr ? path : opened_path(path, key, cell.file);
   }
   void read_camera(const toml::table* table);
+  void read_depth_bias(const toml::table* table);
   void read_simulator(const toml::table* table);
   void read_tools(TomlReader& root);
 };
@@ -62,6 +63,27 @@ Quaternion from_fixed_axes(const std::vector<double>& degrees) {
   return about(2) * about(1) * about(0);
 }
 
+// Of the markers in use; without the ranges it was measured at it is worth nothing.
+void CellParser::read_depth_bias(const toml::table* table) {
+  if (table == nullptr) return;
+  TomlReader reader(*table, cell.file, "camera.depth_bias.");
+  DepthBias& bias = cell.camera.depth.bias;
+  bias.offset_m = 1e-3 * reader.real("offset_mm", 0, -100, 100);
+  bias.per_metre = 1e-3 * reader.real("mm_per_m", 0, -200, 200);
+  bias.dim_m = 1e-3 * reader.real("dim_mm", 0, -100, 100);
+  const auto range_mm = reader.reals("range_mm", 2);
+  reader.done();
+  if (!range_mm || !((*range_mm)[0] >= 0 && (*range_mm)[1] > (*range_mm)[0])) {
+    throw InputError(
+        cell.file + ":" +
+        std::to_string(range_mm ? reader.line_of("range_mm") : table->source().begin.line) +
+        ": camera.depth_bias.range_mm is " + (range_mm ? "no range" : "missing") +
+        "; expected [from, to], the ranges it was measured at");
+  }
+  bias.range_min_m = 1e-3 * (*range_mm)[0];
+  bias.range_max_m = 1e-3 * (*range_mm)[1];
+}
+
 void CellParser::read_camera(const toml::table* table) {
   static const toml::table k_empty;
   TomlReader reader(table ? *table : k_empty, cell.file, "camera.");
@@ -73,6 +95,7 @@ void CellParser::read_camera(const toml::table* table) {
   cell.camera.threshold =
       static_cast<std::uint16_t>(reader.integer("threshold", cell.camera.threshold, 1, top - 1));
   cell.arrival_jitter = from_ms(reader.real("arrival_jitter_ms", 0.4, 0, 10));
+  read_depth_bias(reader.table("depth_bias"));
   reader.done();
   if (cell.camera.model.width > k_width_max || cell.camera.model.height > k_height_max) {
     throw InputError(cell.file + ":" + std::to_string(reader.line_of("model")) + ": " + model +

@@ -51,9 +51,14 @@ nlohmann::ordered_json blob_json(const Blob& blob, const Marker* marker) {
                               {"area_px", blob.area_px},
                               {"peak", blob.peak},
                               {"saturated", (blob.flags & k_blob_saturated) != 0},
-                              {"touches_edge", (blob.flags & k_blob_touches_edge) != 0}};
+                              {"touches_edge", (blob.flags & k_blob_touches_edge) != 0},
+                              {"has_neighbour", (blob.flags & k_blob_has_neighbour) != 0},
+                              {"uneven", (blob.flags & k_blob_uneven) != 0},
+                              {"sigma_x_px", std::sqrt(blob.variance_px2[0])},
+                              {"sigma_y_px", std::sqrt(blob.variance_px2[1])}};
   if (marker != nullptr && (marker->flags & k_marker_no_depth) == 0) {
     item["range_m"] = marker->surface_range_m;
+    item["range_sigma_m"] = marker->range_sigma_m;
     item["ring_depth"] = (marker->flags & k_marker_ring_depth) != 0;
     item["wrapped"] = (marker->flags & k_marker_wrapped) != 0;
   }

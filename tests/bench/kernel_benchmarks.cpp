@@ -69,12 +69,13 @@ void back_projection(benchmark::State& state) {
   Warm warm(sensor_of(state));
   const Blobs& found = warm.token<Blobs>();
   const BackProject& node = warm.chain.tracker().node<BackProject>();
+  const SphereShift shift = sphere_shift(node.camera);
   Marker marker;
   for (auto _ : state) {
     for (int i = 0; i < found.count; ++i) {
       const bool seen = measure_marker(
           warm.player.frame(), found.items[static_cast<std::size_t>(i)],
-          static_cast<std::uint16_t>(i), node.camera, node.depth, node.nominal, marker);
+          static_cast<std::uint16_t>(i), node.camera, shift, node.depth, node.nominal, marker);
       benchmark::DoNotOptimize(seen);
     }
   }

@@ -65,6 +65,7 @@ class MeasuredBackProject final : public MeasuredKernel {
         break;
     }
     frame_ = drawn_.view();
+    (void)node_->prepare();
   }
   void run() noexcept override { (*node_)(frame_, *blobs_, *markers_); }
   [[nodiscard]] graph::LoopCounts counts() const override { return node_->counts(); }
@@ -166,6 +167,7 @@ class MeasuredBackProject final : public MeasuredKernel {
     blind(climb(first, change, [&](const Blind& input) {
       blind(input);
       frame_ = drawn_.view();
+      (void)node_->prepare();
       run();
       const graph::LoopCounts n = counts();
       return 200 * n[1] + 60 * n[2] + 10 * n[3] + 120 * n[4] + 90 * n[5];

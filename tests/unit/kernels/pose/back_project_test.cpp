@@ -98,8 +98,9 @@ Marker marker_of(const Scene& scene, const FrameBuffer& buffer, const NominalMar
   const Blobs blobs = blobs_of(scene, frame);
   EXPECT_EQ(blobs.count, 1);
   Marker marker;
-  EXPECT_TRUE(measure_marker(frame, blobs.items[0], 7, scene.camera.model, scene.camera.depth,
-                             nominal, marker));
+  EXPECT_TRUE(measure_marker(frame, blobs.items[0], 7, scene.camera.model,
+                             sphere_shift(scene.camera.model), scene.camera.depth, nominal,
+                             marker));
   EXPECT_EQ(marker.blob, 7);
   return marker;
 }
@@ -116,6 +117,72 @@ TEST(BackProject, FindsASpheresFrontPoint) {
       EXPECT_LT((centre - scene.centre_m).norm(), 0.001) << z << " " << side;
     }
   }
+}
+
+void blind(const Scene& scene, FrameBuffer& buffer, double within_px, bool saturate);
+
+// 40 degrees off the axis of a pinhole, near: the middle of what is seen lies 0.14 px further out.
+TEST(BackProject, MovesASpheresCentroidToWhereItsCentreProjects) {
+  Scene scene;
+  scene.camera.model.lens = Lens::pinhole;
+  scene.camera.depth.wrap_range_m = 0;
+  scene.centre_m = Vector3(0.8, 0.2, 1).normalized() * 0.3;
+  const FrameBuffer buffer = scene.render();
+  const Vector2 centre = project(scene.camera.model, scene.centre_m).value;
+  const Blobs blobs = blobs_of(scene, buffer.view({}, {}, 0));
+  EXPECT_GT((blobs.items[0].centroid_px - centre).norm(), 0.1);
+  const Marker marker = marker_of(scene, buffer);
+  EXPECT_LT((marker.centroid_px - centre).norm(), 0.05);
+  EXPECT_LT((marker.ray - unproject(scene.camera.model, marker.centroid_px).value).norm(), 1e-6);
+  EXPECT_NEAR(marker.ray.norm(), 1, 1e-15);
+  // A disc is left where it is seen.
+  EXPECT_EQ(marker_of(scene, buffer, {0.006, MarkerShape::disc}).centroid_px,
+            blobs.items[0].centroid_px);
+}
+
+TEST(BackProject, StatesHowFarItsRangesMeanMayBeOff) {
+  for (const double noise_m : {0.002, 0.008}) {
+    double squares = 0, variances = 0;
+    for (int i = 0; i < 60; ++i) {
+      Scene scene;
+      scene.noise_m = noise_m;
+      scene.centre_m = {0.05 + 0.0013 * i, -0.03 + 0.0007 * i, 0.4};
+      const Marker marker = marker_of(scene, scene.render());
+      squares += std::pow(marker.surface_range_m - scene.front_m(), 2);
+      variances += std::pow(marker.range_sigma_m, 2);
+      EXPECT_GT(marker.sigma_px[0], 0);
+      EXPECT_LT(marker.sigma_px[0], 0.05);
+    }
+    EXPECT_NEAR(std::sqrt(squares / variances), 1, 0.35) << noise_m;
+  }
+}
+
+TEST(BackProject, TakesOffADeclaredBias) {
+  Scene scene;
+  const FrameBuffer buffer = scene.render();
+  const double plain = marker_of(scene, buffer).surface_range_m;
+  scene.camera.depth.bias = {0.004, 0, 0, 0.1, 1};
+  EXPECT_NEAR(marker_of(scene, buffer).surface_range_m, plain - 0.004, 1e-12);
+}
+
+TEST(BackProject, StatesAWiderSigmaForTheRing) {
+  Scene scene;
+  scene.centre_m = {0.05, -0.03, 0.3};
+  FrameBuffer buffer = scene.render();
+  const float inner = marker_of(scene, buffer).range_sigma_m;
+  blind(scene, buffer, 3.6, false);
+  const float ring = marker_of(scene, buffer).range_sigma_m;
+  EXPECT_GT(ring, 0.001F);
+  EXPECT_GT(ring, 1.2F * inner);
+}
+
+TEST(BackProject, SaysThatABlobIsLargerThanOneMarker) {
+  const Scene scene;
+  const FrameBuffer buffer = scene.render();
+  const Marker one = marker_of(scene, buffer), many = marker_of(scene, buffer, {0.003});
+  EXPECT_EQ(one.flags & k_marker_uneven, 0);
+  EXPECT_NE(many.flags & k_marker_uneven, 0);
+  EXPECT_GT(many.sigma_px[0], one.sigma_px[0] + 1);
 }
 
 TEST(BackProject, FindsADiscsMiddle) {
@@ -240,7 +307,7 @@ TEST(BackProject, RefusesABlobOutsideTheLens) {
   blob.centroid_px = {2, 2};
   blob.area_px = 30;
   Marker marker;
-  EXPECT_FALSE(measure_marker(buffer.view({}, {}, 0), blob, 0, scene.camera.model,
+  EXPECT_FALSE(measure_marker(buffer.view({}, {}, 0), blob, 0, scene.camera.model, {},
                               scene.camera.depth, {}, marker));
 }
 
@@ -258,11 +325,11 @@ TEST(BackProject, BoundsItsWorkOnAHugeBlob) {
   blob.peak = 0xFFFF;
   blob.flags = k_blob_touches_edge | k_blob_saturated;
   Marker marker;
-  EXPECT_TRUE(measure_marker(buffer.view({}, {}, 0), blob, 0, scene.camera.model,
+  EXPECT_TRUE(measure_marker(buffer.view({}, {}, 0), blob, 0, scene.camera.model, {},
                              scene.camera.depth, {}, marker));
   EXPECT_EQ(marker.flags, k_marker_no_depth | k_marker_saturated | k_marker_touches_edge);
   for (auto& value : buffer.reflectivity_16) value = 30000;
-  EXPECT_TRUE(measure_marker(buffer.view({}, {}, 0), blob, 0, scene.camera.model,
+  EXPECT_TRUE(measure_marker(buffer.view({}, {}, 0), blob, 0, scene.camera.model, {},
                              scene.camera.depth, {}, marker));
   EXPECT_GT(marker.surface_range_m, 0.49);
 }
