@@ -96,6 +96,7 @@ class CdrReader {
   std::span<const std::uint8_t> get_bytes() { return reader_.take(get<std::uint32_t>()); }
 
   [[nodiscard]] bool failed() const { return wrong_encapsulation_ || reader_.failed(); }
+  [[nodiscard]] bool at_end() const { return reader_.at_end(); }
 
  private:
   void align(std::size_t size) {

@@ -147,6 +147,14 @@ std::optional<MarkerFrame> read_markers(MessageBytes bytes) {
   }
   if (from.failed()) return std::nullopt;
   frame.markers.count = static_cast<int>(count);
+  if (from.at_end()) return frame;  // older recordings end here
+  if (from.get<std::uint32_t>() != count) return std::nullopt;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Marker& marker = frame.markers.items[i];
+    for (float& sigma : marker.sigma_px) sigma = from.get<float>();
+    marker.range_sigma_m = from.get<float>();
+  }
+  if (from.failed()) return std::nullopt;
   return frame;
 }
 

@@ -56,10 +56,13 @@ constexpr std::array k_definitions{
                "geometry_msgs/Vector3 ray  # unit, camera frame\n"
                "float64 surface_range_m\nfloat64 centroid_x_px\nfloat64 centroid_y_px\n"
                "uint32 area_px\nuint16 blob\nuint8 flags\n"},
+    Definition{"glint_msgs/MarkerSigma",
+               "float32 x_px\nfloat32 y_px\nfloat32 range_m  # of each 0: not known\n"},
     Definition{"glint_msgs/Markers",
                "std_msgs/Header header  # middle of the exposure\n"
                "int64 mid_exposure_ns\nint64 arrival_ns\nuint32 sequence\nuint8 reason\n"
-               "glint_msgs/Marker[] markers\n"},
+               "glint_msgs/Marker[] markers\n"
+               "glint_msgs/MarkerSigma[] sigmas  # of the same; older recordings have none\n"},
     Definition{"glint_msgs/Choice",
                "std_msgs/Header header\nint64 nominal_ns\nuint64 activation\nuint8 group\n"
                "uint8 overrun  # 0: none; else 1 noticed ahead, 2 missed; plus 4 times the policy\n"

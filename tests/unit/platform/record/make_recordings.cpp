@@ -94,7 +94,7 @@ void add_frame(Sample& sample, const FrameBuffer& buffer, const FrameLayout& lay
 
 void add_markers(Sample& sample, const MarkerFrame& frame) {
   sample.writer.write_markers(frame);
-  json markers = json::array();
+  json markers = json::array(), sigmas = json::array();
   for (int i = 0; i < frame.markers.count; ++i) {
     const Marker& marker = frame.markers.items[static_cast<std::size_t>(i)];
     markers.push_back({{"ray", xyz(marker.ray)},
@@ -104,6 +104,9 @@ void add_markers(Sample& sample, const MarkerFrame& frame) {
                        {"area_px", marker.area_px},
                        {"blob", marker.blob},
                        {"flags", marker.flags}});
+    sigmas.push_back({{"x_px", marker.sigma_px[0]},
+                      {"y_px", marker.sigma_px[1]},
+                      {"range_m", marker.range_sigma_m}});
   }
   sample.expect("/glint/blobs", frame.arrival,
                 {{"header", sample.header(frame.mid_exposure, "hmd_tof_optical")},
@@ -111,7 +114,8 @@ void add_markers(Sample& sample, const MarkerFrame& frame) {
                  {"arrival_ns", number(frame.arrival.nanoseconds)},
                  {"sequence", frame.sequence},
                  {"reason", static_cast<int>(frame.reason)},
-                 {"markers", markers}});
+                 {"markers", markers},
+                 {"sigmas", sigmas}});
 }
 
 void add_inputs(Sample& sample) {

@@ -76,6 +76,8 @@ inline MarkerFrame sample_markers(int count) {
     marker.area_px = static_cast<std::uint32_t>(30 + i);
     marker.blob = static_cast<std::uint16_t>(i);
     marker.flags = k_marker_ring_depth;
+    marker.sigma_px = {0.25F, 0.5F + static_cast<float>(i)};
+    marker.range_sigma_m = 0.125F;
   }
   return frame;
 }

@@ -152,7 +152,24 @@ TEST(Recording, GivesBackMarkersAtLevelBlobs) {
     EXPECT_EQ(a.area_px, b.area_px);
     EXPECT_EQ(a.blob, b.blob);
     EXPECT_EQ(a.flags, b.flags);
+    EXPECT_EQ(a.sigma_px, b.sigma_px);
+    EXPECT_EQ(a.range_sigma_m, b.range_sigma_m);
   }
+}
+
+// A message as it was written before markers had sigmas: its last array left out.
+TEST(Recording, ReadsMarkersOfOlderRecordings) {
+  CdrWriter writer;
+  write_message(writer, sample_markers(3), {});
+  // Its number and three a marker, after a byte that fills up to it.
+  const std::size_t sigmas = 1 + 4 + 3 * 3 * 4;
+  const auto all = writer.bytes();
+  const auto read = read_markers(all.first(all.size() - sigmas));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->markers.count, 3);
+  EXPECT_EQ(read->markers.items[2].flags, k_marker_ring_depth);
+  EXPECT_EQ(read->markers.items[2].sigma_px[0], 0);
+  EXPECT_FALSE(read_markers(all.first(all.size() - 1)));
 }
 
 TEST(Recording, KeepsOutputsAloneAtLevelOutputs) {
