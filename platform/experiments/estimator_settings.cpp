@@ -25,11 +25,19 @@ Json correspond_json(const CorrespondSettings& settings) {
           {"search_steps_max", settings.search_steps_max}};
 }
 
+Json pixel_noise_json(const PixelNoise& noise) {
+  return {{"read_counts", noise.read_counts},
+          {"shot_counts", noise.shot_counts},
+          {"proportional", noise.proportional}};
+}
+
 }  // namespace
 
 std::string estimator_text() {
   const EstimatorSettings settings;
-  return Json{{"correspond", correspond_json(settings.correspond)}}.dump();
+  return Json{{"correspond", correspond_json(settings.correspond)},
+              {"pixel_noise", pixel_noise_json(settings.pixel_noise)}}
+      .dump();
 }
 
 std::string estimator_hash() { return fnv1a_text(estimator_text()); }

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "kernels/image/pixel_noise.hpp"
 #include "kernels/pose/correspond_settings.hpp"
 
 namespace glint {
@@ -11,6 +12,7 @@ namespace glint {
 // settings here, and their fields to estimator_text().
 struct EstimatorSettings {
   CorrespondSettings correspond;
+  PixelNoise pixel_noise;
 };
 
 // Every field by name, as JSON.
