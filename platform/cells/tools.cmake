@@ -2,6 +2,6 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS tools/pen.toml)
 file(READ tools/pen.toml GLINT_DEFAULT_PEN)
 configure_file(default_pen.hpp.in ${CMAKE_CURRENT_BINARY_DIR}/tools/glint_default_pen.hpp @ONLY)
 
-add_library(glint_tool_files STATIC tool_file.cpp tool_toml.cpp tool_rom.cpp tool_ini.cpp)
+add_library(glint_tool_files STATIC tool_file.cpp tool_toml.cpp tool_rom.cpp tool_ini.cpp tool_writer.cpp)
 target_include_directories(glint_tool_files PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/tools)
 target_link_libraries(glint_tool_files PUBLIC glint_kernels PRIVATE glint_toml)

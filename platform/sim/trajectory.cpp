@@ -97,7 +97,6 @@ Trajectory trajectory_from_text(const std::string& text, const std::string& name
   Trajectory trajectory;
   trajectory.name = name;
   std::size_t number = 0, begin = 0;
-  std::int64_t first = 0;
   bool commas = false;
   while (begin < text.size()) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
@@ -109,8 +108,8 @@ Trajectory trajectory_from_text(const std::string& text, const std::string& name
     const std::string where = name + ":" + std::to_string(number);
     if (trajectory.samples.empty()) commas = line.find(',') != std::string_view::npos;
     StampedPose sample = parse(line, where, commas);
-    if (trajectory.samples.empty()) first = sample.time.nanoseconds;
-    sample.time.nanoseconds -= first;
+    if (trajectory.samples.empty()) trajectory.begin = sample.time;
+    sample.time.nanoseconds -= trajectory.begin.nanoseconds;
     if (!trajectory.samples.empty() && sample.time <= trajectory.samples.back().time) {
       throw InputError(where + ": its stamp is not after the one before; expected rising stamps");
     }

@@ -12,6 +12,7 @@ namespace glint::sim {
 struct Trajectory {
   std::string name;                  // the file, for messages
   std::vector<StampedPose> samples;  // stamps rise, from 0
+  Time begin;                        // the first one's, as it stands in the file
 
   [[nodiscard]] Duration length() const {
     return samples.empty() ? Duration{} : samples.back().time - samples.front().time;

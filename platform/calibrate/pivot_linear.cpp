@@ -1,0 +1,92 @@
+#include "platform/calibrate/pivot_linear.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "platform/calibrate/robust.hpp"
+
+namespace glint {
+namespace {
+
+constexpr int k_huber_rounds = 30;
+constexpr double k_huber_medians = 1.0;  // a distance up to its median counts in full
+
+// Files hold a micrometre at best: noise below it is only rounding.
+constexpr double k_position_sigma_min_m = 1e-6;
+constexpr double k_rotation_sigma_min_rad = 1e-6;
+
+}  // namespace
+
+PivotPoint weighted_pivot(std::span<const PivotSample> samples, std::span<const double> weights) {
+  // Unknowns: lever and post. A row block is [R, -1], the right-hand side -centre.
+  Matrix6 normal = Matrix6::Zero();
+  Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    Eigen::Matrix<double, 3, 6> row;
+    row << samples[i].rotation.toRotationMatrix(), -Matrix3::Identity();
+    normal += weights[i] * row.transpose() * row;
+    right -= weights[i] * row.transpose() * samples[i].centre_m;
+  }
+  const Eigen::Matrix<double, 6, 1> solution = normal.ldlt().solve(right);
+  return {solution.head<3>(), solution.tail<3>()};
+}
+
+Vector3 pivot_miss(const PivotSample& sample, const PivotPoint& point) {
+  return sample.rotation * point.lever_m + sample.centre_m - point.post_m;
+}
+
+PivotPoint robust_pivot(std::span<const PivotSample> samples) {
+  std::vector<double> weights(samples.size(), 1.0);
+  PivotPoint point = weighted_pivot(samples, weights);
+  std::vector<double> distances(samples.size());
+  for (int round = 0; round < k_huber_rounds; ++round) {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      distances[i] = pivot_miss(samples[i], point).norm();
+    }
+    const double limit = k_huber_medians * median_of(distances);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      weights[i] = distances[i] > limit ? limit / distances[i] : 1.0;
+    }
+    const PivotPoint next = weighted_pivot(samples, weights);
+    const double step = (next.lever_m - point.lever_m).norm() + (next.post_m - point.post_m).norm();
+    point = next;
+    if (!(step > 1e-9)) break;
+  }
+  return point;
+}
+
+PivotNoise pivot_noise(std::span<const PivotSample> samples, const PivotPoint& point) {
+  const double lever = point.lever_m.norm();
+  std::vector<double> along, across;
+  for (const PivotSample& sample : samples) {
+    const Vector3 miss = pivot_miss(sample, point);
+    const Vector3 direction =
+        lever > 1e-9 ? Vector3(sample.rotation * point.lever_m / lever) : Vector3(Vector3::UnitX());
+    const Vector3 first = direction.unitOrthogonal();
+    along.push_back(miss.dot(direction));
+    across.push_back(miss.dot(first));
+    across.push_back(miss.dot(direction.cross(first)));
+  }
+  const double position = std::max(sigma_of(along), k_position_sigma_min_m);
+  const double sideways = sigma_of(across);
+  PivotNoise noise{position, k_rotation_sigma_min_rad};
+  if (lever > 1e-3 && sideways > position) {
+    noise.rotation_sigma_rad = std::max(
+        std::sqrt(sideways * sideways - position * position) / lever, k_rotation_sigma_min_rad);
+  } else {
+    noise.position_sigma_m = std::max(
+        std::hypot(position, std::sqrt(2.0) * sideways) / std::sqrt(3.0), k_position_sigma_min_m);
+  }
+  return noise;
+}
+
+Matrix3 miss_covariance(const PivotSample& sample, const PivotPoint& point) {
+  const Vector3 lever = sample.rotation * point.lever_m;
+  const double turned = sample.rotation_sigma_rad * sample.rotation_sigma_rad;
+  const double moved = sample.position_sigma_m * sample.position_sigma_m;
+  return (moved + turned * lever.squaredNorm()) * Matrix3::Identity() -
+         turned * lever * lever.transpose();
+}
+
+}  // namespace glint

@@ -1,0 +1,24 @@
+#include "platform/calibrate/rotation_spread.hpp"
+
+#include <Eigen/Eigenvalues>
+
+namespace glint {
+
+RotationSpread rotation_spread(std::span<const StampedPose> poses) {
+  RotationSpread result;
+  if (poses.empty()) return result;
+  Matrix3 mean = Matrix3::Zero();
+  for (const StampedPose& pose : poses) mean += pose.pose.rotation.toRotationMatrix();
+  mean /= static_cast<double>(poses.size());
+  Matrix3 squares = Matrix3::Zero();
+  for (const StampedPose& pose : poses) {
+    const Matrix3 off = pose.pose.rotation.toRotationMatrix() - mean;
+    squares += off.transpose() * off;
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(squares / static_cast<double>(poses.size()));
+  result.spread_rad = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  result.directions = solver.eigenvectors();
+  return result;
+}
+
+}  // namespace glint

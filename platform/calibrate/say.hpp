@@ -1,0 +1,31 @@
+// Figures in the words of a message.
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+#include "kernels/geometry.hpp"
+
+namespace glint {
+
+inline constexpr double k_degrees_per_radian = 57.29577951308232;
+
+[[nodiscard]] inline std::string say(const char* format, double value) {
+  char text[48];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+[[nodiscard]] inline std::string say_mm(double metres) { return say("%.3g mm", metres * 1e3); }
+
+[[nodiscard]] inline std::string say_degrees(double radians) {
+  return say("%.3g deg", radians * k_degrees_per_radian);
+}
+
+[[nodiscard]] inline std::string say_direction(const Vector3& d) {
+  char text[80];
+  std::snprintf(text, sizeof text, "[%.2f, %.2f, %.2f]", d.x(), d.y(), d.z());
+  return text;
+}
+
+}  // namespace glint

@@ -1,0 +1,44 @@
+#include "platform/cells/tool_writer.hpp"
+
+#include <cstdio>
+#include <sstream>
+
+namespace glint {
+namespace {
+
+std::string point_mm(const Vector3& point_m) {
+  char text[96];
+  std::snprintf(text, sizeof text, "[%.4f, %.4f, %.4f]", 1e3 * point_m.x(), 1e3 * point_m.y(),
+                1e3 * point_m.z());
+  return text;
+}
+
+// A text in quotes, as TOML's basic strings are.
+std::string quoted(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + '"';
+}
+
+}  // namespace
+
+std::string tool_toml_text(const Tool& tool, std::string_view comment) {
+  std::string text;
+  std::istringstream lines{std::string(comment)};
+  for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
+  text += "name = " + quoted(tool.name.data()) + "\nmarkers_mm = [\n";
+  for (int i = 0; i < tool.marker_count; ++i) {
+    text += "  " + point_mm(tool.markers_m[static_cast<std::size_t>(i)]) + ",\n";
+  }
+  char radius[48];
+  std::snprintf(radius, sizeof radius, "]\nradius_mm = %.4f\n", 1e3 * tool.marker_radius_m);
+  text += radius;
+  text += "tip_mm = " + point_mm(tool.tip_m) + "\n";
+  text += tool.shape == MarkerShape::sphere ? "shape = \"sphere\"\n" : "shape = \"disc\"\n";
+  return text;
+}
+
+}  // namespace glint

@@ -1,0 +1,14 @@
+// A tool as the TOML file that load_tool reads back.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "kernels/pose/tool.hpp"
+
+namespace glint {
+
+// Numbers to a tenth of a micrometre; every line of `comment` stands behind a # above.
+[[nodiscard]] std::string tool_toml_text(const Tool& tool, std::string_view comment);
+
+}  // namespace glint

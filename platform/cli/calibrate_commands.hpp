@@ -1,0 +1,31 @@
+// The parts of `glint calibrate`, and what they have in common.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "platform/calibrate/calibration_report.hpp"
+#include "platform/calibrate/pose_series.hpp"
+
+namespace glint {
+
+void add_calibrate_pivot(CLI::App& calibrate, int& exit_code);
+void add_calibrate_spin(CLI::App& calibrate, int& exit_code);
+
+struct CalibrationOutput {
+  std::string out = "out";
+  std::string json;
+};
+
+void add_output_options(CLI::App& command, CalibrationOutput& output);
+void add_pose_options(CLI::App& command, PoseSource& source);
+
+struct CalibrationFile {
+  std::string name;
+  std::string text;
+};
+// Prints the table, then writes the files into the folder and the figures as JSON.
+void finish_calibration(const CalibrationOutput& output, const Figures& figures,
+                        const std::vector<CalibrationFile>& files);
+
+}  // namespace glint

@@ -1,0 +1,46 @@
+// glint calibrate: what a user's own tools and devices are, from measurements.
+#include <cstdio>
+#include <filesystem>
+
+#include "platform/cli/calibrate_commands.hpp"
+#include "platform/cli/commands.hpp"
+#include "platform/cli/output_file.hpp"
+
+namespace glint {
+
+void add_output_options(CLI::App& command, CalibrationOutput& output) {
+  command.add_option("--out", output.out, "folder of the TOML file and the plot")
+      ->capture_default_str();
+  command.add_option("--json", output.json, "write the figures here");
+}
+
+void add_pose_options(CLI::App& command, PoseSource& source) {
+  command.add_option("--poses", source.poses, "poses of the tool: TUM text, or EuRoC-like CSV");
+  command.add_option("--points", source.points,
+                     "marker positions instead: CSV time_s,x_m,y_m,z_m, unlabelled");
+  command.add_option("--tool", source.tool, "the tool (.toml, .rom, .ini), or pen (built in)");
+  command.add_flag("--of-tip", source.of_tip,
+                   "the poses are of the tool's tip, as in a run's tip.tum");
+}
+
+void finish_calibration(const CalibrationOutput& output, const Figures& figures,
+                        const std::vector<CalibrationFile>& files) {
+  std::fputs(figures_table(figures).c_str(), stdout);
+  for (const CalibrationFile& file : files) {
+    const std::string path = (std::filesystem::path(output.out) / file.name).string();
+    write_text(path, file.text);
+    std::printf("written  %s\n", path.c_str());
+  }
+  write_json(output.json, figures);
+}
+
+void add_calibrate(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "calibrate", "Find a tool's tip, axis and markers, a lens, an offset, from measurements");
+  command->require_subcommand(1);
+  command->footer("Example: glint calibrate pivot --poses tip.tum --of-tip --tool pen.toml");
+  add_calibrate_pivot(*command, exit_code);
+  add_calibrate_spin(*command, exit_code);
+}
+
+}  // namespace glint
