@@ -13,7 +13,8 @@
 namespace glint {
 namespace {
 
-constexpr int k_first_look = 30;  // poses before the tip's sigma is first looked at
+constexpr int k_first_look =
+    k_pivot_noise_poses_min;  // poses before the tip's sigma is first looked at
 constexpr int k_refine_rounds = 3;
 
 std::vector<PivotSample> samples_of(std::span<const StampedPose> poses, const Vector3& centre_m) {
@@ -135,16 +136,18 @@ PivotResult calibrate_pivot(std::span<const StampedPose> poses, const PivotSetti
 
   PivotResult result;
   result.poses_used = static_cast<int>(samples.size());
+  const bool few = result.poses_used < k_pivot_noise_poses_min;
+  const double gate = (few ? 9 : 1) * settings.inlier_chi_square;
   for (int round = 0; round < k_refine_rounds; ++round) {
-    set_noise(samples, pivot_noise(samples, point));
-    result.kept = near_ones(samples, point, settings.inlier_chi_square);
+    set_noise(samples, few ? pivot_noise_alike(samples, point) : pivot_noise(samples, point));
+    result.kept = near_ones(samples, point, gate);
     const std::vector<StampedPose> moved =
         kept_of(std::vector(poses.begin(), poses.end()), result.kept);
     result.spread = rotation_spread(moved);
     check_motion(result, settings, what);
-    const bool first = round == 0;
-    point = first ? refined_pivot(samples, point, PivotLoss::cauchy)
-                  : refined_pivot(kept_of(samples, result.kept), point, PivotLoss::none);
+    point = few          ? plain_pivot(kept_of(samples, result.kept))
+            : round == 0 ? refined_pivot(samples, point, PivotLoss::cauchy)
+                         : refined_pivot(kept_of(samples, result.kept), point, PivotLoss::none);
   }
 
   const std::vector<PivotSample> kept = kept_of(samples, result.kept);

@@ -27,6 +27,9 @@ struct PivotSettings {
 };
 
 inline constexpr int k_pivot_poses_min = 12;
+// Fewer do not tell which noise is whose: they get plain least squares, and only what is off by
+// three times the usual gate is left out.
+inline constexpr int k_pivot_noise_poses_min = 30;
 
 struct PivotResult {
   Vector3 tip_m = Vector3::Zero();   // tool frame

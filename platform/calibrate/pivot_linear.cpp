@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "platform/calibrate/robust.hpp"
 
@@ -30,6 +31,10 @@ PivotPoint weighted_pivot(std::span<const PivotSample> samples, std::span<const 
   }
   const Eigen::Matrix<double, 6, 1> solution = normal.ldlt().solve(right);
   return {solution.head<3>(), solution.tail<3>()};
+}
+
+PivotPoint plain_pivot(std::span<const PivotSample> samples) {
+  return weighted_pivot(samples, std::vector<double>(samples.size(), 1.0));
 }
 
 Vector3 pivot_miss(const PivotSample& sample, const PivotPoint& point) {
@@ -70,15 +75,18 @@ PivotNoise pivot_noise(std::span<const PivotSample> samples, const PivotPoint& p
   }
   const double position = std::max(sigma_of(along), k_position_sigma_min_m);
   const double sideways = sigma_of(across);
-  PivotNoise noise{position, k_rotation_sigma_min_rad};
-  if (lever > 1e-3 && sideways > position) {
-    noise.rotation_sigma_rad = std::max(
-        std::sqrt(sideways * sideways - position * position) / lever, k_rotation_sigma_min_rad);
-  } else {
-    noise.position_sigma_m = std::max(
-        std::hypot(position, std::sqrt(2.0) * sideways) / std::sqrt(3.0), k_position_sigma_min_m);
+  if (!(lever > 1e-3 && sideways > position)) return pivot_noise_alike(samples, point);
+  const double turned = std::sqrt(sideways * sideways - position * position) / lever;
+  return {position, std::max(turned, k_rotation_sigma_min_rad)};
+}
+
+PivotNoise pivot_noise_alike(std::span<const PivotSample> samples, const PivotPoint& point) {
+  std::vector<double> components;
+  for (const PivotSample& sample : samples) {
+    const Vector3 miss = pivot_miss(sample, point);
+    for (int axis = 0; axis < 3; ++axis) components.push_back(miss[axis]);
   }
-  return noise;
+  return {std::max(sigma_of(components), k_position_sigma_min_m), k_rotation_sigma_min_rad};
 }
 
 Matrix3 miss_covariance(const PivotSample& sample, const PivotPoint& point) {

@@ -17,6 +17,9 @@ struct PivotPoint {
 [[nodiscard]] PivotPoint weighted_pivot(std::span<const PivotSample> samples,
                                         std::span<const double> weights);
 
+// Every sample weighs one.
+[[nodiscard]] PivotPoint plain_pivot(std::span<const PivotSample> samples);
+
 // The same with Huber's weights, from the median of the distances: deaf to a third of wild samples.
 [[nodiscard]] PivotPoint robust_pivot(std::span<const PivotSample> samples);
 
@@ -29,6 +32,10 @@ struct PivotNoise {
   double rotation_sigma_rad = 0;
 };
 [[nodiscard]] PivotNoise pivot_noise(std::span<const PivotSample> samples, const PivotPoint& point);
+
+// All of it taken for the position's, alike in all directions.
+[[nodiscard]] PivotNoise pivot_noise_alike(std::span<const PivotSample> samples,
+                                           const PivotPoint& point);
 
 // What a miss's covariance is expected to be: position's alike in all directions, rotation's across
 // the lever.

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "platform/experiments/centroid_experiment.hpp"
+#include "platform/experiments/cis_pivot.hpp"
 
 namespace glint {
 
@@ -10,6 +11,8 @@ std::span<const CaseExperiment> case_experiments() {
   static const std::vector<CaseExperiment> k_experiments = {
       {"centroid", "rendered spheres: how far centroids are off, and whether they say so", false,
        run_centroid_experiment},
+      {"cis_pivot", "pivot posts and two-body tips of a course, against its answers", true,
+       run_cis_pivot},
   };
   return k_experiments;
 }

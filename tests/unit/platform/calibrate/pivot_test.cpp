@@ -71,6 +71,17 @@ TEST(Pivot, TakesPosesThatRepeatForOne) {
   EXPECT_LT(repeated, 2.0 * once);
 }
 
+TEST(Pivot, TrustsFewPosesAlikeButNotAWildOne) {
+  const TurnSettings turn{.position_sigma_m = 0.0005, .rotation_sigma_rad = 0.002};
+  std::vector<StampedPose> poses = turned_poses(turn, 20);
+  EXPECT_EQ(calibrate_pivot(poses, {}, "few").outliers, 0);
+  poses[7].pose.translation.x() += 0.1;
+  const PivotResult result = calibrate_pivot(poses, {}, "few");
+  EXPECT_EQ(result.outliers, 1);
+  EXPECT_FALSE(result.kept[7]);
+  EXPECT_LT((result.tip_m - turn.tip_m).norm(), 0.002);
+}
+
 TEST(Pivot, StopsAsSoonAsTheTipIsKnownWellEnough) {
   const TurnSettings turn{.position_sigma_m = 0.0005, .rotation_sigma_rad = 0.002};
   PivotSettings settings;
