@@ -25,6 +25,16 @@ std::string quoted(std::string_view text) {
 
 }  // namespace
 
+std::string file_name_of(const Tool& tool) {
+  std::string name = tool.name.data();
+  for (char& c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '_';
+    if (!plain) c = '_';
+  }
+  return name;
+}
+
 std::string tool_toml_text(const Tool& tool, std::string_view comment) {
   std::string text;
   std::istringstream lines{std::string(comment)};

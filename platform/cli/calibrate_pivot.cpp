@@ -58,7 +58,7 @@ int run_pivot(const PivotArguments& arguments) {
     tool.tip_m = result.tip_m;
     const std::string from = "tip by glint calibrate pivot from " + series.what + ", sigma " +
                              say_mm(result.tip_sigma_m);
-    files.push_back({std::string(tool.name.data()) + ".toml", tool_toml_text(tool, from)});
+    files.push_back({file_name_of(tool) + ".toml", tool_toml_text(tool, from)});
   }
   finish_calibration(arguments.output, figures, files);
   return result.sigma_reached ? 0 : 1;

@@ -67,7 +67,7 @@ int run_spin(const SpinArguments& arguments) {
   if (series.tool) {
     const std::string from = "z along the axis by glint calibrate spin from " + series.what +
                              ", sigma " + say_degrees(result.axis_sigma_rad);
-    files.push_back({std::string(series.tool->name.data()) + ".toml",
+    files.push_back({file_name_of(*series.tool) + ".toml",
                      tool_toml_text(turned_to_axis(*series.tool, result.axis), from)});
   }
   finish_calibration(arguments.output, figures, files);

@@ -41,6 +41,7 @@ void add_calibrate(CLI::App& app, int& exit_code) {
   command->footer("Example: glint calibrate pivot --poses tip.tum --of-tip --tool pen.toml");
   add_calibrate_pivot(*command, exit_code);
   add_calibrate_spin(*command, exit_code);
+  add_calibrate_tool(*command, exit_code);
 }
 
 }  // namespace glint

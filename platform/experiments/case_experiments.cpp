@@ -4,6 +4,7 @@
 
 #include "platform/experiments/centroid_experiment.hpp"
 #include "platform/experiments/cis_pivot.hpp"
+#include "platform/experiments/marker_mocap.hpp"
 
 namespace glint {
 
@@ -13,6 +14,8 @@ std::span<const CaseExperiment> case_experiments() {
        run_centroid_experiment},
       {"cis_pivot", "pivot posts and two-body tips of a course, against its answers", true,
        run_cis_pivot},
+      {"marker_mocap", "a real probe's markers from unlabelled points, and its tip on a landmark",
+       true, run_marker_mocap},
   };
   return k_experiments;
 }

@@ -13,7 +13,7 @@
 #include "kernels/pose/rigid_fit.hpp"
 #include "platform/sensors/points_csv.hpp"
 #include "platform/session/replay_points.hpp"
-#include "tests/accuracy/c3d_reader.hpp"
+#include "platform/sensors/c3d_reader.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
 
 namespace glint {
@@ -41,7 +41,7 @@ Tool probe_from(const std::string& path) {
 }
 
 // The labelled probe markers of a frame, NaN where missing.
-std::vector<Vector3> probe_markers(const test::C3dTrial& trial, std::size_t frame) {
+std::vector<Vector3> probe_markers(const C3dTrial& trial, std::size_t frame) {
   std::vector<Vector3> markers;
   for (int i = 1; i <= 6; ++i) {
     const int index = trial.index_of("Probe" + std::to_string(i));
@@ -62,7 +62,7 @@ RigidFit labelled_fit(const Tool& probe, const std::vector<Vector3>& markers) {
 }
 
 // The trial as the file that a user would hand in: rows shuffled within their frame, no labels.
-void write_shuffled(const test::C3dTrial& trial, const std::string& path) {
+void write_shuffled(const C3dTrial& trial, const std::string& path) {
   test::Random random(1);
   std::ofstream out(path);
   out << "time_s,x_m,y_m,z_m\n";
@@ -100,7 +100,7 @@ TEST_P(ProbePoints, AreSolvedInEveryFrameWhereTheLabelsPutTheTip) {
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path << "; set GLINT_TEST_DATA";
   const Tool probe = probe_from(data_folder() + "ktk_probe_geometry.csv");
   ASSERT_EQ(probe.marker_count, 6);
-  const test::C3dTrial trial = test::C3dFile(path).read();
+  const C3dTrial trial = C3dFile(path).read();
   ASSERT_EQ(trial.frames.size(), 140u);
   const std::string csv = testing::TempDir() + "probe_points_" + std::to_string(getpid()) + ".csv";
   write_shuffled(trial, csv);

@@ -15,7 +15,7 @@
 
 #include "kernels/geometry.hpp"
 
-namespace glint::test {
+namespace glint {
 
 struct C3dTrial {
   double rate_hz = 0;
@@ -86,6 +86,7 @@ class C3dFile {
       const int group = static_cast<std::int8_t>(byte(at + 1));
       if (length == 0) break;
       const auto size = static_cast<std::size_t>(length);
+      if (at + 4 + size > bytes_.size()) break;
       const std::string name(bytes_.begin() + static_cast<std::ptrdiff_t>(at + 2),
                              bytes_.begin() + static_cast<std::ptrdiff_t>(at + 2 + size));
       const std::size_t body = at + 2 + size;
@@ -112,4 +113,4 @@ class C3dFile {
   std::vector<char> bytes_;
 };
 
-}  // namespace glint::test
+}  // namespace glint

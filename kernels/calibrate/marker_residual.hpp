@@ -1,0 +1,24 @@
+// What is left between a measured marker and the tool's, both tool and pose unknown.
+//
+// What:     (R marker + t - measured) / sigma.
+// Cost:     one quaternion product; no loop.
+// Worst:    every input alike; sigma must be positive.
+// Accuracy: to rounding.
+// Source:   Triggs et al. 2000, "Bundle adjustment: a modern synthesis", section 2 (structure and
+//           poses at once), for points measured in three dimensions.
+#pragma once
+
+#include "kernels/calibrate/scalar.hpp"
+
+namespace glint {
+
+template <class Scalar>
+[[nodiscard]] Vector3Of<Scalar> marker_residual(const Vector3& measured_m, double sigma_m,
+                                                const QuaternionOf<Scalar>& rotation,
+                                                const Vector3Of<Scalar>& translation_m,
+                                                const Vector3Of<Scalar>& marker_m) noexcept {
+  return (rotated(rotation, marker_m) + translation_m - measured_m.cast<Scalar>()) /
+         Scalar(sigma_m);
+}
+
+}  // namespace glint

@@ -1,0 +1,206 @@
+#include "platform/calibrate/tool_geometry.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "kernels/pose/rigid_fit.hpp"
+#include "platform/calibrate/frame_labels.hpp"
+#include "platform/calibrate/rotation_spread.hpp"
+#include "platform/calibrate/say.hpp"
+#include "platform/calibrate/tool_round.hpp"
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+constexpr int k_seeds_max = 5;
+constexpr double k_noise_share_max = 0.1;  // of the tool's size
+constexpr double k_labelled_share_min = 0.5;
+constexpr double k_line_noises = 5;  // beside a line by less than this, nobody knows which way
+constexpr const char* k_on_a_line =
+    ": the points that recur are fewer than 3 or lie on a line; expected 3 or more markers that do "
+    "not";
+
+Tool tool_of(const std::vector<Vector3>& markers_m) {
+  Tool tool;
+  for (const Vector3& marker : markers_m) {
+    tool.markers_m[static_cast<std::size_t>(tool.marker_count++)] = marker;
+  }
+  if (prepare_tool(tool) != Reason::none) tool.marker_count = 0;
+  return tool;
+}
+
+// The largest number of points that a tenth of the frames have.
+std::size_t usual_most(std::span<const PointFrame> frames, const std::string& what) {
+  std::map<std::size_t, int> counts;
+  for (const PointFrame& frame : frames) ++counts[frame.points_m.size()];
+  std::size_t most = 0;
+  for (const auto& [points, count] : counts) {
+    if (points <= static_cast<std::size_t>(k_markers_per_tool_max) &&
+        10 * count >= static_cast<int>(frames.size()))
+      most = points;
+  }
+  if (most >= 3) return most;
+  throw InputError(what + ": hardly a frame has 3 to " + std::to_string(k_markers_per_tool_max) +
+                   " points; expected a tool's markers: show all of them, cover other reflectors");
+}
+
+int markers_in(const std::vector<Labeling>& labels) {
+  int sum = 0;
+  for (const Labeling& label : labels) sum += label.count;
+  return sum;
+}
+
+// The frame of the longest segment whose points, taken for the tool, are found most often in it.
+NamedFrames begin_with(std::span<const PointFrame> frames, const Segment& segment,
+                       std::size_t points, double noise_m) {
+  std::vector<std::size_t> seeds;
+  for (std::size_t f = segment.begin; f < segment.end; ++f) {
+    if (frames[f].points_m.size() == points) seeds.push_back(f);
+  }
+  NamedFrames best;
+  const std::size_t step = seeds.size() / k_seeds_max + 1;
+  for (std::size_t i = 0; i < seeds.size(); i += step) {
+    const Tool tool = tool_of(frames[seeds[i]].points_m);
+    if (tool.marker_count == 0) continue;
+    std::vector<Labeling> labels = label_segment(frames, segment, tool, noise_m);
+    if (markers_in(labels) > markers_in(best.labels)) best = {tool, std::move(labels)};
+  }
+  return best;
+}
+
+double longest_side(const std::vector<Vector3>& markers) {
+  double longest = 0;
+  for (const Vector3& a : markers)
+    for (const Vector3& b : markers) longest = std::max(longest, (a - b).norm());
+  return longest;
+}
+
+// Turns the markers about their middle to their principal axes, the longest first; the farthest
+// marker along x and along y lies on the positive side.
+void turn_to_axes(std::vector<Vector3>& markers) {
+  Vector3 middle = Vector3::Zero();
+  for (const Vector3& m : markers) middle += m / static_cast<double>(markers.size());
+  Matrix3 spread = Matrix3::Zero();
+  for (Vector3& m : markers) {
+    m -= middle;
+    spread += m * m.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(spread);
+  Matrix3 axes;
+  for (int axis = 0; axis < 2; ++axis) {
+    Vector3 direction = solver.eigenvectors().col(2 - axis);
+    const auto farther = [&](const Vector3& a, const Vector3& b) {
+      return std::abs(direction.dot(a)) < std::abs(direction.dot(b));
+    };
+    if (direction.dot(*std::max_element(markers.begin(), markers.end(), farther)) < 0) {
+      direction = -direction;
+    }
+    axes.row(axis) = direction.transpose();
+  }
+  axes.row(2) = axes.row(0).cross(axes.row(1));
+  for (Vector3& m : markers) m = axes * m;
+}
+
+// Whether the second of the markers' principal spreads is not clearly more than their noise.
+bool on_a_line(const std::vector<Vector3>& markers, double noise_m) {
+  Vector3 middle = Vector3::Zero();
+  for (const Vector3& m : markers) middle += m / static_cast<double>(markers.size());
+  Matrix3 spread = Matrix3::Zero();
+  for (const Vector3& m : markers) spread += (m - middle) * (m - middle).transpose();
+  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(spread / static_cast<double>(markers.size()));
+  return solver.eigenvalues()[1] < k_line_noises * k_line_noises * noise_m * noise_m;
+}
+
+void check_enough(const ToolRound& round, std::size_t frames, const std::string& what) {
+  const auto used = static_cast<double>(round.frames.size());
+  if (!round.points.empty() && used >= k_labelled_share_min * static_cast<double>(frames) &&
+      round.noise_m <= k_noise_share_max * longest_side(round.bundle.markers_m))
+    return;
+  throw InputError(what + ": the points of " + std::to_string(round.frames.size()) + " of " +
+                   std::to_string(frames) + " frames fit one rigid tool, within " +
+                   say_mm(round.noise_m) + "; expected at least half of them: one tool alone, " +
+                   "3 or more of its markers in most frames");
+}
+
+ToolGeometry geometry_of(const ToolRound& round, const ToolGeometrySettings& settings) {
+  ToolGeometry geometry;
+  geometry.markers_m = round.bundle.markers_m;
+  geometry.seen = seen_by_marker(round);
+  geometry.noise_m = round.noise_m;
+  geometry.marker_sigma_m = marker_sigmas(round.bundle, round.points, round.noise_m);
+  geometry.frames_used = static_cast<int>(round.frames.size());
+  geometry.points_used = static_cast<int>(round.points.size());
+  std::vector<double> squares(round.frames.size(), 0), count(round.frames.size(), 0);
+  for (const LabelledPoint& point : round.points) {
+    squares[point.frame] += bundle_miss(round.bundle, point).squaredNorm();
+    ++count[point.frame];
+  }
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    geometry.residuals_m.push_back(std::sqrt(squares[i] / count[i]));
+  }
+  std::vector<StampedPose> poses;
+  for (const Pose& pose : round.bundle.poses) poses.push_back({Time{}, pose});
+  geometry.turn_rad = rotation_spread(poses).spread_rad[0];
+  turn_to_axes(geometry.markers_m);
+  if (settings.longest_side_m > 0) {
+    geometry.scale = settings.longest_side_m / longest_side(geometry.markers_m);
+    for (Vector3& marker : geometry.markers_m) marker *= geometry.scale;
+    for (double& sigma : geometry.marker_sigma_m) sigma *= geometry.scale;
+  }
+  return geometry;
+}
+
+}  // namespace
+
+ToolGeometry calibrate_tool(std::span<const PointFrame> frames,
+                            const ToolGeometrySettings& settings, const std::string& what) {
+  if (frames.size() < static_cast<std::size_t>(k_tool_frames_min)) {
+    throw InputError(what + ": " + std::to_string(frames.size()) + " frames; expected at least " +
+                     std::to_string(k_tool_frames_min) + " of the tool in motion");
+  }
+  const std::vector<Segment> segments = segments_of(frames, settings.step_max_m);
+  const Segment longest =
+      *std::max_element(segments.begin(), segments.end(),
+                        [](const Segment& a, const Segment& b) { return a.length() < b.length(); });
+
+  const double first_noise_m = std::sqrt(2.0) * settings.noise_m;  // two frames differ by this
+  NamedFrames named = begin_with(frames, longest, usual_most(frames, what), first_noise_m);
+  ToolRound round = round_of(frames, longest.begin, named);
+  if (named.tool.marker_count == 0) throw InputError(what + k_on_a_line);
+  if (round.points.empty()) check_enough(round, longest.length(), what);
+  fit(round, first_noise_m);
+  for (int i = 1; i < settings.rounds; ++i) {
+    if (on_a_line(round.bundle.markers_m, round.noise_m)) throw InputError(what + k_on_a_line);
+    check_enough(round, i == 1 ? longest.length() : frames.size(), what);
+    named.tool = tool_of(next_markers(frames, round, settings.seen_min));
+    if (named.tool.marker_count == 0) throw InputError(what + k_on_a_line);
+    named.labels.clear();
+    for (const Segment& segment : segments) {
+      const std::vector<Labeling> labels =
+          label_segment(frames, segment, named.tool, 1.2 * round.noise_m);
+      named.labels.insert(named.labels.end(), labels.begin(), labels.end());
+    }
+    const double noise_m = round.noise_m;
+    round = round_of(frames, 0, named);
+    if (round.points.empty()) break;
+    fit(round, noise_m);
+  }
+  check_enough(round, frames.size(), what);
+
+  ToolGeometry geometry = geometry_of(round, settings);
+  geometry.frames = static_cast<int>(frames.size());
+  geometry.segments = static_cast<int>(segments.size());
+  for (const PointFrame& frame : frames) geometry.points += static_cast<int>(frame.points_m.size());
+  if (geometry.turn_rad < settings.turn_min_rad) {
+    throw InputError(what + ": the tool's steadiest direction turned by only " +
+                     say_degrees(geometry.turn_rad) + " rms; expected at least " +
+                     say_degrees(settings.turn_min_rad) + ": turn the tool to all sides");
+  }
+  return geometry;
+}
+
+}  // namespace glint
