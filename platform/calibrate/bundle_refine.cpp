@@ -1,9 +1,8 @@
 #include <ceres/ceres.h>
 
-#include <array>
-
 #include "kernels/calibrate/marker_residual.hpp"
 #include "platform/calibrate/bundle.hpp"
+#include "platform/calibrate/pose_block.hpp"
 
 namespace glint {
 namespace {
@@ -11,11 +10,6 @@ namespace {
 constexpr int k_iterations_max = 100;
 constexpr double k_cauchy_sigmas = 3;
 constexpr double k_unit_m = 1e-3;  // residuals in millimetres: near one
-
-// A pose as one block, so that it can be eliminated: x, y, z, w of the rotation, then the place.
-using PoseBlock = std::array<double, 7>;
-using PoseManifold =
-    ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>>;
 
 struct MarkerCost {
   Vector3 measured_m;
@@ -30,16 +24,6 @@ struct MarkerCost {
     return true;
   }
 };
-
-PoseBlock block_of(const Pose& pose) {
-  const auto& q = pose.rotation.coeffs();
-  const Vector3& t = pose.translation;
-  return {q[0], q[1], q[2], q[3], t[0], t[1], t[2]};
-}
-
-Pose pose_of(const PoseBlock& block) {
-  return {Quaternion(block.data()).normalized(), Vector3(block[4], block[5], block[6])};
-}
 
 }  // namespace
 

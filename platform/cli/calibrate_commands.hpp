@@ -12,6 +12,7 @@ namespace glint {
 void add_calibrate_pivot(CLI::App& calibrate, int& exit_code);
 void add_calibrate_spin(CLI::App& calibrate, int& exit_code);
 void add_calibrate_tool(CLI::App& calibrate, int& exit_code);
+void add_calibrate_align(CLI::App& calibrate, int& exit_code);
 
 struct CalibrationOutput {
   std::string out = "out";
