@@ -4,6 +4,7 @@
 
 #include "platform/experiments/centroid_experiment.hpp"
 #include "platform/experiments/cis_pivot.hpp"
+#include "platform/experiments/f2554.hpp"
 #include "platform/experiments/marker_mocap.hpp"
 
 namespace glint {
@@ -16,6 +17,8 @@ std::span<const CaseExperiment> case_experiments() {
        run_cis_pivot},
       {"marker_mocap", "a real probe's markers from unlabelled points, and its tip on a landmark",
        true, run_marker_mocap},
+      {"f2554", "a tip on one point, turned about each axis, and from point to point", false,
+       run_f2554},
   };
   return k_experiments;
 }

@@ -85,4 +85,21 @@ NpyArray read_npy_float32(const std::string& path) {
   return out;
 }
 
+std::string npy_float32_bytes(const NpyArray& array) {
+  std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (";
+  for (const std::size_t n : array.shape) header += std::to_string(n) + ", ";
+  header += ")}";
+  // NumPy ends the header with a line feed so that the data begin at a multiple of 64.
+  header.append(64 - (10 + header.size() + 1) % 64, ' ');
+  header += '\n';
+  std::string bytes(k_magic, k_magic_length);
+  bytes += {'\x01', '\x00', static_cast<char>(header.size() & 0xFF),
+            static_cast<char>(header.size() >> 8)};
+  bytes += header;
+  const std::size_t at = bytes.size(), size = array.values.size() * sizeof(float);
+  bytes.resize(at + size);
+  if (size > 0) std::memcpy(bytes.data() + at, array.values.data(), size);
+  return bytes;
+}
+
 }  // namespace glint

@@ -1,4 +1,4 @@
-// Reads an array that NumPy saved: little-endian float32 in C order, nothing else.
+// Arrays as NumPy saves them: little-endian float32 in C order, nothing else.
 #pragma once
 
 #include <cstddef>
@@ -14,5 +14,8 @@ struct NpyArray {
 
 // Throws InputError naming the file, the place and what was expected.
 [[nodiscard]] NpyArray read_npy_float32(const std::string& path);
+
+// The file that read_npy_float32 reads back.
+[[nodiscard]] std::string npy_float32_bytes(const NpyArray& array);
 
 }  // namespace glint

@@ -1,0 +1,173 @@
+#include "platform/calibrate/board.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "platform/calibrate/say.hpp"
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+const cv::Size k_corner_window(4, 4);         // half of it: no neighbour is so near
+constexpr double k_white_percentile = 0.999;  // a lamp does not make the board dark
+
+// Eight bits, the brightest thousandth white.
+cv::Mat eight_bits(const cv::Mat& picture) {
+  cv::Mat values;
+  picture.reshape(1, 1).convertTo(values, CV_32F);
+  std::vector<float> sorted(values.begin<float>(), values.end<float>());
+  const auto at =
+      static_cast<std::ptrdiff_t>(k_white_percentile * static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
+  const double white = std::max(1.0f, sorted[static_cast<std::size_t>(at)]);
+  cv::Mat result;
+  picture.convertTo(result, CV_8U, 255.0 / white);
+  return result;
+}
+
+cv::Mat load(const std::string& path, const cv::Size& size) {
+  const cv::Mat picture = cv::imread(path, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH);
+  if (picture.empty()) throw InputError(path + ": cannot be read; expected a PNG or PGM picture");
+  if (size.area() > 0 && picture.size() != size) {
+    throw InputError(path + ": " + std::to_string(picture.cols) + " x " +
+                     std::to_string(picture.rows) + " pixels; expected " +
+                     std::to_string(size.width) + " x " + std::to_string(size.height) +
+                     " like the first picture");
+  }
+  return eight_bits(picture);
+}
+
+bool find(const cv::Mat& picture, const BoardSettings& settings, std::vector<cv::Point2f>& found) {
+  const cv::Size size(settings.columns, settings.rows);
+  if (settings.pattern == BoardPattern::circles) return cv::findCirclesGrid(picture, size, found);
+  if (!cv::findChessboardCornersSB(picture, size, found, cv::CALIB_CB_NORMALIZE_IMAGE))
+    return false;
+  cv::cornerSubPix(picture, found, k_corner_window, {-1, -1},
+                   {cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 50, 1e-3});
+  return true;
+}
+
+// How far the boards' normals spread: the root mean square of their angle to the mean one.
+double tilt_of(const std::vector<cv::Mat>& rotations) {
+  std::vector<Vector3> normals;
+  Vector3 sum = Vector3::Zero();
+  for (const cv::Mat& vector : rotations) {
+    cv::Mat matrix;
+    cv::Rodrigues(vector, matrix);
+    normals.emplace_back(matrix.at<double>(0, 2), matrix.at<double>(1, 2), matrix.at<double>(2, 2));
+    sum += normals.back();
+  }
+  double squares = 0;
+  for (const Vector3& normal : normals) squares += normal.cross(sum.normalized()).squaredNorm();
+  return std::sqrt(squares / static_cast<double>(normals.size()));
+}
+
+CameraModel model_of(const cv::Mat& matrix, const cv::Mat& distortion, const cv::Size& size,
+                     Lens lens) {
+  CameraModel model;
+  model.lens = lens;
+  model.width = size.width;
+  model.height = size.height;
+  model.fx = matrix.at<double>(0, 0);
+  model.fy = matrix.at<double>(1, 1);
+  model.cx = matrix.at<double>(0, 2) + 0.5;  // OpenCV's pixel centres are at integers
+  model.cy = matrix.at<double>(1, 2) + 0.5;
+  const int count = lens == Lens::rational ? 8 : 5;
+  for (int i = 0; i < count; ++i) {
+    model.distortion[static_cast<std::size_t>(i)] = distortion.at<double>(i);
+  }
+  return model;
+}
+
+struct Views {
+  cv::Size size;
+  std::vector<std::vector<cv::Point2f>> seen;
+  std::vector<std::vector<cv::Point3f>> board;
+};
+
+Views find_boards(const std::vector<std::string>& images, const BoardSettings& settings) {
+  std::vector<cv::Point3f> board;
+  const auto spacing = static_cast<float>(settings.spacing_m);
+  for (int row = 0; row < settings.rows; ++row)
+    for (int column = 0; column < settings.columns; ++column)
+      board.emplace_back(spacing * static_cast<float>(column), spacing * static_cast<float>(row),
+                         0);
+  Views views;
+  for (const std::string& path : images) {
+    const cv::Mat picture = load(path, views.size);
+    views.size = picture.size();
+    std::vector<cv::Point2f> found;
+    if (!find(picture, settings, found)) continue;
+    views.seen.push_back(found);
+    views.board.push_back(board);
+  }
+  if (views.seen.size() >= k_board_images_min) return views;
+  throw InputError("--images: a board of " + std::to_string(settings.columns) + " x " +
+                   std::to_string(settings.rows) + " was found in " +
+                   std::to_string(views.seen.size()) + " of " + std::to_string(images.size()) +
+                   " pictures; expected at least " + std::to_string(k_board_images_min) +
+                   ": count the inner corners (or circles) of a row and of a column, and show " +
+                   "the whole board");
+}
+
+}  // namespace
+
+BoardFit calibrate_board(const std::vector<std::string>& images, const BoardSettings& settings) {
+  const Views views = find_boards(images, settings);
+  cv::Mat matrix, distortion;
+  std::vector<cv::Mat> rotations, translations;
+  const int flags = settings.lens == Lens::rational ? cv::CALIB_RATIONAL_MODEL : 0;
+  cv::calibrateCamera(views.board, views.seen, views.size, matrix, distortion, rotations,
+                      translations, flags);
+  BoardFit fit;
+  fit.tilt_rad = tilt_of(rotations);
+  if (fit.tilt_rad < settings.tilt_min_rad) {
+    throw InputError("--images: the board's normal moved by only " + say_degrees(fit.tilt_rad) +
+                     " rms, so the focal length stays open; expected at least " +
+                     say_degrees(settings.tilt_min_rad) + ": tilt the board to all sides");
+  }
+  fit.model = model_of(matrix, distortion, views.size, settings.lens);
+  fit.images = static_cast<int>(images.size());
+  fit.images_used = static_cast<int>(views.seen.size());
+  double sum = 0;
+  for (std::size_t i = 0; i < views.seen.size(); ++i) {
+    std::vector<cv::Point2f> projected;
+    cv::projectPoints(views.board[i], rotations[i], translations[i], matrix, distortion, projected);
+    double squares = 0;
+    for (std::size_t k = 0; k < projected.size(); ++k) {
+      const cv::Point2f miss = projected[k] - views.seen[i][k];
+      const double length = std::hypot(miss.x, miss.y);
+      squares += length * length;
+      fit.most_px = std::max(fit.most_px, length);
+      const double x = (views.seen[i][k].x + 0.5 - fit.model.cx) / fit.model.fx;
+      const double y = (views.seen[i][k].y + 0.5 - fit.model.cy) / fit.model.fy;
+      fit.model.field_tangent_max = std::max(fit.model.field_tangent_max, std::hypot(x, y));
+    }
+    fit.corners += static_cast<int>(projected.size());
+    fit.image_rms_px.push_back(std::sqrt(squares / static_cast<double>(projected.size())));
+    sum += squares;
+  }
+  fit.rms_px = std::sqrt(sum / (2.0 * fit.corners));
+  return fit;
+}
+
+std::vector<float> ray_table_of(const CameraModel& model) {
+  CameraModel whole = model;
+  whole.field_tangent_max = 0;
+  std::vector<float> rays;
+  for (int v = 0; v < model.height; ++v) {
+    for (int u = 0; u < model.width; ++u) {
+      const Result<Vector3> ray = unproject(whole, Vector2(u + 0.5, v + 0.5));
+      for (int axis = 0; axis < 3; ++axis) {
+        rays.push_back(ray ? static_cast<float>(ray.value[axis]) : 0.0f);
+      }
+    }
+  }
+  return rays;
+}
+
+}  // namespace glint
