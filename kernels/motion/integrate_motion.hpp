@@ -1,0 +1,48 @@
+// Where a tool will be, by integrating its motion: the equations themselves, no closed form.
+//
+// What:     p' = v, v' = a exp(-c t); q' = w q / 2, w' = b exp(-d t) (fixed axes), by the classical
+//           fourth-order method in k_integration_steps equal steps of SUNDIALS' ERKStep.
+// Cost:     always the same steps, 4 evaluations each: 5 us.
+// Worst:    nothing depends on the input. Unprepared: Reason::not_prepared.
+// Accuracy: against CVODE at 1e-12, hand-held speeds (3 rad/s): 2e-7 rad after 50 ms, 1e-4 after
+//           250 ms; damping may be large, for it is no feedback here.
+// Source:   Kutta 1901 (the method); Reynolds et al. 2023, ARKODE, ACM Transactions on Mathematical
+//           Software 49(2); quaternion kinematics: Sola 2017, Quaternion kinematics for the
+//           error-state Kalman filter, section 1.5.
+#pragma once
+
+#include <memory>
+
+#include "kernels/motion/motion_filter.hpp"
+#include "kernels/motion/motion_state.hpp"
+#include "kernels/nonblocking.hpp"
+#include "kernels/result.hpp"
+
+namespace glint {
+
+inline constexpr int k_integration_steps = 4;
+
+class MotionIntegrator {
+ public:
+  MotionIntegrator() noexcept;
+  ~MotionIntegrator();
+  MotionIntegrator(MotionIntegrator&&) noexcept;
+  MotionIntegrator& operator=(MotionIntegrator&&) noexcept;
+
+  // The only place that allocates: ends with a step, for ERKStep allocates in its first. Reason:
+  // none, or not_prepared where SUNDIALS refuses.
+  [[nodiscard]] Reason prepare(const MotionSettings& settings) noexcept;
+
+  // The state's pose `ahead` of its time; not before it.
+  [[nodiscard]] Result<Pose> after(const MotionState& state,
+                                   Duration ahead) noexcept GLINT_NONBLOCKING;
+
+ private:
+  struct Workspace;
+  struct Free {
+    void operator()(Workspace* workspace) const noexcept;
+  };
+  std::unique_ptr<Workspace, Free> workspace_;
+};
+
+}  // namespace glint

@@ -1,0 +1,164 @@
+#include "kernels/motion/motion_filter.hpp"
+
+#include "kernels/motion/cholesky.hpp"
+#include "kernels/motion/interpolate.hpp"
+#include "kernels/motion/singer.hpp"
+
+namespace glint {
+namespace {
+
+template <int M>
+using Gain = Eigen::Matrix<double, k_motion_size, M>;
+
+void set_variance(MotionState& state, int block, double variance) {
+  for (int i = 0; i < 3; ++i) state.covariance(block + i, block + i) = variance;
+}
+
+// rows(place) += ..., for the three triples of shift or of rotation; `turn` and `half_turn` carry
+// an earlier error of rotation to the later time.
+void carry_rows(MotionCovariance& p, int place, const SingerStep& step, const Matrix3& turn,
+                const Matrix3& half_turn) {
+  using Rows = Eigen::Matrix<double, 3, k_motion_size>;
+  const int speed = place + 3, acceleration = place + 6;
+  const Rows gathered = step.seconds * p.middleRows<3>(speed) +
+                        step.place_by_acceleration * p.middleRows<3>(acceleration);
+  const Rows turned = turn.lazyProduct(p.middleRows<3>(place));
+  p.middleRows<3>(place) = turned + half_turn.lazyProduct(gathered);
+  p.middleRows<3>(speed) += step.speed_by_acceleration * p.middleRows<3>(acceleration);
+  p.middleRows<3>(acceleration) *= step.acceleration_kept;
+}
+
+void add_noise(MotionCovariance& p, int place, const Matrix3& noise) {
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b)
+      for (int i = 0; i < 3; ++i) p(place + 3 * a + i, place + 3 * b + i) += noise(a, b);
+}
+
+void apply(MotionState& state, const Gain<1>& error) {
+  state.pose.translation += error.segment<3>(k_position);
+  state.velocity_m_s += error.segment<3>(k_velocity);
+  state.acceleration_m_s2 += error.segment<3>(k_acceleration);
+  state.pose.rotation =
+      (from_rotation_vector(error.segment<3>(k_rotation)) * state.pose.rotation).normalized();
+  state.angular_velocity_rad_s += error.segment<3>(k_angular_velocity);
+  state.angular_acceleration_rad_s2 += error.segment<3>(k_angular_acceleration);
+}
+
+// ph: P H'; s: H P H' + R.
+template <int M>
+Correction correct(MotionState& state, const Gain<M>& ph, const Eigen::Matrix<double, M, M>& s,
+                   const Eigen::Matrix<double, M, 1>& innovation) {
+  Correction correction;
+  const Cholesky<M> factor(s);
+  if (!factor.positive) {
+    correction.reason = Reason::degenerate;
+    return correction;
+  }
+  Eigen::Matrix<double, M, k_motion_size> w;
+  for (int i = 0; i < k_motion_size; ++i) w.col(i) = factor.forward(ph.row(i).transpose());
+  const Eigen::Matrix<double, M, 1> whitened = factor.forward(innovation);
+  correction.chi_square = whitened.squaredNorm();
+  apply(state, w.transpose().lazyProduct(whitened));
+  state.covariance -= w.transpose().lazyProduct(w);
+  return correction;
+}
+
+}  // namespace
+
+MotionState start_motion(const UncertainPose& first, const MotionSettings& settings) noexcept {
+  MotionState state;
+  state.time = first.time;
+  state.pose = first.pose;
+  state.covariance.block<3, 3>(k_position, k_position) = first.covariance.topLeftCorner<3, 3>();
+  state.covariance.block<3, 3>(k_position, k_rotation) = first.covariance.topRightCorner<3, 3>();
+  state.covariance.block<3, 3>(k_rotation, k_position) = first.covariance.bottomLeftCorner<3, 3>();
+  state.covariance.block<3, 3>(k_rotation, k_rotation) = first.covariance.bottomRightCorner<3, 3>();
+  set_variance(state, k_velocity, settings.start_speed_m_s * settings.start_speed_m_s);
+  set_variance(state, k_angular_velocity, settings.start_turn_rad_s * settings.start_turn_rad_s);
+  // The stationary variance of a damped acceleration.
+  set_variance(state, k_acceleration,
+               settings.linear_noise_m2_s5 / (2 * settings.linear_damping_1_s));
+  set_variance(state, k_angular_acceleration,
+               settings.angular_noise_rad2_s5 / (2 * settings.angular_damping_1_s));
+  return state;
+}
+
+void propagate(MotionState& state, Time time, const MotionSettings& settings,
+               const NoiseScale& scale) noexcept {
+  if (time <= state.time) return;
+  const double seconds = (time - state.time).seconds();
+  const SingerStep linear = singer_step(settings.linear_damping_1_s, seconds);
+  const SingerStep angular = singer_step(settings.angular_damping_1_s, seconds);
+  const Vector3 turn = angular.seconds * state.angular_velocity_rad_s +
+                       angular.place_by_acceleration * state.angular_acceleration_rad_s2;
+  const Quaternion turned = from_rotation_vector(turn);
+  const Matrix3 turn_matrix = turned.toRotationMatrix();
+  // The left Jacobian of a turn is that of half of it, but for turn^2 / 24.
+  const Matrix3 half_matrix = from_rotation_vector(0.5 * turn).toRotationMatrix();
+
+  state.time = time;
+  state.pose.translation +=
+      linear.seconds * state.velocity_m_s + linear.place_by_acceleration * state.acceleration_m_s2;
+  state.velocity_m_s += linear.speed_by_acceleration * state.acceleration_m_s2;
+  state.acceleration_m_s2 *= linear.acceleration_kept;
+  state.pose.rotation = (turned * state.pose.rotation).normalized();
+  state.angular_velocity_rad_s += angular.speed_by_acceleration * state.angular_acceleration_rad_s2;
+  state.angular_acceleration_rad_s2 *= angular.acceleration_kept;
+
+  MotionCovariance& p = state.covariance;
+  for (int side = 0; side < 2; ++side) {  // F P, then its transpose again: F (F P)'
+    carry_rows(p, k_position, linear, Matrix3::Identity(), Matrix3::Identity());
+    carry_rows(p, k_rotation, angular, turn_matrix, half_matrix);
+    p.transposeInPlace();
+  }
+  // What rounding makes unsymmetric would grow with the square of time.
+  p = (0.5 * (p + p.transpose())).eval();
+  add_noise(p, k_position, (scale.linear * settings.linear_noise_m2_s5) * linear.noise);
+  add_noise(p, k_rotation, (scale.angular * settings.angular_noise_rad2_s5) * angular.noise);
+}
+
+Correction correct_by_pose(MotionState& state, const UncertainPose& measured) noexcept {
+  Gain<6> ph;
+  ph << state.covariance.middleCols<3>(k_position), state.covariance.middleCols<3>(k_rotation);
+  Matrix6 s;
+  s << ph.middleRows<3>(k_position), ph.middleRows<3>(k_rotation);
+  s += measured.covariance;
+  const Vector6 innovation = pose_difference(measured.pose, state.pose);
+  Correction correction = correct<6>(state, ph, s, innovation);
+  if (correction.reason != Reason::none) return correction;
+  correction.linear_chi_square =
+      Cholesky<3>(s.topLeftCorner<3, 3>()).squared_length(innovation.head<3>());
+  correction.angular_chi_square =
+      Cholesky<3>(s.bottomRightCorner<3, 3>()).squared_length(innovation.tail<3>());
+  return correction;
+}
+
+Correction correct_by_point(MotionState& state, const MeasuredPoint& measured) noexcept {
+  const Vector3 lever = state.pose.rotation * measured.model_m;
+  const Matrix3 cross = cross_matrix(lever);  // dR lever = dtheta x lever = -[lever]x dtheta
+  const Gain<3> ph = state.covariance.middleCols<3>(k_position) +
+                     state.covariance.middleCols<3>(k_rotation).lazyProduct(cross);
+  const Matrix3 s = ph.middleRows<3>(k_position) - cross.lazyProduct(ph.middleRows<3>(k_rotation)) +
+                    measured.covariance_m2;
+  const Vector3 innovation = measured.measured_m - (state.pose.translation + lever);
+  Correction correction = correct<3>(state, ph, s, innovation);
+  correction.linear_chi_square = correction.chi_square;
+  return correction;
+}
+
+Vector6 pose_difference(const Pose& measured, const Pose& predicted) noexcept {
+  Vector6 difference;
+  difference << measured.translation - predicted.translation,
+      rotation_vector(measured.rotation * predicted.rotation.conjugate());
+  return difference;
+}
+
+UncertainPose pose_of(const MotionState& state) noexcept {
+  UncertainPose result{state.time, state.pose, {}};
+  const MotionCovariance& p = state.covariance;
+  result.covariance << p.block<3, 3>(k_position, k_position), p.block<3, 3>(k_position, k_rotation),
+      p.block<3, 3>(k_rotation, k_position), p.block<3, 3>(k_rotation, k_rotation);
+  return result;
+}
+
+}  // namespace glint

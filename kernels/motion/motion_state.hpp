@@ -1,0 +1,52 @@
+// What is known of a moving tool at one time: its pose, how that changes, and how sure each is.
+//
+// The pose is that of a frame at the tool's reference point (the middle of its markers), because
+// there shift and rotation are measured nearly apart. Speeds and accelerations are about the fixed
+// axes of the frame that the pose is given in, and so are the errors: p = p^ + dp,
+// R = Exp(dtheta) R^.
+#pragma once
+
+#include "kernels/geometry.hpp"
+#include "kernels/units.hpp"
+
+namespace glint {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+// Where each triple of errors begins.
+inline constexpr int k_position = 0, k_velocity = 3, k_acceleration = 6;
+inline constexpr int k_rotation = 9, k_angular_velocity = 12, k_angular_acceleration = 15;
+inline constexpr int k_motion_size = 18;
+using MotionCovariance = Eigen::Matrix<double, k_motion_size, k_motion_size>;
+
+struct MotionState {
+  Time time;
+  Pose pose;
+  Vector3 velocity_m_s = Vector3::Zero();
+  Vector3 acceleration_m_s2 = Vector3::Zero();
+  Vector3 angular_velocity_rad_s = Vector3::Zero();
+  Vector3 angular_acceleration_rad_s2 = Vector3::Zero();
+  MotionCovariance covariance = MotionCovariance::Zero();
+};
+
+// A pose with its covariance in the order (x, y, z, rx, ry, rz), metres and radians.
+struct UncertainPose {
+  Time time;
+  Pose pose;
+  Matrix6 covariance = Matrix6::Zero();
+};
+
+// One marker, known by its place in the tool's reference frame, seen at `measured_m`.
+struct MeasuredPoint {
+  Vector3 model_m = Vector3::Zero();
+  Vector3 measured_m = Vector3::Zero();
+  Matrix3 covariance_m2 = Matrix3::Zero();
+};
+
+[[nodiscard]] inline Matrix3 cross_matrix(const Vector3& v) {
+  Matrix3 m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+}  // namespace glint

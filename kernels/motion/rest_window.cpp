@@ -1,0 +1,118 @@
+#include "kernels/motion/rest_window.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "kernels/motion/cholesky.hpp"
+#include "kernels/motion/interpolate.hpp"
+#include "kernels/motion/motion_filter.hpp"
+
+namespace glint {
+namespace {
+
+constexpr double k_axes = 6;
+
+}  // namespace
+
+void RestWindow::restart(const UncertainPose& only) {
+  anchor_ = only.pose;
+  time_ = only.time;
+  newest_ = 1;
+  sums_[0] = Sum{};
+  sums_[1] = {Vector6::Zero(), only.covariance, only.time};
+  kept_ = frames_ = 1;
+}
+
+const RestWindow::Sum& RestWindow::sum_before(int frames) const {
+  const int size = k_rest_frames_max + 1;
+  return sums_[static_cast<std::size_t>((newest_ - frames + size) % size)];
+}
+
+RestWindow::Sum RestWindow::newest(int frames) const {
+  const Sum& all = sum_before(0);
+  const Sum& before = sum_before(frames);
+  return {all.place - before.place, all.covariance - before.covariance, all.time};
+}
+
+RestWindow::Halves RestWindow::halves(int frames) const {
+  const int newer_frames = frames / 2;
+  const double newer_share = 1.0 / newer_frames;
+  const double older_share = 1.0 / (frames - newer_frames);
+  const Sum all = newest(frames);
+  const Sum newer = newest(newer_frames);
+  const Sum older{all.place - newer.place, all.covariance - newer.covariance, newer.time};
+  const Cholesky<6> factor(newer_share * newer_share * newer.covariance +
+                           older_share * older_share * older.covariance);
+  const Vector6 difference = newer_share * newer.place - older_share * older.place;
+  if (!factor.positive) return {difference, std::numeric_limits<double>::infinity()};
+  return {difference, factor.squared_length(difference)};
+}
+
+void RestWindow::push(Time time, const Sum& added) {
+  const Sum& before = sum_before(0);
+  const Sum after{before.place + added.place, before.covariance + added.covariance, time};
+  newest_ = (newest_ + 1) % (k_rest_frames_max + 1);
+  sums_[static_cast<std::size_t>(newest_)] = after;
+  time_ = time;
+  kept_ = std::min(kept_ + 1, k_rest_frames_max);
+  frames_ = 1;
+  for (int level = k_rest_levels - 1; level >= 0; --level) {
+    // n, 3/4 n, 1/2 n, 3/8 n ..
+    const int frames = level % 2 == 0 ? kept_ >> level / 2 : 3 * kept_ >> (level / 2 + 2);
+    if (frames < 2) continue;
+    const bool brief = frames <= settings.frames_min;
+    const double limit = brief ? settings.short_chi_square_max : settings.long_chi_square_max;
+    if (!(halves(frames).chi_square <= limit)) {
+      kept_ = brief ? frames_ : kept_ - kept_ / 8;
+      break;
+    }
+    frames_ = frames;
+  }
+}
+
+void RestWindow::add(const UncertainPose& measured) noexcept {
+  Vector6 place = pose_difference(measured.pose, anchor_);
+  const bool near = place.head<3>().norm() <= k_anchor_m && place.tail<3>().norm() <= k_anchor_rad;
+  if (kept_ == 0 || !near || measured.time - time_ > settings.gap_max) {
+    restart(measured);
+    return;
+  }
+  push(measured.time, {place, measured.covariance, measured.time});
+  // In motion the anchor follows.
+  if (kept_ == 1) restart(measured);
+}
+
+Duration RestWindow::length() const {
+  return frames_ < 2 ? Duration{} : sum_before(0).time - sum_before(frames_ - 1).time;
+}
+
+Pose RestWindow::placed(const Vector6& place) const {
+  return {(from_rotation_vector(place.tail<3>()) * anchor_.rotation).normalized(),
+          anchor_.translation + place.head<3>()};
+}
+
+Rest RestWindow::rest() const noexcept {
+  const double share = 1.0 / frames_;
+  const Sum all = newest(frames_);
+  const Matrix6 mean_covariance = share * share * all.covariance;
+  const Halves cut = halves(frames_);
+  // A steady drift moves the halves apart by half the window's length times its speed, and the
+  // newest frame from the mean by as much. By chance they differ with four times the mean's
+  // covariance. What exceeds chance is drift, and is shrunk by how little it exceeds it.
+  const double drifting = cut.chi_square > settings.drift_chi_square
+                              ? 1 - settings.drift_chi_square / cut.chi_square
+                              : 0.0;
+  const double unseen = cut.chi_square > k_axes ? 1 - k_axes / cut.chi_square : 0.0;
+  const double left = (1 - drifting) * (1 - drifting) * unseen;
+  Rest rest;
+  rest.pose.time = time_;
+  rest.pose.pose = placed(share * all.place + drifting * cut.difference);
+  rest.pose.covariance = (1 + 4 * drifting * drifting) * mean_covariance +
+                         left * (cut.difference * cut.difference.transpose());
+  const double per_s = 2 / length().seconds();
+  rest.drift_per_s = (drifting * per_s) * cut.difference;
+  rest.drift_covariance = (4 * per_s * per_s) * mean_covariance;
+  return rest;
+}
+
+}  // namespace glint

@@ -1,0 +1,111 @@
+#include "kernels/motion/tool_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "kernels/motion/cholesky.hpp"
+
+namespace glint {
+namespace {
+
+constexpr double k_axes = 3;
+constexpr double k_distance_max_m = 1000;
+constexpr double k_variance_max = 1e6;
+constexpr double k_unit_tolerance = 1e-6;
+
+// One factor moved by one innovation: chi square's mean is the number of axes.
+double moved(double scale, double chi_square, const AdaptationSettings& settings) {
+  const double ratio = std::min(chi_square / k_axes, settings.innovation_max);
+  return std::clamp(scale * (1 + (ratio - 1) / settings.frames), settings.floor, settings.ceiling);
+}
+
+// Finite, near enough to be a tool's, and with a covariance that is one.
+bool usable(const UncertainPose& measured) {
+  const bool pose = measured.pose.translation.norm() <= k_distance_max_m &&
+                    std::abs(measured.pose.rotation.norm() - 1) <= k_unit_tolerance;
+  return pose && measured.covariance.trace() <= k_variance_max &&
+         Cholesky<6>(measured.covariance).positive;
+}
+
+}  // namespace
+
+Reason ToolMotion::stamp(Time time) const {
+  if (!known_ || time > state_.time) return Reason::none;
+  return time == state_.time ? Reason::frame_doubled : Reason::frame_late;
+}
+
+Reason ToolMotion::update(const UncertainPose& measured) noexcept {
+  const Reason reason = stamp(measured.time);
+  if (reason != Reason::none) return reason;
+  if (!usable(measured)) return Reason::out_of_range;
+  if (known_ && measured.time - state_.time > settings.gap_max) forget();
+  rest_.settings = settings.rest;
+  rest_.add(measured);
+  if (known_) {
+    propagate(state_, measured.time, settings.motion, scale_);
+    correction_ = correct_by_pose(state_, measured);
+  }
+  if (!known_ || correction_.reason != Reason::none) {
+    // The first, or a covariance that rounding has worn out.
+    known_ = true;
+    state_ = start_motion(measured, settings.motion);
+    scale_ = briskest_ = {};
+    correction_ = {};
+    return Reason::none;
+  }
+  scale_.linear = moved(scale_.linear, correction_.linear_chi_square, settings.linear);
+  scale_.angular = moved(scale_.angular, correction_.angular_chi_square, settings.angular);
+  const double faded = 1 - 1 / settings.briskest_frames;
+  briskest_.linear = std::max(scale_.linear, faded * briskest_.linear);
+  briskest_.angular = std::max(scale_.angular, faded * briskest_.angular);
+  return Reason::none;
+}
+
+Reason ToolMotion::update(Time time, std::span<const MeasuredPoint> points) noexcept {
+  const Reason reason = stamp(time);
+  if (reason != Reason::none) return reason;
+  if (!known_ || time - state_.time > settings.gap_max || points.empty())
+    return Reason::too_few_markers;
+  // Single markers are no poses to average: from a rest the filter goes on where the rest was.
+  MotionState next = estimate();
+  const NoiseScale scale{settings.partial_noise * briskest_.linear,
+                         settings.partial_noise * briskest_.angular};
+  propagate(next, time, settings.motion, scale);
+  const std::size_t count = std::min(points.size(), k_points_max);
+  for (std::size_t i = 0; i < count; ++i) {
+    correction_ = correct_by_point(next, points[i]);
+    if (correction_.reason != Reason::none || !std::isfinite(correction_.chi_square))
+      return Reason::out_of_range;
+  }
+  state_ = next;
+  rest_.clear();
+  return Reason::none;
+}
+
+void ToolMotion::forget() noexcept {
+  known_ = false;
+  scale_ = briskest_ = {};
+  rest_.clear();
+}
+
+MotionState ToolMotion::estimate() const noexcept {
+  if (!known_ || !rests()) return state_;
+  const Rest rest = rest_.rest();
+  MotionState state;
+  state.time = state_.time;
+  state.pose = rest.pose.pose;
+  state.velocity_m_s = rest.drift_per_s.head<3>();
+  state.angular_velocity_rad_s = rest.drift_per_s.tail<3>();
+  MotionCovariance& p = state.covariance;
+  for (const auto& [row, from] : {std::pair{k_position, 0}, {k_rotation, 3}}) {
+    for (const auto& [column, to] : {std::pair{k_position, 0}, {k_rotation, 3}})
+      p.block<3, 3>(row, column) = rest.pose.covariance.block<3, 3>(from, to);
+    p.block<3, 3>(row + 3, row + 3) = rest.drift_covariance.block<3, 3>(from, from);
+    // It may set off at any time.
+    p.block<3, 3>(row + 6, row + 6) = state_.covariance.block<3, 3>(row + 6, row + 6);
+  }
+  return state;
+}
+
+}  // namespace glint

@@ -1,0 +1,151 @@
+#include "kernels/motion/integrate_motion.hpp"
+
+#include <cvode/cvode.h>
+#include <gtest/gtest.h>
+#include <nvector/nvector_serial.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include <cmath>
+
+#include "kernels/motion/predict_motion.hpp"
+#include "tests/unit/heap_count.hpp"
+#include "tests/unit/kernels/motion/motion_scene.hpp"
+
+namespace glint {
+namespace {
+
+// The equations once more, accelerations and all, by another hand and in another form: a quaternion
+// product, and damping as feedback.
+int equations(double, N_Vector y, N_Vector out, void*) {
+  const MotionSettings settings;
+  const double* s = NV_DATA_S(y);
+  double* d = NV_DATA_S(out);
+  const Quaternion q(s[9], s[6], s[7], s[8]);
+  const Quaternion rate = Quaternion(0, s[10], s[11], s[12]) * q;
+  for (int i = 0; i < 3; ++i) {
+    d[i] = s[3 + i];
+    d[3 + i] = s[13 + i];
+    d[10 + i] = s[16 + i];
+    d[13 + i] = -settings.linear_damping_1_s * s[13 + i];
+    d[16 + i] = -settings.angular_damping_1_s * s[16 + i];
+  }
+  for (int i = 0; i < 4; ++i) d[6 + i] = 0.5 * rate.coeffs()(i);
+  return 0;
+}
+
+// CVODE's adaptive Adams method at 1e-12.
+Pose by_cvode(const MotionState& state, double seconds) {
+  SUNContext context = nullptr;
+  SUNContext_Create(nullptr, &context);
+  N_Vector y = N_VNew_Serial(19, context);
+  Eigen::Map<Eigen::Matrix<double, 19, 1>> values(NV_DATA_S(y));
+  values << state.pose.translation, state.velocity_m_s, state.pose.rotation.coeffs(),
+      state.angular_velocity_rad_s, state.acceleration_m_s2, state.angular_acceleration_rad_s2;
+  void* memory = CVodeCreate(CV_ADAMS, context);
+  CVodeInit(memory, equations, 0, y);
+  CVodeSStolerances(memory, 1e-12, 1e-12);
+  CVodeSetMaxNumSteps(memory, 100000);
+  SUNNonlinearSolver solver = SUNNonlinSol_FixedPoint(y, 0, context);
+  CVodeSetNonlinearSolver(memory, solver);
+  CVodeSetStopTime(memory, seconds);
+  double reached = 0;
+  EXPECT_GE(CVode(memory, seconds, y, &reached, CV_NORMAL), 0);
+  const Pose pose{Quaternion(values(9), values(6), values(7), values(8)).normalized(),
+                  values.head<3>()};
+  CVodeFree(&memory);
+  SUNNonlinSolFree(solver);
+  N_VDestroy(y);
+  SUNContext_Free(&context);
+  return pose;
+}
+
+TEST(IntegrateMotion, AgreesWithCvodesAdaptiveSteps) {
+  test::Random random(1);
+  MotionIntegrator integrator;
+  ASSERT_EQ(integrator.prepare({}), Reason::none);
+  struct Limit {
+    int ms;
+    double metres, radians;
+  };
+  for (const Limit& limit : {Limit{25, 1e-8, 1e-5}, {50, 1e-7, 3e-5}, {250, 1e-4, 2e-3}}) {
+    for (int trial = 0; trial < 30; ++trial) {
+      const MotionState state = test::random_state(random);
+      const Result<Pose> pose = integrator.after(state, milliseconds(limit.ms));
+      ASSERT_TRUE(pose);
+      const Pose truth = by_cvode(state, 1e-3 * limit.ms);
+      EXPECT_LT((pose.value.translation - truth.translation).norm(), limit.metres) << limit.ms;
+      EXPECT_LT(test::angle_between(pose.value.rotation, truth.rotation), limit.radians)
+          << limit.ms;
+    }
+  }
+}
+
+TEST(IntegrateMotion, AgreesWithTheClosedFormAboutOneAxis) {
+  MotionIntegrator integrator;
+  ASSERT_EQ(integrator.prepare({}), Reason::none);
+  MotionState state;
+  state.velocity_m_s = {0.3, 0, 0};
+  state.acceleration_m_s2 = {0, 4, 0};
+  state.angular_velocity_rad_s = {0, 0, 2};
+  state.angular_acceleration_rad_s2 = {0, 0, 8};
+  const UncertainPose closed = predict_pose(state, Time{50'000'000}, {}, {});
+  const Result<Pose> pose = integrator.after(state, milliseconds(50));
+  ASSERT_TRUE(pose);
+  EXPECT_LT(pose_difference(pose.value, closed.pose).norm(), 1e-5);
+}
+
+TEST(IntegrateMotion, KeepsToItsStateAtNoTimeAndBefore) {
+  test::Random random(2);
+  MotionIntegrator integrator;
+  ASSERT_EQ(integrator.prepare({}), Reason::none);
+  const MotionState state = test::random_state(random);
+  for (const std::int64_t ns : {0LL, -1'000'000LL}) {
+    const Result<Pose> pose = integrator.after(state, Duration{ns});
+    ASSERT_TRUE(pose);
+    EXPECT_EQ(pose.value.translation, state.pose.translation);
+  }
+}
+
+TEST(IntegrateMotion, RefusesUnprepared) {
+  MotionIntegrator integrator;
+  EXPECT_EQ(integrator.after({}, milliseconds(10)).reason, Reason::not_prepared);
+}
+
+TEST(IntegrateMotion, AsksForNoMemoryOncePrepared) {
+  if (!AllocationCounter::available()) GTEST_SKIP() << "allocations are not counted in this build";
+  test::Random random(3);
+  MotionIntegrator integrator;
+  ASSERT_EQ(integrator.prepare({}), Reason::none);
+  const MotionState state = test::random_state(random);
+  const HeapCount heap;
+  for (int i = 1; i < 2000; ++i) (void)integrator.after(state, microseconds(100 * i));
+  EXPECT_EQ(heap.count(), 0u);
+}
+
+TEST(IntegrateMotion, DoesNotRememberWhatItDidBefore) {
+  test::Random random(4);
+  MotionIntegrator used, fresh;
+  ASSERT_EQ(used.prepare({}), Reason::none);
+  for (int i = 0; i < 100; ++i) (void)used.after(test::random_state(random), milliseconds(1 + i));
+  ASSERT_EQ(fresh.prepare({}), Reason::none);
+  const MotionState state = test::random_state(random);
+  const Pose a = used.after(state, milliseconds(30)).value;
+  const Pose b = fresh.after(state, milliseconds(30)).value;
+  EXPECT_EQ(a.translation, b.translation);
+  EXPECT_EQ(a.rotation.coeffs(), b.rotation.coeffs());
+}
+
+TEST(IntegrateMotion, GivesTheSameBitsEverywhere) {
+  test::Random random(5);
+  test::BitHash hash;
+  MotionIntegrator integrator;
+  ASSERT_EQ(integrator.prepare({}), Reason::none);
+  for (int trial = 0; trial < 500; ++trial) {
+    const MotionState state = test::random_state(random);
+    hash.add(integrator.after(state, Duration{1 + random.below(200'000'000)}).value);
+  }
+  EXPECT_EQ(hash.value(), 15960565719376230231u);
+}
+
+}  // namespace
+}  // namespace glint

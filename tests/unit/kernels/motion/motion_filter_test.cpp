@@ -1,0 +1,169 @@
+#include "kernels/motion/motion_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kernels/motion/singer.hpp"
+#include "tests/unit/kernels/motion/motion_scene.hpp"
+
+namespace glint {
+namespace {
+
+using Vector18 = Eigen::Matrix<double, 18, 1>;
+constexpr double k_difference = 1e-6;
+
+MotionCovariance transition_by_differences(const MotionState& state, Time time) {
+  const auto at = [&](const Vector18& error) {
+    MotionState later = test::moved(state, error);
+    propagate(later, time, {}, {});
+    return later;
+  };
+  MotionCovariance f;
+  for (int i = 0; i < k_motion_size; ++i) {
+    const Vector18 small = k_difference * Vector18::Unit(i);
+    f.col(i) = test::error_between(at(small), at(-small)) / (2 * k_difference);
+  }
+  return f;
+}
+
+TEST(MotionFilter, CarriesItsCovarianceAsItsMeanCarriesErrors) {
+  test::Random random(1);
+  for (const int ms : {22, 50, 200}) {
+    for (int trial = 0; trial < 20; ++trial) {
+      const MotionState state = test::random_state(random);
+      MotionState later = state;
+      propagate(later, Time{ms * 1'000'000LL}, {}, {0, 0});
+      const MotionCovariance f = transition_by_differences(state, later.time);
+      const MotionCovariance expected = f * state.covariance * f.transpose();
+      // The left Jacobian of a turn is taken as that of half of it.
+      const double tolerance = ms < 100 ? 2e-3 : 3e-2;
+      EXPECT_LT((later.covariance - expected).norm(), tolerance * expected.norm()) << ms;
+      EXPECT_EQ(later.covariance, MotionCovariance(later.covariance.transpose()));
+    }
+  }
+}
+
+TEST(MotionFilter, AddsTheNoiseOfTheModelTimesItsScale) {
+  MotionState state, noisy;
+  propagate(state, Time{30'000'000}, {}, {0, 0});
+  propagate(noisy, Time{30'000'000}, {}, {2, 3});
+  const MotionCovariance added = noisy.covariance - state.covariance;
+  const MotionSettings s;
+  const Matrix3 linear = singer_step(s.linear_damping_1_s, 0.03).noise;
+  const Matrix3 angular = singer_step(s.angular_damping_1_s, 0.03).noise;
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < 3; ++b) {
+      EXPECT_DOUBLE_EQ(added(3 * a + 1, 3 * b + 1), 2 * s.linear_noise_m2_s5 * linear(a, b));
+      EXPECT_DOUBLE_EQ(added(9 + 3 * a, 9 + 3 * b), 3 * s.angular_noise_rad2_s5 * angular(a, b));
+    }
+  }
+  EXPECT_EQ(added(0, 1), 0);
+}
+
+TEST(MotionFilter, CorrectsByAPoseAsTheTextbookDoes) {
+  test::Random random(2);
+  for (int trial = 0; trial < 100; ++trial) {
+    const MotionState before = test::random_state(random);
+    UncertainPose measured;
+    measured.pose = {before.pose.rotation, before.pose.translation + random.vector(0.01)};
+    measured.covariance = test::random_covariance<6>(random, 0.005);
+    MotionState after = before;
+    const Correction correction = correct_by_pose(after, measured);
+    ASSERT_EQ(correction.reason, Reason::none);
+
+    Eigen::Matrix<double, 6, 18> h = Eigen::Matrix<double, 6, 18>::Zero();
+    h.block<3, 3>(0, k_position).setIdentity();
+    h.block<3, 3>(3, k_rotation).setIdentity();
+    const Matrix6 s = h * before.covariance * h.transpose() + measured.covariance;
+    const Eigen::Matrix<double, 18, 6> gain = before.covariance * h.transpose() * s.inverse();
+    const Vector6 innovation = pose_difference(measured.pose, before.pose);
+    EXPECT_LT((test::error_between(after, before) - gain * innovation).norm(), 1e-10);
+    const MotionCovariance rest = (MotionCovariance::Identity() - gain * h) * before.covariance;
+    EXPECT_LT((after.covariance - rest).norm(), 1e-10 * before.covariance.norm());
+    EXPECT_NEAR(correction.chi_square, innovation.dot(s.inverse() * innovation), 1e-8);
+    EXPECT_NEAR(correction.linear_chi_square,
+                innovation.head<3>().dot(s.topLeftCorner<3, 3>().inverse() * innovation.head<3>()),
+                1e-8);
+  }
+}
+
+TEST(MotionFilter, CorrectsByAPointAsItsJacobianSays) {
+  test::Random random(3);
+  for (int trial = 0; trial < 100; ++trial) {
+    const MotionState before = test::random_state(random);
+    MeasuredPoint measured;
+    measured.model_m = random.vector(0.05);
+    measured.measured_m = before.pose * measured.model_m + random.vector(0.002);
+    measured.covariance_m2 = test::random_covariance<3>(random, 0.002);
+    Eigen::Matrix<double, 3, 18> h;
+    for (int i = 0; i < k_motion_size; ++i) {
+      const Vector18 small = k_difference * Vector18::Unit(i);
+      h.col(i) = (test::moved(before, small).pose * measured.model_m -
+                  test::moved(before, -small).pose * measured.model_m) /
+                 (2 * k_difference);
+    }
+    const Matrix3 s = h * before.covariance * h.transpose() + measured.covariance_m2;
+    const Eigen::Matrix<double, 18, 3> gain = before.covariance * h.transpose() * s.inverse();
+    MotionState after = before;
+    ASSERT_EQ(correct_by_point(after, measured).reason, Reason::none);
+    const Vector3 innovation = measured.measured_m - before.pose * measured.model_m;
+    EXPECT_LT((test::error_between(after, before) - gain * innovation).norm(), 1e-8);
+    EXPECT_LT(
+        (after.covariance - (MotionCovariance::Identity() - gain * h) * before.covariance).norm(),
+        1e-7 * before.covariance.norm());
+  }
+}
+
+TEST(MotionFilter, FollowsConstantVelocityAndTurnWithoutLag) {
+  const Vector3 velocity(0.5, -0.2, 0.1), turn(0.3, 1.2, -0.5);
+  const auto truth = [&](int frame) {
+    const double t = 22'222'222e-9 * frame;
+    return Pose{from_rotation_vector(t * turn), t * velocity};
+  };
+  UncertainPose measured;
+  measured.covariance = 1e-6 * Matrix6::Identity();
+  MotionState state = start_motion(measured, {});
+  for (int frame = 1; frame < 60; ++frame) {
+    measured.time = test::frame_time(frame);
+    measured.pose = truth(frame);
+    propagate(state, measured.time, {}, {});
+    ASSERT_EQ(correct_by_pose(state, measured).reason, Reason::none);
+  }
+  EXPECT_LT(pose_difference(state.pose, truth(59)).norm(), 1e-6);
+  EXPECT_LT((state.velocity_m_s - velocity).norm(), 1e-4);
+  EXPECT_LT((state.angular_velocity_rad_s - turn).norm(), 1e-3);
+}
+
+TEST(MotionFilter, LeavesTheStateWhereACovarianceIsNone) {
+  test::Random random(4);
+  const MotionState before = test::random_state(random);
+  UncertainPose measured;
+  measured.covariance = -Matrix6::Identity();
+  MotionState state = before;
+  EXPECT_EQ(correct_by_pose(state, measured).reason, Reason::degenerate);
+  EXPECT_EQ(state.covariance, before.covariance);
+  EXPECT_EQ(state.pose.translation, before.pose.translation);
+  propagate(state, Time{-5}, {}, {});
+  EXPECT_EQ(state.covariance, before.covariance);
+}
+
+TEST(MotionFilter, GivesTheSameBitsEverywhere) {
+  test::Random random(5);
+  test::BitHash hash;
+  MotionState state = test::random_state(random);
+  for (int frame = 1; frame < 300; ++frame) {
+    propagate(state, test::frame_time(frame), {}, {1.5, 0.7});
+    if (frame % 3 == 0) {
+      MeasuredPoint point{random.vector(0.05), Vector3::Zero(), 1e-6 * Matrix3::Identity()};
+      point.measured_m = state.pose * point.model_m + random.vector(0.001);
+      (void)correct_by_point(state, point);
+    } else {
+      (void)correct_by_pose(state,
+                            test::measured_pose(state.pose, state.time, 0.001, 0.005, random));
+    }
+    test::add_bits(hash, state);
+  }
+  EXPECT_EQ(hash.value(), 6279413464016914550u);
+}
+
+}  // namespace
+}  // namespace glint

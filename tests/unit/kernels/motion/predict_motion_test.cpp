@@ -1,0 +1,59 @@
+#include "kernels/motion/predict_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/kernels/motion/motion_scene.hpp"
+
+namespace glint {
+namespace {
+
+TEST(PredictPose, IsWhereTheFilterItselfWouldBe) {
+  test::Random random(1);
+  for (const int ms : {1, 25, 50, 250}) {
+    for (int trial = 0; trial < 50; ++trial) {
+      const MotionState state = test::random_state(random);
+      const Time time{ms * 1'000'000LL};
+      MotionState later = state;
+      propagate(later, time, {}, {1.3, 0.8});
+      const UncertainPose expected = pose_of(later);
+      const UncertainPose predicted = predict_pose(state, time, {}, {1.3, 0.8});
+      EXPECT_EQ(predicted.time, time);
+      EXPECT_LT(pose_difference(predicted.pose, expected.pose).norm(), 1e-14);
+      EXPECT_LT((predicted.covariance - expected.covariance).norm(),
+                1e-12 * expected.covariance.norm());
+    }
+  }
+}
+
+TEST(PredictPose, BeforeTheStateIsTheStatesOwn) {
+  test::Random random(2);
+  const MotionState state = test::random_state(random);
+  for (const std::int64_t ns : {0LL, -1LL, -1'000'000'000LL}) {
+    const UncertainPose predicted = predict_pose(state, Time{ns}, {}, {});
+    EXPECT_EQ(predicted.pose.translation, state.pose.translation);
+    EXPECT_EQ(predicted.covariance, pose_of(state).covariance);
+  }
+}
+
+TEST(PredictPose, IsFiniteForTenSecondsAhead) {
+  test::Random random(3);
+  const UncertainPose predicted =
+      predict_pose(test::random_state(random), Time{10'000'000'000}, {}, {10, 10});
+  EXPECT_TRUE(predicted.covariance.allFinite());
+  EXPECT_TRUE(predicted.pose.translation.allFinite());
+}
+
+TEST(PredictPose, GivesTheSameBitsEverywhere) {
+  test::Random random(4);
+  test::BitHash hash;
+  for (int trial = 0; trial < 500; ++trial) {
+    const MotionState state = test::random_state(random);
+    const UncertainPose predicted = predict_pose(state, Time{random.below(100'000'000)}, {}, {});
+    hash.add(predicted.pose);
+    for (int i = 0; i < 36; ++i) hash.add(predicted.covariance(i / 6, i % 6));
+  }
+  EXPECT_EQ(hash.value(), 6793004009753766600u);
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,174 @@
+#include "kernels/motion/tool_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "tests/unit/heap_count.hpp"
+#include "tests/unit/kernels/motion/motion_scene.hpp"
+
+namespace glint {
+namespace {
+
+constexpr double k_shift_sigma = 0.0005, k_turn_sigma = 0.005;
+
+UncertainPose seen(const Pose& truth, int frame, test::Random& random) {
+  return test::measured_pose(truth, test::frame_time(frame), k_shift_sigma, k_turn_sigma, random);
+}
+
+struct Followed {
+  test::Random random{1};
+  Pose truth{random.rotation(), random.vector(0.3)};
+  std::unique_ptr<ToolMotion> motion = std::make_unique<ToolMotion>();
+  int frame = 0;
+
+  void rest(int frames) {
+    for (int i = 0; i < frames; ++i)
+      ASSERT_EQ(motion->update(seen(truth, frame++, random)), Reason::none);
+  }
+};
+
+TEST(ToolMotion, StandsStillAtRest) {
+  Followed tool;
+  tool.rest(90);
+  ASSERT_TRUE(tool.motion->rests());
+  const MotionState state = tool.motion->estimate();
+  EXPECT_EQ(state.velocity_m_s, Vector3(Vector3::Zero()));
+  EXPECT_LT((state.pose.translation - tool.truth.translation).norm(), 4 * k_shift_sigma / 9);
+  EXPECT_LT(std::sqrt(state.covariance(0, 0)), 1.5 * k_shift_sigma / std::sqrt(90.0));
+  EXPECT_EQ(state.time, test::frame_time(89));
+}
+
+TEST(ToolMotion, RefusesStampsThatDoNotRiseAndKeepsItsState) {
+  Followed tool;
+  tool.rest(5);
+  const MotionState before = tool.motion->estimate();
+  EXPECT_EQ(tool.motion->update(seen(tool.truth, 4, tool.random)), Reason::frame_doubled);
+  EXPECT_EQ(tool.motion->update(seen(tool.truth, 2, tool.random)), Reason::frame_late);
+  MeasuredPoint point;
+  point.covariance_m2 = 1e-6 * Matrix3::Identity();
+  EXPECT_EQ(tool.motion->update(test::frame_time(4), {&point, 1}), Reason::frame_doubled);
+  EXPECT_EQ(tool.motion->update(test::frame_time(3), {&point, 1}), Reason::frame_late);
+  EXPECT_EQ(tool.motion->estimate().covariance, before.covariance);
+  EXPECT_EQ(tool.motion->estimate().pose.translation, before.pose.translation);
+}
+
+TEST(ToolMotion, RefusesWhatIsNoPose) {
+  Followed tool;
+  tool.rest(5);
+  const MotionState before = tool.motion->estimate();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto refused = [&](auto&& spoil) {
+    UncertainPose measured = seen(tool.truth, tool.frame, tool.random);
+    spoil(measured);
+    return tool.motion->update(measured) == Reason::out_of_range;
+  };
+  EXPECT_TRUE(refused([&](UncertainPose& m) { m.pose.translation.x() = nan; }));
+  EXPECT_TRUE(refused([&](UncertainPose& m) { m.pose.translation.x() = 1e200; }));
+  EXPECT_TRUE(refused([&](UncertainPose& m) { m.pose.rotation.w() = nan; }));
+  EXPECT_TRUE(refused([&](UncertainPose& m) { m.covariance(2, 1) = nan; }));
+  EXPECT_TRUE(refused([](UncertainPose& m) { m.covariance.setZero(); }));
+  EXPECT_TRUE(refused([](UncertainPose& m) { m.covariance *= 1e20; }));
+  MeasuredPoint point{Vector3::Zero(), Vector3(nan, 0, 0), 1e-6 * Matrix3::Identity()};
+  EXPECT_EQ(tool.motion->update(test::frame_time(5), {&point, 1}), Reason::out_of_range);
+  EXPECT_EQ(tool.motion->estimate().pose.translation, before.pose.translation);
+  EXPECT_EQ(tool.motion->estimate().covariance, before.covariance);
+}
+
+TEST(ToolMotion, StartsAnewAfterALongSilence) {
+  Followed tool;
+  tool.rest(50);
+  tool.frame += 60;  // 1.3 s
+  tool.truth.translation += Vector3(0.5, 0, 0);
+  const UncertainPose measured = seen(tool.truth, tool.frame, tool.random);
+  ASSERT_EQ(tool.motion->update(measured), Reason::none);
+  EXPECT_EQ(tool.motion->estimate().pose.translation, measured.pose.translation);
+  EXPECT_FALSE(tool.motion->rests());
+}
+
+TEST(ToolMotion, GoesOnWithOneMarkerButNeedsAPoseFirst) {
+  Followed tool;
+  const Vector3 model(0.02, 0.03, 0);
+  const auto marker = [&] {
+    return MeasuredPoint{model, tool.truth * model + tool.random.vector(0.0003),
+                         9e-8 * Matrix3::Identity()};
+  };
+  MeasuredPoint point = marker();
+  EXPECT_EQ(tool.motion->update(test::frame_time(0), {&point, 1}), Reason::too_few_markers);
+  tool.rest(40);
+  for (int i = 0; i < 9; ++i) {
+    tool.truth.translation += Vector3(0.002, 0, 0);
+    point = marker();
+    ASSERT_EQ(tool.motion->update(test::frame_time(tool.frame++), {&point, 1}), Reason::none);
+    EXPECT_FALSE(tool.motion->rests());
+  }
+  const MotionState state = tool.motion->estimate();
+  const double sigma = std::sqrt(state.covariance.topLeftCorner<3, 3>().trace());
+  EXPECT_LT((state.pose.translation - tool.truth.translation).norm(), 4 * sigma);
+  EXPECT_LT(sigma, 0.005);
+  EXPECT_EQ(tool.motion->update(test::frame_time(tool.frame + 100), {&point, 1}),
+            Reason::too_few_markers);
+}
+
+TEST(ToolMotion, KeepsItsNoiseAboveTheFloorWithoutAnyNoise) {
+  Followed tool;
+  UncertainPose measured = seen(tool.truth, 0, tool.random);
+  measured.pose = tool.truth;
+  for (int frame = 0; frame < 1000; ++frame) {
+    measured.time = test::frame_time(frame);
+    ASSERT_EQ(tool.motion->update(measured), Reason::none);
+  }
+  EXPECT_EQ(tool.motion->noise_scale().linear, tool.motion->settings.linear.floor);
+  EXPECT_EQ(tool.motion->noise_scale().angular, tool.motion->settings.angular.floor);
+}
+
+TEST(ToolMotion, IsAsSureAsItIsRight) {
+  test::Random random(9);
+  const auto motion = std::make_unique<ToolMotion>();
+  double squares = 0;
+  int n = 0;
+  for (int frame = 0; frame < 5000; ++frame) {
+    const double t = frame / 45.0;
+    const Pose truth{from_rotation_vector({0.5 * std::sin(2 * t), 0.4 * std::sin(3 * t), 0}),
+                     {0.1 * std::sin(2.5 * t), 0.1 * std::sin(3.3 * t), 0.05 * std::sin(4 * t)}};
+    ASSERT_EQ(motion->update(seen(truth, frame, random)), Reason::none);
+    if (frame < 45) continue;
+    const UncertainPose estimate = pose_of(motion->estimate());
+    const Vector6 error = pose_difference(truth, estimate.pose);
+    squares += error.dot(estimate.covariance.inverse() * error) / 6;
+    ++n;
+  }
+  EXPECT_NEAR(squares / n, 1.0, 0.3);
+}
+
+TEST(ToolMotion, AsksForNoMemory) {
+  if (!AllocationCounter::available()) GTEST_SKIP() << "allocations are not counted in this build";
+  Followed tool;
+  tool.rest(2);
+  const HeapCount heap;
+  tool.rest(200);
+  (void)tool.motion->estimate();
+  EXPECT_EQ(heap.count(), 0u);
+}
+
+TEST(ToolMotion, GivesTheSameBitsEverywhere) {
+  Followed tool;
+  test::BitHash hash;
+  for (int frame = 0; frame < 600; ++frame) {
+    if (frame % 90 > 40) tool.truth.translation += tool.random.vector(0.003);
+    if (frame % 90 < 80) {
+      ASSERT_EQ(tool.motion->update(seen(tool.truth, frame, tool.random)), Reason::none);
+    } else {
+      MeasuredPoint point{Vector3(0, 0.03, 0), Vector3::Zero(), 1e-6 * Matrix3::Identity()};
+      point.measured_m = tool.truth * point.model_m;
+      ASSERT_EQ(tool.motion->update(test::frame_time(frame), {&point, 1}), Reason::none);
+    }
+    test::add_bits(hash, tool.motion->estimate());
+  }
+  EXPECT_EQ(hash.value(), 8370787117484139330u);
+}
+
+}  // namespace
+}  // namespace glint
