@@ -6,6 +6,7 @@
 #include "platform/experiments/cis_pivot.hpp"
 #include "platform/experiments/f2554.hpp"
 #include "platform/experiments/marker_mocap.hpp"
+#include "platform/experiments/motion_experiments.hpp"
 
 namespace glint {
 
@@ -19,6 +20,13 @@ std::span<const CaseExperiment> case_experiments() {
        true, run_marker_mocap},
       {"f2554", "a tip on one point, turned about each axis, and from point to point", false,
        run_f2554},
+      {"rest", "the pose of a tool that has come to rest", false, run_rest},
+      {"lag", "how far the estimate trails a tool that sets off", false, run_lag},
+      {"sine", "a tool that swings at 2 Hz, foretold by 25 ms", false, run_sine},
+      {"prediction", "recorded motion foretold by 25 and 50 ms, against five rivals", true,
+       run_prediction},
+      {"occlusion", "recorded motion with all markers but one or two hidden for 0.2 s", true,
+       run_occlusion},
   };
   return k_experiments;
 }

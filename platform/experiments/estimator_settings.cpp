@@ -31,12 +31,39 @@ Json pixel_noise_json(const PixelNoise& noise) {
           {"proportional", noise.proportional}};
 }
 
+Json adaptation_json(const AdaptationSettings& settings) {
+  return {{"frames", settings.frames},
+          {"floor", settings.floor},
+          {"ceiling", settings.ceiling},
+          {"innovation_max", settings.innovation_max}};
+}
+
+Json motion_json(const ToolMotionSettings& settings) {
+  return {{"linear_noise_m2_s5", settings.motion.linear_noise_m2_s5},
+          {"linear_damping_1_s", settings.motion.linear_damping_1_s},
+          {"angular_noise_rad2_s5", settings.motion.angular_noise_rad2_s5},
+          {"angular_damping_1_s", settings.motion.angular_damping_1_s},
+          {"start_speed_m_s", settings.motion.start_speed_m_s},
+          {"start_turn_rad_s", settings.motion.start_turn_rad_s},
+          {"linear", adaptation_json(settings.linear)},
+          {"angular", adaptation_json(settings.angular)},
+          {"short_chi_square_max", settings.rest.short_chi_square_max},
+          {"long_chi_square_max", settings.rest.long_chi_square_max},
+          {"drift_chi_square", settings.rest.drift_chi_square},
+          {"frames_min", settings.rest.frames_min},
+          {"rest_gap_max_ns", settings.rest.gap_max.nanoseconds},
+          {"partial_noise", settings.partial_noise},
+          {"briskest_frames", settings.briskest_frames},
+          {"gap_max_ns", settings.gap_max.nanoseconds}};
+}
+
 }  // namespace
 
 std::string estimator_text() {
   const EstimatorSettings settings;
   return Json{{"correspond", correspond_json(settings.correspond)},
-              {"pixel_noise", pixel_noise_json(settings.pixel_noise)}}
+              {"pixel_noise", pixel_noise_json(settings.pixel_noise)},
+              {"motion", motion_json(settings.motion)}}
       .dump();
 }
 

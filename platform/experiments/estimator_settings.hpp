@@ -4,6 +4,7 @@
 #include <string>
 
 #include "kernels/image/pixel_noise.hpp"
+#include "kernels/motion/tool_motion.hpp"
 #include "kernels/pose/correspond_settings.hpp"
 
 namespace glint {
@@ -13,6 +14,7 @@ namespace glint {
 struct EstimatorSettings {
   CorrespondSettings correspond;
   PixelNoise pixel_noise;
+  ToolMotionSettings motion;
 };
 
 // Every field by name, as JSON.

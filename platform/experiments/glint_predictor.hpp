@@ -1,0 +1,23 @@
+// Glint's filter and prediction as one predictor among others, with its one built-in setting.
+#pragma once
+
+#include "kernels/motion/integrate_motion.hpp"
+#include "kernels/motion/tool_motion.hpp"
+#include "platform/experiments/predictor.hpp"
+
+namespace glint {
+
+class GlintPredictor final : public Predictor {
+ public:
+  // Throws where SUNDIALS cannot be prepared.
+  explicit GlintPredictor(const ToolMotionSettings& settings = {});
+  void update(const UncertainPose& measured) override;
+  [[nodiscard]] Pose predict(Time time) const override;
+
+ private:
+  ToolMotion motion_;
+  MotionState state_;
+  mutable MotionIntegrator integrator_;  // its workspace
+};
+
+}  // namespace glint

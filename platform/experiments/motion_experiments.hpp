@@ -1,0 +1,24 @@
+// How well a tool's motion is followed and foretold, one setting for all. Each is a subcommand.
+#pragma once
+
+#include "platform/experiments/case_list.hpp"
+
+namespace glint {
+
+// The pose of a tool that has come to rest, half a second and two seconds later.
+[[nodiscard]] CaseList run_rest(const CaseOptions& options);
+
+// How far the estimate trails a tool that sets off at once to 0.5 m/s and 90 deg/s.
+[[nodiscard]] CaseList run_lag(const CaseOptions& options);
+
+// A tool that swings at 2 Hz, foretold by 25 ms.
+[[nodiscard]] CaseList run_sine(const CaseOptions& options);
+
+// Recorded motion, foretold by 25 and 50 ms, against five rivals.
+[[nodiscard]] CaseList run_prediction(const CaseOptions& options);
+
+// Recorded motion with all markers but one or two hidden for 0.2 s: are errors as large as
+// foretold?
+[[nodiscard]] CaseList run_occlusion(const CaseOptions& options);
+
+}  // namespace glint
