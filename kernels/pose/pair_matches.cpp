@@ -92,7 +92,8 @@ void gates_of(const Columns& __restrict c, int a, int end, const CorrespondSetti
                                 (range_variance - c.variance[b]) * (along_b * along_b)) *
                                    inverse;
     const float across = 2 * (range_variance + both) - along;
-    const float delta = k * std::sqrt(along) + k * k * 0.5F * across * (distance * inverse);
+    const float bias = 0.5F * across * (distance * inverse);
+    const float delta = k * std::sqrt(along + 2 * bias * bias) + bias;
     gates.distance_m[b] = distance;
     gates.delta_m[b] = delta > least ? delta : least;
   }

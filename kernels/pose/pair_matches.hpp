@@ -9,11 +9,12 @@
 //           cheaper than to look up which of them might fit; and the words of the table are
 //           written. The same wherever the candidates are.
 // Worst:    all candidates there may be; none are worse than others.
-// Accuracy: exact to second order in the noise. With d the measured distance, e its direction, r
-//           the rays, S the markers' covariances: true - measured = -e.(n_a - n_b) +
-//           |perpendicular|^2 / (2d), so delta = k s + k^2 p / (2d), s^2 = e'(S_a + S_b)e, p =
-//           trace(S_a + S_b) - s^2.
-// Source:   series of |d e - n| in n to second order.
+// Accuracy: to second order in the noise. With d the measured distance, e its direction, r the
+//           rays, S the markers' covariances: true - measured = -e.(n_a - n_b) + |perpendicular|^2
+//           / (2d), whose first part has the variance s^2 = e'(S_a + S_b)e and whose second one
+//           the mean b = p / (2d), p = trace(S_a + S_b) - s^2, and at most the variance 2 b^2 (all
+//           of p in one direction). So delta = k sqrt(s^2 + 2 b^2) + b.
+// Source:   series of |d e - n| in n to second order; mean and variance of a squared normal value.
 #pragma once
 
 #include <array>

@@ -5,10 +5,16 @@ target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/camera_model.cpp
   ${CMAKE_CURRENT_LIST_DIR}/depth_samples.cpp
   ${CMAKE_CURRENT_LIST_DIR}/robust_mean.cpp)
 target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/tool.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/rigid_fit.cpp ${CMAKE_CURRENT_LIST_DIR}/best_rotation.cpp ${CMAKE_CURRENT_LIST_DIR}/candidates.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/rigid_fit.cpp ${CMAKE_CURRENT_LIST_DIR}/best_rotation.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/candidates.cpp
   ${CMAKE_CURRENT_LIST_DIR}/pair_matches.cpp ${CMAKE_CURRENT_LIST_DIR}/labeling_search.cpp
   ${CMAKE_CURRENT_LIST_DIR}/correspond.cpp ${CMAKE_CURRENT_LIST_DIR}/assign.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fit_covariance.cpp)
+target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/pose_factor.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/weighted_marker.cpp ${CMAKE_CURRENT_LIST_DIR}/normal_equations.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/pose_prior.cpp ${CMAKE_CURRENT_LIST_DIR}/weighted_fit.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/depth_flip.cpp ${CMAKE_CURRENT_LIST_DIR}/refine_pose.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/decide_labeling.cpp)
 # Nobody reads errno or asks for floating-point traps here; where either might be seen, the pass over
 # all pairs handles one at a time. Neither changes a result.
 set_source_files_properties(${CMAKE_CURRENT_LIST_DIR}/pair_matches.cpp PROPERTIES

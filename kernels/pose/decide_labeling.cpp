@@ -1,0 +1,78 @@
+#include "kernels/pose/decide_labeling.hpp"
+
+#include <algorithm>
+
+namespace glint {
+namespace {
+
+struct Weighed {
+  std::array<WeightedMarker, k_markers_per_tool_max> items;
+  std::size_t count = 0;
+  Reason reason = Reason::none;
+};
+
+Weighed weigh(const Markers& markers, const MarkerSights& sights, const Tool& tool,
+              const Labeling& labeling) {
+  Weighed out;
+  for (std::size_t i = 0; i < labeling.marker.size(); ++i) {
+    if (labeling.marker[i] < 0) continue;
+    const auto seen = static_cast<std::size_t>(labeling.marker[i]) % k_blobs_max;
+    const MarkerSight& sight = sights[seen];
+    const double range = markers.items[seen].surface_range_m + tool.centre_offset_m();
+    const Result<WeightedMarker> marker =
+        weigh_marker(tool.markers_m[i], sight.rays, range, sight.variance);
+    if (!marker) out.reason = marker.reason;
+    out.items[out.count++] = marker.value;
+  }
+  return out;
+}
+
+void add_work(const RefineWork& more, RefineWork& work) {
+  work.fits += more.fits;
+  work.steps += more.steps;
+  work.marker_steps += more.marker_steps;
+}
+
+}  // namespace
+
+DecidedLabeling decide_labeling(const Markers& markers, const MarkerSights& sights,
+                                const Tool& tool, const Labelings& labelings,
+                                const PosePrior* prior, const RefineSettings& settings) noexcept {
+  DecidedLabeling out;
+  const int count = std::clamp(labelings.count, 0, k_labelings_max);
+  out.reason = count > 0 ? Reason::bad_fit : labelings.reason;
+  if (count == 0 && out.reason == Reason::none) out.reason = Reason::no_labeling;
+  // First all as they are; where none is explained, once more without one of their markers.
+  for (const int left_out_max : {0, settings.left_out_max}) {
+    if (out.chosen >= 0) break;
+    for (int k = 0; k < count; ++k) {
+      const Labeling& labeling = labelings.items[static_cast<std::size_t>(k)];
+      if (out.chosen >= 0 &&
+          (left_out_max > 0 ||
+           labeling.count < labelings.items[static_cast<std::size_t>(out.chosen)].count))
+        break;
+      const Weighed weighed = weigh(markers, sights, tool, labeling);
+      if (weighed.reason != Reason::none) {
+        out.reason = weighed.reason;
+        continue;
+      }
+      const RefinedPose pose = refine_pose({weighed.items.data(), weighed.count}, tool.tip_m, prior,
+                                           {settings.steps_max, left_out_max});
+      add_work(pose.work, out.work);
+      if (pose.reason != Reason::none) continue;
+      const double ahead = out.pose.chi_square - pose.chi_square;
+      if (out.chosen >= 0 && ahead <= 0) {
+        out.delta_chi_square = std::min(out.delta_chi_square, -ahead);
+        continue;
+      }
+      if (out.chosen >= 0) out.delta_chi_square = ahead;
+      out.chosen = k;
+      out.pose = pose;
+    }
+    if (settings.left_out_max < 1) break;
+  }
+  if (out.chosen >= 0) out.reason = Reason::none;
+  return out;
+}
+
+}  // namespace glint

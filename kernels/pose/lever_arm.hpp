@@ -1,0 +1,32 @@
+// How points of a rigid body move with its pose: the step between covariances about different
+// points of one tool.
+#pragma once
+
+#include "kernels/geometry.hpp"
+
+namespace glint {
+
+// Of a shift and a small rotation dtheta about the frame's fixed axes: p -> p + shift + dtheta x
+// lever, with the lever from the pose's reference to the point.
+[[nodiscard]] inline Eigen::Matrix<double, 3, 6> point_by_pose(const Vector3& lever) {
+  Eigen::Matrix<double, 3, 6> j;
+  j << 1, 0, 0, 0, lever.z(), -lever.y(),  //
+      0, 1, 0, -lever.z(), 0, lever.x(),   //
+      0, 0, 1, lever.y(), -lever.x(), 0;
+  return j;
+}
+
+// The change of (reference, rotation) when the reference moves by `lever`.
+[[nodiscard]] inline Matrix6 pose_by_pose(const Vector3& lever) {
+  Matrix6 j = Matrix6::Identity();
+  j.topRows<3>() = point_by_pose(lever);
+  return j;
+}
+
+// A pose's covariance with its reference moved by `offset`.
+[[nodiscard]] inline Matrix6 moved_covariance(const Matrix6& covariance, const Vector3& offset) {
+  const Matrix6 j = pose_by_pose(offset);
+  return j * covariance * j.transpose();
+}
+
+}  // namespace glint

@@ -1,0 +1,81 @@
+// The most likely pose of a tool from its labelled markers, each as sure as it is, and how sure the
+// pose is.
+//
+// What:     chi-square over the pixels' and ranges' own noise made least, from the rigid fit and
+//           from its depth flip (a flat tool has two minima); the lesser of both stands. Where
+//           the noise does not explain it, each marker is left out in turn, and the best such fit
+//           that the noise does explain stands.
+// Cost:     two weighted fits of some five steps: 6 us of five markers (bench_tracker); without one
+//           of n markers 2 n more.
+// Worst:    5 or more markers of which none or two are wrong: 2 (n + 1) fits of all steps.
+// Accuracy: reaches the Cramer-Rao bound where the tool is tilted by 20 degrees or more (glint
+//           experiment bound); below, where both minima run into each other, within some 15 %.
+// Source:   Foerstner and Wrobel 2016, Photogrammetric Computer Vision, section 4.4 (the weighted
+//           fit, its covariance and the test of its residuals); two minima of a flat target:
+//           Schweighofer and Pinz 2006.
+#pragma once
+
+#include <span>
+
+#include "kernels/geometry.hpp"
+#include "kernels/limits.hpp"
+#include "kernels/nonblocking.hpp"
+#include "kernels/pose/pose_prior.hpp"
+#include "kernels/pose/weighted_fit.hpp"
+#include "kernels/pose/weighted_marker.hpp"
+#include "kernels/reason.hpp"
+
+namespace glint {
+
+struct RefineSettings {
+  int steps_max = k_refine_steps_max;  // of each fit
+  int left_out_max = 1;                // 0: no marker is left out, a bad one spoils the pose
+};
+
+// So many markers are left when one was left out: three agree too easily.
+inline constexpr int k_markers_left_least = 4;
+// Two minima nearer to each other than this, in sigmas squared, are one.
+inline constexpr double k_minima_apart_least = 0.01;
+
+// The loops, as a node counts them.
+struct RefineWork {
+  int fits = 0;
+  int steps = 0;         // of all fits
+  int marker_steps = 0;  // steps times the markers in them
+};
+[[nodiscard]] constexpr RefineWork refine_work_max(int markers, const RefineSettings& settings) {
+  const int others = settings.left_out_max > 0 && markers > k_markers_left_least ? markers : 0;
+  const int steps = 2 * settings.steps_max;
+  return {2 * (1 + others), steps * (1 + others),
+          steps * (markers + others * (markers > 0 ? markers - 1 : 0))};
+}
+
+// The pose in which the markers look nearly as they do in the best one.
+struct OtherMinimum {
+  bool exists = false;
+  Pose T_camera_tool;
+  double delta_chi_square = 0;  // by how much it is worse; 9: three sigmas
+};
+
+struct RefinedPose {
+  Pose T_camera_tool;
+  Matrix6 covariance = Matrix6::Zero();  // of the reference; order as in fit_covariance.hpp
+  double chi_square = 0;
+  int degrees_of_freedom = 0;  // residuals, the prior's six too, less the pose's six
+  OtherMinimum other;
+  int left_out = -1;  // index of the marker that did not fit, -1: all count
+  RefineWork work;
+  Reason reason = Reason::none;
+};
+
+// reference_m: the point of the tool, in its frame, whose place is asked for (the tip). The prior
+// may be null; with one a single marker is enough, without one three that are not on a line.
+// Reason: too_few_markers (or more than k_markers_per_tool_max), degenerate, collinear,
+// out_of_range; or bad_fit: the noise does not explain what is left. Then the pose stands, with
+// left_out -1, but must not be called measured.
+[[nodiscard]] RefinedPose refine_pose(std::span<const WeightedMarker> markers,
+                                      const Vector3& reference_m, const PosePrior* prior = nullptr,
+                                      const RefineSettings& settings = {}) noexcept
+    GLINT_NONBLOCKING;
+
+}  // namespace glint
