@@ -2,11 +2,13 @@
 
 #include <vector>
 
+#include "platform/experiments/bound_experiment.hpp"
 #include "platform/experiments/centroid_experiment.hpp"
 #include "platform/experiments/cis_pivot.hpp"
 #include "platform/experiments/f2554.hpp"
 #include "platform/experiments/marker_mocap.hpp"
 #include "platform/experiments/motion_experiments.hpp"
+#include "platform/experiments/noise_experiment.hpp"
 
 namespace glint {
 
@@ -27,6 +29,10 @@ std::span<const CaseExperiment> case_experiments() {
        run_prediction},
       {"occlusion", "recorded motion with all markers but one or two hidden for 0.2 s", true,
        run_occlusion},
+      {"bound", "the pose of one frame beside the best that any estimator could do", false,
+       run_bound},
+      {"noise", "how often a tool is found, and wrongly, as the range noise grows", false,
+       run_noise},
   };
   return k_experiments;
 }

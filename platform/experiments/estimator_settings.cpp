@@ -57,13 +57,18 @@ Json motion_json(const ToolMotionSettings& settings) {
           {"gap_max_ns", settings.gap_max.nanoseconds}};
 }
 
+Json refine_json(const RefineSettings& settings) {
+  return {{"steps_max", settings.steps_max}, {"left_out_max", settings.left_out_max}};
+}
+
 }  // namespace
 
 std::string estimator_text() {
   const EstimatorSettings settings;
   return Json{{"correspond", correspond_json(settings.correspond)},
               {"pixel_noise", pixel_noise_json(settings.pixel_noise)},
-              {"motion", motion_json(settings.motion)}}
+              {"motion", motion_json(settings.motion)},
+              {"refine", refine_json(settings.refine)}}
       .dump();
 }
 

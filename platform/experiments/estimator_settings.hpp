@@ -6,15 +6,18 @@
 #include "kernels/image/pixel_noise.hpp"
 #include "kernels/motion/tool_motion.hpp"
 #include "kernels/pose/correspond_settings.hpp"
+#include "kernels/pose/refine_pose.hpp"
 
 namespace glint {
 
 // Default-constructed it is the configuration. Whoever adds a part of the estimator adds its
 // settings here, and their fields to estimator_text().
 struct EstimatorSettings {
-  CorrespondSettings correspond;
+  // Wider than where the residual alone decides, for here chi-square does.
+  CorrespondSettings correspond{.gate_sigmas = 8};
   PixelNoise pixel_noise;
   ToolMotionSettings motion;
+  RefineSettings refine;
 };
 
 // Every field by name, as JSON.

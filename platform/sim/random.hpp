@@ -25,6 +25,7 @@ enum class Stream : std::uint64_t {
   localisation = 8,
   reference = 9,
   room = 10,
+  points = 11,
 };
 
 [[nodiscard]] constexpr std::uint64_t mixed(std::uint64_t x) {

@@ -1,0 +1,167 @@
+#include "platform/experiments/noise_experiment.hpp"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "kernels/pose/correspond.hpp"
+#include "kernels/pose/decide_labeling.hpp"
+#include "platform/experiments/estimator_settings.hpp"
+#include "platform/experiments/noisy_frame.hpp"
+
+namespace glint {
+namespace {
+
+constexpr int k_frames = 100'000;
+constexpr int k_frames_quick = 500;
+constexpr double k_degree = 3.14159265358979323846 / 180;
+constexpr double k_pixel_sigma_px = 0.1;
+constexpr double k_gross_m = 0.02, k_gross_rad = 15 * k_degree;
+constexpr std::array k_noises_m = {0.0, 0.001, 0.002, 0.003, 0.005};
+
+enum class Knowledge { nothing, prior };
+
+struct NoiseCase {
+  const PointTool& tool;
+  double sigma_m;
+  int strays;
+  Knowledge knowledge;
+};
+
+SightNoise noise_of(const NoiseCase& c) { return {k_pixel_sigma_px, c.sigma_m}; }
+
+std::string name_of(const NoiseCase& c) {
+  std::array<char, 96> text;
+  std::snprintf(text.data(), text.size(), "%s %.0f mm, %d strays%s", c.tool.name.c_str(),
+                1e3 * c.sigma_m, c.strays, c.knowledge == Knowledge::prior ? ", prior" : "");
+  return text.data();
+}
+
+struct Tally {
+  std::int64_t frames = 0, found = 0, wrong = 0, gross = 0;
+  std::int64_t hypotheses = 0, hypotheses_most = 0, full = 0;
+
+  void add(const NoiseCase& c, const PointView& view, const Pose& truth, const Labeling& labeling,
+           const Pose& pose) {
+    ++found;
+    bool other = false, far = false;
+    for (int i = 0; i < c.tool.tool.marker_count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const Vector3& marker = c.tool.tool.markers_m[at];
+      other = other || (labeling.marker[at] >= 0 && labeling.marker[at] != view.truth[at]);
+      far = far || (pose * marker - truth * marker).norm() > k_gross_m;
+    }
+    wrong += other ? 1 : 0;
+    gross += far || turned_by(pose, truth) > k_gross_rad ? 1 : 0;
+  }
+};
+
+struct Bars {
+  Bar found, wrong, gross;
+};
+
+// Of each in 100,000 frames.
+Bars bars_of(const NoiseCase& c) {
+  Bars bars{Bar::none(), Bar::at_most(0), Bar::none()};
+  if (c.knowledge == Knowledge::prior) {
+    bars.found = Bar::at_least(99.99);
+    bars.gross = Bar::at_most(0);
+  } else if (c.tool.name == "8700339") {
+    bars.found = Bar::at_least(99.9);
+    bars.gross = Bar::at_most(c.sigma_m <= 0.002 ? 0 : 20);
+  } else {
+    bars.found = Bar::at_least(c.sigma_m <= 0.003 ? 99.9 : 99.5);
+    bars.wrong = Bar::none();
+  }
+  return bars;
+}
+
+ExperimentCase case_of(const NoiseCase& c, const std::string& method, const Tally& tally,
+                       bool judged) {
+  const Bars bars = judged ? bars_of(c) : Bars{};
+  const auto frames = static_cast<double>(tally.frames);
+  return {name_of(c),
+          method,
+          tally.frames,
+          {{"found", "%", 100 * static_cast<double>(tally.found) / frames, bars.found},
+           {"wrong", "", static_cast<double>(tally.wrong), bars.wrong},
+           {"gross", "", static_cast<double>(tally.gross), bars.gross},
+           {"hypotheses", "", static_cast<double>(tally.hypotheses) / frames, {}},
+           {"hypotheses_most", "", static_cast<double>(tally.hypotheses_most), {}},
+           {"search_full", "", static_cast<double>(tally.full), {}}}};
+}
+
+struct Tallies {
+  Tally glint, svd;
+};
+
+void try_frame(const NoiseCase& c, const NoisyFrame& frame, const EstimatorSettings& settings,
+               CorrespondScratch& scratch, Tallies& tallies) {
+  const bool predicted = c.knowledge == Knowledge::prior;
+  CorrespondSettings gated = settings.correspond;
+  gated.focal_px = 253;
+  gated.pixel_sigma_px = k_pixel_sigma_px;
+  gated.range_sigma_m = std::sqrt(noise_of(c).variance().range_m2);
+  // The limit of the rms is three sigmas of the declared noise, as the settings' own is.
+  gated.max_rms_m = std::max(gated.max_rms_m, 3 * gated.range_sigma_m);
+  Labelings labelings;
+  (void)propose_labelings(frame.view.markers, c.tool.tool, gated,
+                          predicted ? &frame.prior.T_camera_tool : nullptr, scratch, labelings);
+  for (Tally* tally : {&tallies.glint, &tallies.svd}) {
+    ++tally->frames;
+    tally->hypotheses += labelings.hypotheses;
+    tally->hypotheses_most = std::max<std::int64_t>(tally->hypotheses_most, labelings.hypotheses);
+    tally->full += labelings.reason == Reason::search_full ? 1 : 0;
+  }
+  const DecidedLabeling decided =
+      decide_labeling(frame.view.markers, frame.view.sights, c.tool.tool, labelings,
+                      predicted ? &frame.prior : nullptr, settings.refine);
+  if (decided.chosen >= 0) {
+    tallies.glint.add(c, frame.view, frame.truth,
+                      labelings.items[static_cast<std::size_t>(decided.chosen)],
+                      decided.pose.T_camera_tool);
+  }
+  if (labelings.count > 0) {
+    tallies.svd.add(c, frame.view, frame.truth, labelings.items[0],
+                    labelings.items[0].T_camera_tool);
+  }
+}
+
+std::vector<NoiseCase> cases_of(const PointTool& ndi, const PointTool& pointer) {
+  std::vector<NoiseCase> cases;
+  for (const int strays : {0, 5, 20}) {
+    for (const double sigma_m : k_noises_m) {
+      cases.push_back({ndi, sigma_m, strays, Knowledge::nothing});
+      cases.push_back({pointer, sigma_m, strays, Knowledge::nothing});
+      cases.push_back({ndi, sigma_m, strays, Knowledge::prior});
+    }
+  }
+  return cases;
+}
+
+}  // namespace
+
+CaseList run_noise(const CaseOptions& options) {
+  const EstimatorSettings settings;
+  const Camera camera = ahat_ray_table();
+  const PointTool ndi = ndi_8700339(), pointer = sttar_pointer();
+  const std::vector<NoiseCase> cases = cases_of(ndi, pointer);
+  const int frames = options.quick ? k_frames_quick : k_frames;
+  const auto scratch = std::make_unique<CorrespondScratch>();
+  const auto frame = std::make_unique<NoisyFrame>();
+  CaseList list{"noise", {}, {}};
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    Tallies tallies;
+    for (int f = 0; f < frames; ++f) {
+      SampleNumbers numbers(options.seed, 1000 + k, static_cast<std::uint64_t>(f));
+      draw_frame({cases[k].tool, noise_of(cases[k]), cases[k].strays}, camera, numbers, *frame);
+      try_frame(cases[k], *frame, settings, *scratch, tallies);
+    }
+    list.cases.push_back(case_of(cases[k], "glint", tallies.glint, !options.quick));
+    list.cases.push_back(case_of(cases[k], "svd", tallies.svd, false));
+    if (options.progress) options.progress(static_cast<int>(k) + 1, static_cast<int>(cases.size()));
+  }
+  return list;
+}
+
+}  // namespace glint
