@@ -150,11 +150,6 @@ void correct_centroid(const DepthView& view, const SphereShift& shift, const Nom
   for (float& sigma : out.sigma_px) sigma += static_cast<float>(radius_px);
 }
 
-// By the root of a double: that of a float asks for one more symbol of the math library.
-float root_of(float variance) {
-  return static_cast<float>(std::sqrt(static_cast<double>(variance)));
-}
-
 struct Measured {
   bool has_ray = false;
   BackProjectWork work;
@@ -177,7 +172,7 @@ Measured measure(const Frame& frame, const Blob& blob, std::uint16_t blob_index,
     if (blob.flags & k_blob_touches_edge) out.flags |= k_marker_touches_edge;
     if (blob.flags & k_blob_has_neighbour) out.flags |= k_marker_has_neighbour;
     if (blob.flags & k_blob_uneven) out.flags |= k_marker_uneven;
-    out.sigma_px = {root_of(blob.variance_px2[0]), root_of(blob.variance_px2[1])};
+    out.sigma_px = {std::sqrt(blob.variance_px2[0]), std::sqrt(blob.variance_px2[1])};
     const DepthView view{frame, blob, depth, rays.value};
     measured.work = measure_range(view, nominal, most, out);
     correct_centroid(view, shift, nominal, out);
