@@ -11,9 +11,9 @@
 #include <sstream>
 
 #include "kernels/pose/rigid_fit.hpp"
+#include "platform/sensors/c3d_reader.hpp"
 #include "platform/sensors/points_csv.hpp"
 #include "platform/session/replay_points.hpp"
-#include "platform/sensors/c3d_reader.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
 
 namespace glint {
