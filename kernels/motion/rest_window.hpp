@@ -1,9 +1,8 @@
 // Does the tool rest, since when, and where? The longest run of frames whose older and newer halves
 // agree; at rest the weighted mean over them is the best estimate there is.
 //
-// What:     windows of the newest n, 3/4 n, 1/2 n, 3/8 n .. frames, from the shortest on; each is
-// cut
-//           into an older and a newer half whose means differ by d' (C1 + C2)^-1 d, C the
+// What:     windows of the newest n, 3/4 n, 1/2 n, 3/8 n .. frames, from the shortest on; each
+//           is cut into an older and a newer half whose means differ by d' (C1 + C2)^-1 d, C the
 //           covariance of a half's mean. The first that differs too much ends the rest there.
 //           Frames count alike.
 // Cost:     at most k_rest_levels tests of one 6x6 factor each, 0.4 us: 5 us.
