@@ -5,7 +5,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_grid_cells = 32;  // each way
+constexpr int k_grid_cells = 128;  // each way
 
 Result<LocalRays> from_table(const CameraModel& camera, const Vector2& pixel, int& lens_steps) {
   LocalRays local;

@@ -39,8 +39,8 @@ inline constexpr int k_table_ray_steps = k_rays_looked_up_max * k_lens_steps_a_r
 static_assert(k_table_ray_steps <= k_ray_steps_max);
 
 // The steps after which this lens has its rays: the most that any of a grid of pixels over the
-// frame takes, and one more; k_ray_steps_max at most. For configuring: as long as a thousand
-// rays take.
+// frame takes, and one more; k_ray_steps_max at most. For configuring: as long as some
+// thousand rays take.
 [[nodiscard]] int ray_steps_needed(const CameraModel& camera) noexcept;
 
 }  // namespace glint

@@ -317,6 +317,7 @@ Cell cell_from_text(const std::string& text, const std::string& file, const Cell
   TomlReader root(table, file, "");
   (void)root.text("name", "");
   parser.read_camera(root.table("camera"));
+  cell.ray_steps = ray_steps_needed(cell.camera.model);
   parser.read_tools(root);
   parser.read_simulator(root.table("simulator"));
   read_rates(root.table("rates"), cell);
@@ -337,7 +338,7 @@ Limits limits_of(const Cell& cell) {
   limits.height = camera.height;
   limits.reflectivity_bytes = (cell.camera.reflectivity_bits + 7) / 8;
   limits.lens_steps = camera.lens == Lens::lut ? k_lens_steps_max : 0;
-  limits.ray_steps = ray_steps_needed(camera);
+  limits.ray_steps = cell.ray_steps;
   limits.tools = std::max(cell.budget.tools, cell.tools.count);  // some join after reading
   limits.markers_per_tool = 3;
   for (int t = 0; t < cell.tools.count; ++t) {

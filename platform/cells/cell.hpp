@@ -93,7 +93,8 @@ struct Cell {
   std::string file;  // where it was read, for messages
   std::string text;  // as read: goes into every recording
   Camera camera;
-  std::string ray_table;  // path, or empty
+  int ray_steps = k_ray_steps_max;  // of its lens: found once, for trying a lens takes a while
+  std::string ray_table;            // path, or empty
   ToolSet tools;
   std::vector<std::string> tool_files;
   SimulatorSettings simulator;
