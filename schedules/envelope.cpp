@@ -168,10 +168,8 @@ std::string_view name_of(EnvelopeFault fault) {
 }
 
 LoopWeights balanced_weights(std::span<const ObservedCall> calls,
-                             std::span<const graph::LoopCounts> maxima) {
+                             std::span<const ProblemSize> sizes) {
   LoopWeights weights{};
-  double most = 0;
-  for (const ObservedCall& call : calls) most = std::max(most, call.cost);
   for (const ObservedCall& call : calls) {
     if (!(call.cost > 0)) continue;
     for (std::size_t j = 0; j < k_rows; ++j) {
@@ -179,10 +177,10 @@ LoopWeights balanced_weights(std::span<const ObservedCall> calls,
           static_cast<double>(call.counts[j]) / call.cost / static_cast<double>(calls.size());
     }
   }
-  for (const graph::LoopCounts& maximum : maxima) {
-    if (!(most > 0)) continue;
+  for (const ProblemSize& size : sizes) {
+    if (!(size.dearest > 0)) continue;
     for (std::size_t j = 0; j < k_rows; ++j) {
-      weights[j] += static_cast<double>(maximum[j]) / most;
+      weights[j] += static_cast<double>(size.maximum[j]) / size.dearest;
     }
   }
   return weights;

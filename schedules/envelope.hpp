@@ -29,11 +29,17 @@ struct ObservedCall {
 
 using LoopWeights = std::array<double, graph::k_loops_max>;
 
-// Weights that ask for a small bound at each of `maxima` and, as strongly as at one of them, at the
-// calls on average: without the latter all cost would go to the loop that always runs, and a
-// smaller problem would get no smaller bound.
+// A size of problem: what its loops do at most, and the dearest call seen of it.
+struct ProblemSize {
+  graph::LoopCounts maximum;
+  double dearest = 0;
+};
+
+// Weights that ask for a small ratio of bound to dearest call at each size, so that a small problem
+// counts as much as a large one, and, as strongly as at one of them, at the calls on average:
+// without the latter all cost would go to the loop that always runs.
 [[nodiscard]] LoopWeights balanced_weights(std::span<const ObservedCall> calls,
-                                           std::span<const graph::LoopCounts> maxima);
+                                           std::span<const ProblemSize> sizes);
 
 struct EnvelopeProblem {
   std::span<const ObservedCall> calls;

@@ -22,7 +22,7 @@ struct MeasureCommand {
   std::vector<std::string> enemies;
   std::uint64_t inputs = 10'000;
   double margin_percent = 5, ns_per_instruction = 1;
-  int jobs = 0;
+  int jobs = 0, passes = 1;
 };
 
 MeasureRequest request_of(const MeasureCommand& command) {
@@ -44,6 +44,17 @@ Observations observe(const MeasureRequest& request, const std::string& what) {
   return measure(request, [&](int done, int all) { progress.show(done, all); });
 }
 
+Observations observe_in_passes(const MeasureRequest& request, int passes) {
+  const std::string what =
+      request.enemy == "none" ? "measuring" : "measuring beside " + request.enemy;
+  Observations seen = observe(request, what);
+  for (int pass = 2; pass <= passes; ++pass) {
+    const std::string which = ", pass " + std::to_string(pass) + " of " + std::to_string(passes);
+    keep_least(seen, observe(request, what + which));
+  }
+  return seen;
+}
+
 double median_of(const KernelObservations& kernel) {
   std::vector<double> costs;
   for (const Observation& seen : kernel.calls) costs.push_back(seen.call.cost);
@@ -52,12 +63,12 @@ double median_of(const KernelObservations& kernel) {
 }
 
 std::vector<Interference> interference_of(MeasureRequest request, const Observations& alone,
-                                          const std::vector<std::string>& enemies) {
+                                          const MeasureCommand& command) {
   std::vector<Interference> factors;
-  for (const std::string& enemy : enemies) {
+  for (const std::string& enemy : command.enemies) {
     if (enemy == "none") continue;
     request.enemy = enemy;
-    const Observations beside = observe(request, "measuring beside " + enemy);
+    const Observations beside = observe_in_passes(request, command.passes);
     for (std::size_t i = 0; i < alone.kernels.size(); ++i) {
       const double before = median_of(alone.kernels[i]);
       const double after = median_of(beside.kernels[i]);
@@ -106,6 +117,7 @@ void print(const Measurement& measurement) {
 std::string command_text(const MeasureCommand& command) {
   std::string text = "glint budget measure --count " + command.count + " --arch " + command.arch +
                      " --inputs " + std::to_string(command.inputs);
+  if (command.passes > 1) text += " --passes " + std::to_string(command.passes);
   return command.cache == "warm" ? text : text + " --cache " + command.cache;
 }
 
@@ -136,6 +148,10 @@ int measure_costs(const MeasureCommand& command) {
   if (request.count_instructions && !command.enemies.empty()) {
     throw InputError("--enemy changes time, not instructions; expected it with --count time");
   }
+  if (request.count_instructions && command.passes > 1) {
+    throw InputError(
+        "--passes is for times, as instructions repeat; expected it with --count time");
+  }
   const BoardExpectation expected = expected_board();
   Board board;
   if (!command.board.empty()) board = load_board(command.board, expected, BoardUse::analyse);
@@ -146,7 +162,7 @@ int measure_costs(const MeasureCommand& command) {
                      (request.count_instructions ? "time" : "instructions"));
   }
 
-  const Observations seen = observe(request, "measuring");
+  const Observations seen = observe_in_passes(request, command.passes);
   Measurement measurement;
   measurement.arch = command.arch;
   measurement.cache = command.cache;
@@ -163,7 +179,7 @@ int measure_costs(const MeasureCommand& command) {
     if (!command.board.empty() && costs == nullptr) continue;  // of no graph that runs
     measurement.kernels.push_back(costs_of(kernel, costs, command.margin_percent / 100));
   }
-  measurement.interference = interference_of(request, seen, command.enemies);
+  measurement.interference = interference_of(request, seen, command);
   print(measurement);
   write_json(command.json, measurement_json(measurement));
   bool holds = true;
@@ -209,6 +225,11 @@ void add_budget_measure(CLI::App& budget, int& exit_code) {
       ->capture_default_str();
   command->add_option("--cache", arguments->cache, "warm, or evicted before each call")
       ->check(CLI::IsMember({"warm", "cold"}))
+      ->capture_default_str();
+  command
+      ->add_option("--passes", arguments->passes,
+                   "over all inputs; of each input the least time counts")
+      ->check(CLI::Range(1, 100))
       ->capture_default_str();
   command->add_option("--enemy", arguments->enemies, "what to be measured beside, too")
       ->check(CLI::IsMember({"none", "cache", "bandwidth", "other_core", "interrupts"}));

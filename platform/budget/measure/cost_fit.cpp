@@ -28,9 +28,14 @@ MeasuredCosts costs_of(const KernelObservations& kernel, const BoardKernel* boar
   result.name = kernel.name;
   result.loops = kernel.loops;
   result.declared = kernel.worst[0];
+  std::array<ProblemSize, k_limit_sets> sizes;  // as the half that is fitted on shows them
+  for (std::size_t i = 0; i < k_limit_sets; ++i) sizes[i].maximum = kernel.worst[i];
   double dearest = -1;
   for (const Observation& seen : kernel.calls) {
-    half[fits_on(seen.input) ? 0 : 1].push_back(seen.call);
+    const bool fits = fits_on(seen.input);
+    half[fits ? 0 : 1].push_back(seen.call);
+    ProblemSize& size = sizes[seen.input.limits];
+    if (fits) size.dearest = std::max(size.dearest, seen.call.cost);
     result.sorted_costs.push_back(seen.call.cost);
     for (std::size_t j = 0; j < graph::k_loops_max; ++j) {
       result.observed[j] = std::max(result.observed[j], seen.call.counts[j]);
@@ -50,8 +55,8 @@ MeasuredCosts costs_of(const KernelObservations& kernel, const BoardKernel* boar
   if (board != nullptr) {
     for (std::size_t j = 0; j < board->cost.size(); ++j) envelope.cost[j] = board->cost[j];
   } else {
-    envelope = fit_envelope({half[0], balanced_weights(half[0], kernel.worst),
-                             static_cast<int>(kernel.loops.size()), margin});
+    envelope = fit_envelope(
+        {half[0], balanced_weights(half[0], sizes), static_cast<int>(kernel.loops.size()), margin});
     if (!envelope) {
       throw InputError(kernel.name +
                        ": no costs can be fitted: " + std::string(name_of(envelope.fault)));

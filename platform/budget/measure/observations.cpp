@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -137,7 +138,31 @@ class MeasuringRun {
   MeasuringFolder folder_;
 };
 
+void keep_least(KernelObservations& kept, const KernelObservations& pass) {
+  if (kept.calls.size() != pass.calls.size()) {
+    throw InputError(kept.name + ": " + std::to_string(pass.calls.size()) +
+                     " calls in a pass; expected " + std::to_string(kept.calls.size()));
+  }
+  for (std::size_t i = 0; i < kept.calls.size(); ++i) {
+    if (kept.calls[i].call.counts != pass.calls[i].call.counts) {
+      throw InputError(kept.name + ": call " + std::to_string(i) +
+                       " has other loop counts in a pass; expected the same work each time");
+    }
+    kept.calls[i].call.cost = std::min(kept.calls[i].call.cost, pass.calls[i].call.cost);
+  }
+}
+
 }  // namespace
+
+void keep_least(Observations& kept, const Observations& pass) {
+  if (kept.kernels.size() != pass.kernels.size()) {
+    throw InputError(std::to_string(pass.kernels.size()) + " kernels in a pass; expected " +
+                     std::to_string(kept.kernels.size()));
+  }
+  for (std::size_t i = 0; i < kept.kernels.size(); ++i) {
+    keep_least(kept.kernels[i], pass.kernels[i]);
+  }
+}
 
 Observations measure(const MeasureRequest& request, const std::function<void(int, int)>& progress) {
   return MeasuringRun(request).run(progress);

@@ -47,6 +47,11 @@ struct Observations {
 [[nodiscard]] Observations measure(const MeasureRequest& request,
                                    const std::function<void(int, int)>& progress);
 
+// Keeps the lesser cost of each call. Times of several passes: minutes apart a shared machine's
+// neighbours are others, and what they take is not the kernel's own. Throws InputError where a call
+// of the other pass did something else.
+void keep_least(Observations& kept, const Observations& pass);
+
 // One kernel's file, with the costs of `counted` (an empty call first) where it is not empty.
 // Throws InputError where the two do not belong together.
 [[nodiscard]] KernelObservations parse_observations(const std::string& name,

@@ -31,13 +31,24 @@ std::vector<ObservedCall> exact_calls(int how_many, double call, double run, dou
 
 TEST(Envelope, FindsTheCostsThatCallsWereMadeFrom) {
   const auto calls = exact_calls(5000, 120, 7.5, 0.25);
-  const graph::LoopCounts maximum{{1, 1000, 200'000}};
-  const LoopWeights weights = balanced_weights(calls, std::span(&maximum, 1));
+  const ProblemSize size{{{1, 1000, 200'000}}, 57'620};
+  const LoopWeights weights = balanced_weights(calls, std::span(&size, 1));
   const Envelope envelope = fit_envelope({calls, weights, 3, 0});
   ASSERT_TRUE(envelope) << name_of(envelope.fault);
   EXPECT_NEAR(envelope.cost[0], 120, 0.01);
   EXPECT_NEAR(envelope.cost[1], 7.5, 1e-4);
   EXPECT_NEAR(envelope.cost[2], 0.25, 1e-6);
+}
+
+// Either loop can carry the call's cost: the first is a little dearer for the large problem, the
+// second ten times as dear for the small one.
+TEST(Envelope, ASmallProblemsBoundCountsAsMuchAsALargeOnes) {
+  const std::array<ObservedCall, 1> calls = {{{{{1, 1}}, 1}}};
+  const std::array<ProblemSize, 2> sizes = {{{{{1000, 980}}, 1000}, {{{1, 10}}, 1}}};
+  const Envelope envelope = fit_envelope({calls, balanced_weights(calls, sizes), 2, 0});
+  ASSERT_TRUE(envelope) << name_of(envelope.fault);
+  EXPECT_NEAR(envelope.cost[0], 1, 1e-9);
+  EXPECT_NEAR(envelope.cost[1], 0, 1e-9);
 }
 
 TEST(Envelope, WidensEveryCostByTheDeclaredMargin) {

@@ -117,6 +117,32 @@ TEST(Measure, TakesTimeOnThisMachine) {
   EXPECT_GT(dearest, 10);  // 256 dependent steps through memory
 }
 
+Observations pass_of(std::initializer_list<double> costs) {
+  Observations pass;
+  pass.kernels.emplace_back().name = "Toy";
+  for (const double cost : costs) {
+    pass.kernels[0].calls.push_back({{}, {{{1, 7}}, cost}});
+  }
+  return pass;
+}
+
+TEST(Passes, KeepTheLeastOfEachCall) {
+  Observations kept = pass_of({5, 2, 9});
+  keep_least(kept, pass_of({4, 3, 9}));
+  EXPECT_EQ(kept.kernels[0].calls[0].call.cost, 4);
+  EXPECT_EQ(kept.kernels[0].calls[1].call.cost, 2);
+  EXPECT_EQ(kept.kernels[0].calls[2].call.cost, 9);
+}
+
+TEST(Passes, RefuseOneThatDidOtherWork) {
+  Observations kept = pass_of({5, 2});
+  EXPECT_THROW(keep_least(kept, pass_of({5})), InputError);
+  EXPECT_THROW(keep_least(kept, {}), InputError);
+  Observations other = pass_of({5, 2});
+  other.kernels[0].calls[1].call.counts[1] = 8;
+  EXPECT_THROW(keep_least(kept, other), InputError);
+}
+
 TEST(Measure, RefusesAKernelThatIsNotThereAndNamesThoseThatAre) {
   MeasureRequest request = toy_request();
   request.count_instructions = false;
