@@ -1,5 +1,6 @@
 #include "kernels/pose/depth_flip.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace glint {
@@ -7,7 +8,7 @@ namespace {
 
 // With the largest element 1, so that powers neither vanish nor overflow.
 Matrix3 scaled(const Matrix3& matrix) {
-  const double largest = matrix.diagonal().maxCoeff();
+  const double largest = std::max({matrix(0, 0), matrix(1, 1), matrix(2, 2)});
   return largest > 0 ? Matrix3(matrix / largest) : Matrix3::Identity();
 }
 
