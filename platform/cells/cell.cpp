@@ -10,6 +10,7 @@
 #include "kernels/wire/can_frames.hpp"
 #include "platform/cells/toml_reader.hpp"
 #include "platform/cells/tool_file.hpp"
+#include "platform/cells/tool_notices.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {
@@ -304,6 +305,8 @@ void CellParser::read_tools(TomlReader& root) {
                        "\"; expected a name of its own for each");
     }
   }
+  cell.notices = tool_notices(cell.tools, cell.tool_files,
+                              cell.file + ":" + std::to_string(root.line_of("tools")));
 }
 
 }  // namespace

@@ -97,6 +97,7 @@ struct Cell {
   std::string ray_table;            // path, or empty
   ToolSet tools;
   std::vector<std::string> tool_files;
+  std::vector<std::string> notices;  // what its user should know, a line each
   SimulatorSettings simulator;
   bool realtime = true;  // frames arrive at their time; otherwise as fast as can be
   double tick_hz = 250;

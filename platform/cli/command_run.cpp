@@ -79,7 +79,9 @@ void add_run(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<RunArguments>();
   command->footer(
       "Examples:\n  glint run --out out --json out/summary.json\n"
-      "  glint run --config my_cell.toml --can socketcan:can0");
+      "  glint run --config my_cell.toml --can socketcan:can0\n"
+      "Tools that this sensor cannot tell apart are refused; of those that it may confuse, and of\n"
+      "a tool's markers that may pass for others of its own, the table warns: `this cell`.");
   command->add_option("--config", arguments->config, "a cell file; without it the built-in one");
   command->add_option("--out", arguments->out, "folder of all files written")
       ->capture_default_str();

@@ -143,6 +143,7 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
                        {"recording_reason", result.recording.reason},
                        {"recording_bytes", result.recording.bytes},
                        {"output_sha256", result.output_sha256},
+                       {"notices", cell.notices},
                        {"best_effort", best_effort(result)},
                        {"refused", result.refused},
                        {"budget", budget_of(plan, result)}};
@@ -213,6 +214,7 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
   row("output_sha256", result.output_sha256);
   for (const std::string& file : result.files) row("written", file);
   if (!result.recording.reason.empty()) row("recording", result.recording.reason);
+  for (const auto& notice : summary.at("notices")) row("this cell", notice.get<std::string>());
   for (const std::string& refused : result.refused) row("refused", refused);
   for (const std::string& line : result.machine.spoils) row("this machine", line);
 }

@@ -1,0 +1,269 @@
+// The reference tries every labeling with the tracker's own rigid fit.
+#include "platform/cells/tool_distinction.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <numeric>
+#include <set>
+#include <vector>
+
+#include "kernels/pose/rigid_fit.hpp"
+#include "platform/cells/tool_file.hpp"
+#include "tests/unit/platform/cells/tools_at_hand.hpp"
+
+namespace glint {
+namespace {
+
+using test::odd_tool;
+using test::random_tool;
+using test::redrawn;
+using test::set_of;
+using test::tool_of;
+
+DistinctionSettings without_limit() {
+  DistinctionSettings settings;
+  settings.limit_sigmas = 1e6;
+  return settings;
+}
+
+// Of all ways to take `wanted` of a's markers for b's; a's own exchanges where they are the same.
+double nearest_of_all_m(const Tool& a, const Tool& b, int wanted) {
+  double least = INFINITY;
+  for (unsigned chosen = 0; chosen < 1U << a.marker_count; ++chosen) {
+    if (std::popcount(chosen) != wanted) continue;
+    std::vector<int> names(static_cast<std::size_t>(b.marker_count));
+    std::iota(names.begin(), names.end(), 0);
+    do {
+      std::vector<Vector3> seen, model;
+      bool identity = &a == &b;
+      for (int i = 0; i < a.marker_count; ++i) {
+        if (((chosen >> i) & 1U) == 0) continue;
+        const int name = names[seen.size()];
+        identity = identity && name == i;
+        seen.push_back(a.markers_m[static_cast<std::size_t>(i)]);
+        model.push_back(b.markers_m[static_cast<std::size_t>(name)]);
+      }
+      if (identity) continue;
+      const RigidFit fit = fit_rigid(model, seen);
+      if (fit.reason == Reason::none) least = std::min(least, fit.rms_m);
+    } while (std::next_permutation(names.begin(), names.end()));
+  }
+  return least * std::sqrt(static_cast<double>(wanted));
+}
+
+const Likeness* likeness_of(const Distinction& found, int one, int other) {
+  for (const Likeness& likeness : found.likenesses) {
+    if (std::set{likeness.seen, likeness.other} == std::set{one, other}) return &likeness;
+  }
+  return nullptr;
+}
+
+TEST(ToolDistinction, FindsWhatTryingAllLabelingsFinds) {
+  test::Random random(1);
+  int compared = 0, with_limit = 0;
+  for (int round = 0; round < 60; ++round) {
+    const ToolSet set = set_of({random_tool(random, 3 + random.below(3), 0.06),
+                                random_tool(random, 3 + random.below(3), 0.06),
+                                random_tool(random, 3 + random.below(3), 0.06)});
+    const Distinction found = distinguish(set, without_limit());
+    const Distinction near = distinguish(set, {});
+    ASSERT_EQ(found.likenesses.size(), 6u);
+    for (const Likeness& likeness : found.likenesses) {
+      const Tool& seen = set.items[static_cast<std::size_t>(likeness.seen)];
+      const Tool& other = set.items[static_cast<std::size_t>(likeness.other)];
+      const int wanted = &seen == &other ? seen.marker_count : std::min(4, other.marker_count);
+      const double expected = nearest_of_all_m(seen, other, wanted) / 0.0015;
+      EXPECT_NEAR(likeness.distance_sigmas, expected, 1e-5 + 1e-9 * expected);
+      EXPECT_EQ(likeness.markers, wanted);
+      EXPECT_FALSE(likeness.search_full);
+      ++compared;
+      const Likeness* const nearer = likeness_of(near, likeness.seen, likeness.other);
+      EXPECT_EQ(nearer != nullptr, expected < k_distinct_sigmas) << expected;
+      if (nearer == nullptr) continue;
+      EXPECT_NEAR(nearer->distance_sigmas, expected, 1e-5);
+      ++with_limit;
+    }
+  }
+  EXPECT_EQ(compared, 360);
+  EXPECT_GT(with_limit, 50);
+}
+
+TEST(ToolDistinction, SaysHowOftenNoiseMakesTheWrongLabelingFitBetter) {
+  // Flat, and nearly the same turned over.
+  const Tool tool = tool_of({{-40, 0, 0}, {40, 0, 0}, {3, 55, 0}, {0, 20, 0}});
+  const Distinction found = distinguish(set_of({tool}), {});
+  ASSERT_EQ(found.likenesses.size(), 1u);
+  const Likeness& likeness = found.likenesses[0];
+  test::Random random(7);
+  constexpr int frames = 40'000;
+  int wrong = 0;
+  for (int frame = 0; frame < frames; ++frame) {
+    std::vector<Vector3> measured, renamed;
+    for (std::size_t i = 0; i < 4; ++i) {
+      measured.push_back(tool.markers_m[i] + random.vector(0.0015));
+      renamed.push_back(tool.markers_m[static_cast<std::size_t>(likeness.taken_for[i])]);
+    }
+    const double right_m = fit_rigid(std::span(tool.markers_m.data(), 4), measured).rms_m;
+    if (fit_rigid(renamed, measured).rms_m < right_m) ++wrong;
+  }
+  const double share = static_cast<double>(wrong) / frames;
+  std::printf("  %.2f sigma: %.4f of frames, predicted %.4f\n", likeness.distance_sigmas, share,
+              wrong_share(likeness.distance_sigmas));
+  ASSERT_GT(wrong, 400);
+  EXPECT_NEAR(share / wrong_share(likeness.distance_sigmas), 1, 0.1);
+}
+
+TEST(ToolDistinction, FindsEqualToolsHoweverTheyLieAndAreNumbered) {
+  const Pose moved{Quaternion(0.5, 0.1, -0.7, 0.2).normalized(), Vector3(0.3, -0.2, 0.1)};
+  const ToolSet set = set_of(
+      {odd_tool(), redrawn(odd_tool(), [&](const Vector3& point) { return moved * point; })});
+  const Distinction found = distinguish(set, {});
+  ASSERT_EQ(found.likenesses.size(), 1u);
+  EXPECT_LT(found.likenesses[0].distance_sigmas, 1e-4);
+  for (std::size_t i = 0; i < 5; ++i) {
+    const int name = found.likenesses[0].taken_for[i];
+    if (name >= 0) {
+      EXPECT_EQ(name, 4 - static_cast<int>(i));
+    }
+  }
+}
+
+TEST(ToolDistinction, TellsAToolFromItsMirrorImageUnlessItIsFlat) {
+  const auto mirrored = [](const Vector3& point) {
+    return Vector3(-point.x(), point.y(), point.z());
+  };
+  EXPECT_TRUE(
+      distinguish(set_of({odd_tool(), redrawn(odd_tool(), mirrored)}), {}).likenesses.empty());
+  const Tool flat = tool_of({{0, 0, 0}, {70, 5, 0}, {20, 90, 0}, {110, 60, 0}});
+  const Distinction found = distinguish(set_of({flat, redrawn(flat, mirrored)}), {});
+  ASSERT_NE(likeness_of(found, 0, 1), nullptr);
+  EXPECT_LT(likeness_of(found, 0, 1)->distance_sigmas, 1e-4);
+}
+
+TEST(ToolDistinction, FindsAToolOfThreeMarkersWithinALargerOneNotTheOtherWayRound) {
+  const Tool large = odd_tool();
+  const Tool three = tool_of({{-40, 45, 115}, {45, 45, 240}, {22, 24, 129}});
+  for (const ToolSet& set : {set_of({large, three}), set_of({three, large})}) {
+    const Distinction found = distinguish(set, {});
+    ASSERT_EQ(found.likenesses.size(), 1u);
+    const Likeness& likeness = found.likenesses[0];
+    EXPECT_EQ(set.items[static_cast<std::size_t>(likeness.other)].marker_count, 3);
+    EXPECT_EQ(likeness.markers, 3);
+    EXPECT_EQ(likeness.taken_for, (TakenFor{-1, 0, 1, -1, 2, -1, -1, -1}));
+  }
+}
+
+TEST(ToolDistinction, SeesMarkersOnALineThatNearlyFitATriangle) {
+  // Three of the larger tool's lie on a line; the smaller one is bent by 3 mm.
+  const Tool ruled = tool_of({{0, 0, 0}, {40, 0, 0}, {100, 0, 0}, {130, 80, 30}});
+  const Tool bent = tool_of({{0, 0, 0}, {40, 3, 0}, {100, 0, 0}});
+  const Distinction found = distinguish(set_of({ruled, bent}), {});
+  ASSERT_NE(likeness_of(found, 0, 1), nullptr);
+  // Its markers leave 2.4 mm to the best line through them.
+  EXPECT_GT(likeness_of(found, 0, 1)->distance_sigmas, 1.0);
+  EXPECT_LT(likeness_of(found, 0, 1)->distance_sigmas, 2.0);
+}
+
+TEST(ToolDistinction, PassesOverMarkersOnALineWhichTheTrackersFitRefuses) {
+  const Tool first = tool_of({{0, 0, 0}, {40, 0, 0}, {100, 0, 0}, {130, 0, 0}, {20, 80, 0}});
+  const Tool second = tool_of({{0, 0, 0}, {40, 0, 0}, {100, 0, 0}, {130, 0, 0}, {90, 0, 75}});
+  const ToolSet set = set_of({first, second});
+  const Distinction found = distinguish(set, without_limit());
+  ASSERT_NE(likeness_of(found, 0, 1), nullptr);
+  EXPECT_NEAR(likeness_of(found, 0, 1)->distance_sigmas,
+              nearest_of_all_m(set.items[0], set.items[1], 4) / 0.0015, 1e-5);
+  EXPECT_GT(likeness_of(found, 0, 1)->distance_sigmas, k_distinct_sigmas);
+}
+
+// A cube's corners, and another's a little larger: every labeling of one is near one of the other.
+Tool cube_of(double mm) {
+  return tool_of({{0, 0, 0},
+                  {mm, 0, 0},
+                  {0, mm, 0},
+                  {mm, mm, 0},
+                  {0, 0, mm},
+                  {mm, 0, mm},
+                  {0, mm, mm},
+                  {mm, mm, mm}});
+}
+
+TEST(ToolDistinction, StopsAtItsStepsAndSaysSo) {
+  DistinctionSettings settings;
+  settings.steps_max = 20;
+  const Distinction cut = distinguish(set_of({cube_of(60), cube_of(66)}), settings);
+  ASSERT_EQ(cut.likenesses.size(), 3u);
+  for (const Likeness& likeness : cut.likenesses) EXPECT_TRUE(likeness.search_full);
+  EXPECT_LE(cut.steps_most, 20);
+  const Distinction whole = distinguish(set_of({cube_of(60), cube_of(66)}), {});
+  for (const Likeness& likeness : whole.likenesses) EXPECT_FALSE(likeness.search_full);
+}
+
+// Prints what it took, for the clock is not this test's to judge: the steps are.
+Distinction timed(const char* name, const ToolSet& set, const DistinctionSettings& settings = {}) {
+  const auto start = std::chrono::steady_clock::now();
+  Distinction found = distinguish(set, settings);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  std::printf("  %-14s %.3f s, at most %lld steps for a pair\n", name, took.count(),
+              static_cast<long long>(found.steps_most));
+  return found;
+}
+
+TEST(ToolDistinction, OfSixteenToolsOfEightMarkersEndsWithinItsSteps) {
+  test::Random random(3);
+  ToolSet drawn, cubes, bent_cubes;
+  drawn.count = cubes.count = bent_cubes.count = k_tools_max;
+  for (std::size_t t = 0; t < k_tools_max; ++t) {
+    drawn.items[t] = random_tool(random, k_markers_per_tool_max, 0.15);
+    cubes.items[t] = cube_of(50 + 2 * static_cast<double>(t));
+    bent_cubes.items[t] = redrawn(
+        cube_of(60), [&](const Vector3& point) { return Vector3(point + random.vector(0.003)); });
+  }
+  const Distinction usual = timed("random", drawn);
+  EXPECT_LE(usual.steps_most, DistinctionSettings{}.steps_max / 10);
+  for (const Likeness& likeness : usual.likenesses) EXPECT_FALSE(likeness.search_full);
+  for (const Distinction& alike : {timed("cubes", cubes), timed("bent cubes", bent_cubes),
+                                   timed("without limit", drawn, without_limit())}) {
+    EXPECT_LE(alike.steps_most, DistinctionSettings{}.steps_max);
+    EXPECT_GE(alike.likenesses.size(), static_cast<std::size_t>(k_tools_max));
+  }
+}
+
+TEST(ToolDistinction, OfRealToolsIsListed) {
+  const char* data = std::getenv("GLINT_TEST_DATA");
+  const std::filesystem::path folder =
+      std::filesystem::path(data == nullptr ? "" : data) / "tool_defs";
+  if (data == nullptr || !std::filesystem::is_directory(folder)) {
+    GTEST_SKIP() << "no tool_defs; set GLINT_TEST_DATA";
+  }
+  std::set<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string ending = entry.path().extension().string();
+    if (ending == ".rom" || ending == ".ini") files.insert(entry.path());
+  }
+  ASSERT_FALSE(files.empty());
+  ToolSet set;
+  for (const auto& file : files) {
+    if (set.count == k_tools_max) break;
+    set.items[static_cast<std::size_t>(set.count++)] = load_tool(file.string());
+  }
+  const Distinction found = distinguish(set, without_limit());
+  for (const Likeness& likeness : found.likenesses) {
+    const Tool& seen = set.items[static_cast<std::size_t>(likeness.seen)];
+    const Tool& other = set.items[static_cast<std::size_t>(likeness.other)];
+    std::printf("  %-8s %-8s %6.2f sigma, %.2g of frames\n", seen.name.data(),
+                &seen == &other ? "itself" : other.name.data(), likeness.distance_sigmas,
+                wrong_share(likeness.distance_sigmas));
+    const int wanted = &seen == &other ? seen.marker_count : std::min(4, other.marker_count);
+    EXPECT_NEAR(likeness.distance_sigmas, nearest_of_all_m(seen, other, wanted) / 0.0015, 1e-5);
+  }
+  EXPECT_EQ(static_cast<int>(found.likenesses.size()), set.count * (set.count + 1) / 2);
+}
+
+}  // namespace
+}  // namespace glint
