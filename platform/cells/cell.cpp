@@ -334,6 +334,11 @@ Cell cell_from_text(const std::string& text, const std::string& file, const Cell
   return cell;
 }
 
+void set_camera(Cell& cell, const Camera& camera) {
+  cell.camera = camera;
+  cell.ray_steps = ray_steps_needed(camera.model);
+}
+
 Limits limits_of(const Cell& cell) {
   const CameraModel& camera = cell.camera.model;
   Limits limits;

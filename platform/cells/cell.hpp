@@ -93,7 +93,7 @@ struct Cell {
   std::string file;  // where it was read, for messages
   std::string text;  // as read: goes into every recording
   Camera camera;
-  int ray_steps = k_ray_steps_max;  // of its lens: found once, for trying a lens takes a while
+  int ray_steps = k_ray_steps_max;  // of the camera's lens, found once: see set_camera()
   std::string ray_table;            // path, or empty
   ToolSet tools;
   std::vector<std::string> tool_files;
@@ -117,6 +117,9 @@ struct Cell {
   bool robot_given = true;        // T_world_robot holds; otherwise the pose stays in the world
   Pose T_world_robot;
 };
+
+// Another camera in its place, with the steps that its lens takes: some thousand rays are tried.
+void set_camera(Cell& cell, const Camera& camera);
 
 // What every node of the cell's graphs stops at.
 [[nodiscard]] Limits limits_of(const Cell& cell);

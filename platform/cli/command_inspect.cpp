@@ -89,7 +89,7 @@ int inspect_frame(const InspectArguments& arguments) {
   const FrameFileLayout layout = frame_file_layout_of(arguments.layout);
   const FrameBuffer pixels = load_frame(arguments.frame, layout);
   Cell cell = arguments.config.empty() ? default_cell() : load_cell(arguments.config);
-  if (arguments.config.empty()) cell.camera = camera_for(layout, pixels);
+  if (arguments.config.empty()) set_camera(cell, camera_for(layout, pixels));
   if (arguments.threshold > 0) {
     cell.camera.threshold = static_cast<std::uint16_t>(arguments.threshold);
   }

@@ -7,7 +7,7 @@ namespace glint {
 GlintChain::GlintChain(const Camera& camera, const Tool& tool, SearchArea area)
     : tracker_(std::make_unique<Tracker>()) {
   Cell cell = default_cell();
-  cell.camera = camera;
+  set_camera(cell, camera);
   cell.tools.items[0] = tool;
   cell.tools.count = 1;
   configure(cell, *tracker_);

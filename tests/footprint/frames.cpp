@@ -36,7 +36,7 @@ Play make_play() {
   const sim::Scenario scenario = sim::crowded_run(tools, k_strays, 1);
   const sim::Simulator simulator(scenario);
   play.cell = default_cell();
-  play.cell.camera = scenario.camera;
+  set_camera(play.cell, scenario.camera);
   play.cell.tools = tools;
   // As much as the code can be asked for, so that every loop may run to its last.
   play.cell.budget = {.tools = k_tools_max,

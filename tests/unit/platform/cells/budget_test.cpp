@@ -160,5 +160,15 @@ TEST(CellBudget, RefusesMoreToolsThanTheBudgetCovers) {
   EXPECT_EQ(complaint_about(many + "]\n"), "cell.toml:2: 17 tools; expected at most 16");
 }
 
+// A pinhole's ray takes no step, AHAT's six.
+TEST(CellBudget, ACameraPutInItsPlaceBringsTheStepsOfItsLens) {
+  Cell cell = default_cell();
+  EXPECT_EQ(limits_of(cell).ray_steps, 6);
+  Camera pinhole = cell.camera;
+  pinhole.model.lens = Lens::pinhole;
+  set_camera(cell, pinhole);
+  EXPECT_EQ(limits_of(cell).ray_steps, 0);
+}
+
 }  // namespace
 }  // namespace glint
