@@ -8,6 +8,7 @@
 #include "kernels/elementary.hpp"
 #include "kernels/pose/local_rays.hpp"
 #include "kernels/wire/can_frames.hpp"
+#include "platform/cells/calibration_files.hpp"
 #include "platform/cells/toml_reader.hpp"
 #include "platform/cells/tool_file.hpp"
 #include "platform/cells/tool_notices.hpp"
@@ -46,7 +47,10 @@ struct CellParser {
     return carried != nullptr ? path : opened_path(path, key, cell.file);
   }
   void read_camera(const toml::table* table);
-  void read_depth_bias(const toml::table* table);
+  const NamedFile& named_file(const std::string& path, const std::string& key);
+  void read_depth_bias(TomlReader& camera);
+  void read_lens(const std::string& path, std::uint32_t line);
+  const NamedFile* named_by(TomlReader& root, const std::string& section);
   void read_simulator(const toml::table* table);
   void read_tools(TomlReader& root);
 };
@@ -64,25 +68,47 @@ Quaternion from_fixed_axes(const std::vector<double>& degrees) {
   return about(2) * about(1) * about(0);
 }
 
-// Of the markers in use; without the ranges it was measured at it is worth nothing.
-void CellParser::read_depth_bias(const toml::table* table) {
-  if (table == nullptr) return;
-  TomlReader reader(*table, cell.file, "camera.depth_bias.");
-  DepthBias& bias = cell.camera.depth.bias;
-  bias.offset_m = 1e-3 * reader.real("offset_mm", 0, -100, 100);
-  bias.per_metre = 1e-3 * reader.real("mm_per_m", 0, -200, 200);
-  bias.dim_m = 1e-3 * reader.real("dim_mm", 0, -100, 100);
-  const auto range_mm = reader.reals("range_mm", 2);
-  reader.done();
-  if (!range_mm || !((*range_mm)[0] >= 0 && (*range_mm)[1] > (*range_mm)[0])) {
-    throw InputError(
-        cell.file + ":" +
-        std::to_string(range_mm ? reader.line_of("range_mm") : table->source().begin.line) +
-        ": camera.depth_bias.range_mm is " + (range_mm ? "no range" : "missing") +
-        "; expected [from, to], the ranges it was measured at");
+// A file of `glint calibrate`, or what a recording carries of it.
+const NamedFile& CellParser::named_file(const std::string& path, const std::string& key) {
+  NamedFile named{key, resolved(path, key), ""};
+  if (carried == nullptr) {
+    named.text = read_text(named.path);
+  } else if (const auto text = carried->named.find(key); text != carried->named.end()) {
+    named.text = text->second;
+  } else {
+    throw InputError(cell.file + ": no attachment " + key + ".toml; expected the file \"" + path +
+                     "\" that the cell names");
   }
-  bias.range_min_m = 1e-3 * (*range_mm)[0];
-  bias.range_max_m = 1e-3 * (*range_mm)[1];
+  return cell.named_files.emplace_back(std::move(named));
+}
+
+// A table of its own, or the file that has it.
+void CellParser::read_depth_bias(TomlReader& camera) {
+  if (camera.is_text("depth_bias")) {
+    const std::string path = camera.text("depth_bias", "");
+    cell.camera.depth.bias = depth_bias_of(named_file(path, "camera.depth_bias"));
+  } else if (const toml::table* table = camera.table("depth_bias")) {
+    cell.camera.depth.bias = depth_bias_of(*table, cell.file, "camera.depth_bias.");
+  }
+}
+
+void CellParser::read_lens(const std::string& path, std::uint32_t line) {
+  if (path.empty()) return;
+  if (!cell.ray_table.empty()) {
+    throw InputError(cell.file + ":" + std::to_string(line) +
+                     ": camera.file beside camera.ray_table; expected one lens, not two");
+  }
+  cell.camera.model = lens_of(named_file(path, "camera.file"), cell.camera.model);
+}
+
+// [section] file = ".."; null where there is none.
+const NamedFile* CellParser::named_by(TomlReader& root, const std::string& section) {
+  const toml::table* table = root.table(section.c_str());
+  if (table == nullptr) return nullptr;
+  TomlReader reader(*table, cell.file, section + ".");
+  const std::string path = reader.text("file", "");
+  reader.done();
+  return path.empty() ? nullptr : &named_file(path, section + ".file");
 }
 
 void CellParser::read_camera(const toml::table* table) {
@@ -92,11 +118,12 @@ void CellParser::read_camera(const toml::table* table) {
       reader.one_of("model", "hololens2_ahat", {"hololens2_ahat", "hololens1_short_throw"});
   cell.camera = model == "hololens2_ahat" ? hololens2_ahat() : hololens1_short_throw();
   cell.ray_table = resolved(reader.text("ray_table", ""), "camera.ray_table");
+  read_lens(reader.text("file", ""), reader.line_of("file"));
   const int top = cell.camera.reflectivity_bits == 8 ? 255 : 65535;
   cell.camera.threshold =
       static_cast<std::uint16_t>(reader.integer("threshold", cell.camera.threshold, 1, top - 1));
   cell.arrival_jitter = from_ms(reader.real("arrival_jitter_ms", 0.4, 0, 10));
-  read_depth_bias(reader.table("depth_bias"));
+  read_depth_bias(reader);
   reader.done();
   if (cell.camera.model.width > k_width_max || cell.camera.model.height > k_height_max) {
     throw InputError(cell.file + ":" + std::to_string(reader.line_of("model")) + ": " + model +
@@ -330,6 +357,10 @@ Cell cell_from_text(const std::string& text, const std::string& file, const Cell
   read_background(root.table("background"), cell);
   read_sinks(root, cell);
   read_robot(root.table("robot"), cell);
+  if (const NamedFile* named = parser.named_by(root, "motion")) cell.motion = motion_of(*named);
+  if (const NamedFile* named = parser.named_by(root, "correction")) {
+    cell.correction = correction_of(*named);
+  }
   root.done();
   return cell;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,8 +12,11 @@
 #include "graph/overrun.hpp"
 #include "kernels/geometry.hpp"
 #include "kernels/limits.hpp"
+#include "kernels/motion/motion_filter.hpp"
+#include "kernels/pose/bias_correction.hpp"
 #include "kernels/pose/tool.hpp"
 #include "kernels/units.hpp"
+#include "platform/cells/named_file.hpp"
 #include "platform/sensors/camera.hpp"
 
 namespace glint {
@@ -97,7 +101,10 @@ struct Cell {
   std::string ray_table;            // path, or empty
   ToolSet tools;
   std::vector<std::string> tool_files;
-  std::vector<std::string> notices;  // what its user should know, a line each
+  std::vector<std::string> notices;    // what its user should know, a line each
+  std::vector<NamedFile> named_files;  // of `glint calibrate`, as read: a recording carries them
+  MotionSettings motion;               // as built in, or by [motion] file
+  BiasCorrection correction;           // none, or by [correction] file
   SimulatorSettings simulator;
   bool realtime = true;  // frames arrive at their time; otherwise as fast as can be
   double tick_hz = 250;
@@ -131,6 +138,7 @@ void set_camera(Cell& cell, const Camera& camera);
 struct CellFiles {
   ToolSet tools;
   std::shared_ptr<const std::vector<float>> rays;  // null: the cell names no ray table
+  std::map<std::string, std::string> named;        // texts of NamedFile, by key
 };
 
 // Throws InputError: file:line, what was found, what was expected.

@@ -29,6 +29,8 @@ class TomlReader {
                                      std::int64_t high);
   [[nodiscard]] bool boolean(const char* key, bool otherwise);
   [[nodiscard]] std::string text(const char* key, const std::string& otherwise);
+  // Whether `key` is there and a text: for a key that takes a file's name or a table.
+  [[nodiscard]] bool is_text(const char* key) const { return table_[key].is_string(); }
   [[nodiscard]] std::string one_of(const char* key, const std::string& otherwise,
                                    std::initializer_list<const char*> allowed);
   // Exactly `count` numbers, or nothing where the key is absent.

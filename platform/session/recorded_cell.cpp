@@ -11,6 +11,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr const char* k_named_ending = ".toml";
+
 json as_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 Vector3 vector_of(const json& item) {
   return Vector3(item.at(0).get<double>(), item.at(1).get<double>(), item.at(2).get<double>());
@@ -67,6 +69,9 @@ std::vector<Attachment> attachments_of(const Cell& cell) {
     std::memcpy(rays.data.data(), cell.camera.table->data(), rays.data.size());
     attachments.push_back(std::move(rays));
   }
+  for (const NamedFile& named : cell.named_files) {
+    attachments.push_back(text_attachment(named.key + k_named_ending, named.text));
+  }
   return attachments;
 }
 
@@ -86,6 +91,12 @@ Cell recorded_cell(RecordingReader& reader, const std::string& path) {
     std::vector<float> values(rays.data.size() / sizeof(float));
     std::memcpy(values.data(), rays.data.data(), values.size() * sizeof(float));
     files.rays = std::make_shared<const std::vector<float>>(std::move(values));
+  }
+  for (const char* key : k_named_keys) {
+    const std::string name = std::string(key) + k_named_ending;
+    if (std::find(names.begin(), names.end(), name) == names.end()) continue;
+    const Attachment named = reader.attachment(name);
+    files.named[key] = {named.data.begin(), named.data.end()};
   }
   Cell cell = cell_from_text({text.data.begin(), text.data.end()}, path + ":cell.toml", &files);
   const CameraModel& model = cell.camera.model;

@@ -9,8 +9,9 @@
 
 namespace glint {
 
-// "cell.toml"; "tools.json", whose numbers read back to the same bits; and "rays.f32", the ray
-// table's floats in this machine's byte order (little endian wherever Glint runs), if there is one.
+// "cell.toml"; "tools.json", whose numbers read back to the same bits; "rays.f32", the ray
+// table's floats in this machine's byte order (little endian wherever Glint runs), if there is one;
+// and the files of `glint calibrate` by the keys that name them, such as "motion.file.toml".
 [[nodiscard]] std::vector<Attachment> attachments_of(const Cell& cell);
 
 // Throws InputError where an attachment is missing or damaged.

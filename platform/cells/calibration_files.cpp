@@ -1,0 +1,153 @@
+#include "platform/cells/calibration_files.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "kernels/elementary.hpp"
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+constexpr double k_radians_per_degree = 3.14159265358979323846 / 180.0;
+
+[[noreturn]] void complain(const std::string& file, std::uint32_t line, const std::string& what) {
+  throw InputError(file + ":" + std::to_string(line) + ": " + what);
+}
+
+// The one table of a file that the cell is after; its other tables and keys are not looked at.
+struct Section {
+  const NamedFile& file;
+  std::string name;
+  toml::table root;
+  const toml::table* table = nullptr;
+
+  Section(const NamedFile& named, const char* section, const std::string& command)
+      : file(named), name(section), root(parse_toml(named.text, named.path)) {
+    table = root[section].as_table();
+    if (table != nullptr) return;
+    complain(file.path, 1,
+             "no table [" + name + "]; expected a file of `glint calibrate " + command + "`");
+  }
+  [[nodiscard]] TomlReader reader() const { return {*table, file.path, name + "."}; }
+
+  // A number that has no value of its own to fall back to.
+  [[nodiscard]] double needed(TomlReader& reader, const char* key, double low, double high) const {
+    require(key, "a number");
+    return reader.real(key, 0, low, high);
+  }
+  [[nodiscard]] std::vector<double> needed(TomlReader& reader, const char* key,
+                                           std::size_t count) const {
+    require(key, std::to_string(count) + " numbers in [ ]");
+    return *reader.reals(key, count);
+  }
+  void require(const char* key, const std::string& expected) const {
+    if (table->contains(key)) return;
+    complain(file.path, table->source().begin.line,
+             name + "." + key + " is missing; expected " + expected);
+  }
+};
+
+// [from, to], within what there can be.
+ValidRange range_of(const Section& section, TomlReader& reader, const char* key, double most) {
+  const std::vector<double> ends = section.needed(reader, key, 2);
+  if (ends[0] >= 0 && ends[1] > ends[0] && ends[1] <= most) return {ends[0], ends[1]};
+  complain(section.file.path, reader.line_of(key),
+           section.name + "." + key + " is no range; expected [from, to] within 0 and " +
+               std::to_string(static_cast<int>(most)));
+}
+
+// The larger the angle, the smaller its cosine.
+ValidRange cosines_of(const ValidRange& degrees) {
+  const auto cosine = [](double angle) { return sine_cosine(angle * k_radians_per_degree).cosine; };
+  return {cosine(degrees.to), cosine(degrees.from)};
+}
+
+Vector3 vector_of(const std::vector<double>& values) { return {values[0], values[1], values[2]}; }
+
+}  // namespace
+
+DepthBias depth_bias_of(const toml::table& table, const std::string& file,
+                        const std::string& section) {
+  TomlReader reader(table, file, section);
+  DepthBias bias;
+  bias.offset_m = 1e-3 * reader.real("offset_mm", 0, -100, 100);
+  bias.per_metre = 1e-3 * reader.real("mm_per_m", 0, -200, 200);
+  bias.dim_m = 1e-3 * reader.real("dim_mm", 0, -100, 100);
+  const auto range_mm = reader.reals("range_mm", 2);
+  reader.done();
+  // Without the ranges it was measured at it is worth nothing.
+  if (!range_mm || !((*range_mm)[0] >= 0 && (*range_mm)[1] > (*range_mm)[0])) {
+    complain(file, range_mm ? reader.line_of("range_mm") : table.source().begin.line,
+             section + "range_mm is " + (range_mm ? "no range" : "missing") +
+                 "; expected [from, to], the ranges it was measured at");
+  }
+  bias.range_min_m = 1e-3 * (*range_mm)[0];
+  bias.range_max_m = 1e-3 * (*range_mm)[1];
+  return bias;
+}
+
+DepthBias depth_bias_of(const NamedFile& file) {
+  const Section section(file, "depth_bias", "depth");
+  return depth_bias_of(*section.table, file.path, "depth_bias.");
+}
+
+CameraModel lens_of(const NamedFile& file, const CameraModel& camera) {
+  const Section section(file, "camera", "camera");
+  TomlReader reader = section.reader();
+  CameraModel lens;
+  section.require("lens", "\"brown\" or \"rational\"");
+  lens.lens =
+      reader.one_of("lens", "", {"brown", "rational"}) == "brown" ? Lens::brown : Lens::rational;
+  section.require("width", "a whole number");
+  section.require("height", "a whole number");
+  lens.width = static_cast<int>(reader.integer("width", 0, 1, 100'000));
+  lens.height = static_cast<int>(reader.integer("height", 0, 1, 100'000));
+  if (lens.width != camera.width || lens.height != camera.height) {
+    complain(file.path, reader.line_of("width"),
+             "camera has " + std::to_string(lens.width) + " x " + std::to_string(lens.height) +
+                 " pixels; expected " + std::to_string(camera.width) + " x " +
+                 std::to_string(camera.height) + ", as the cell's camera.model");
+  }
+  lens.fx = section.needed(reader, "fx_px", 1, 1e6);
+  lens.fy = section.needed(reader, "fy_px", 1, 1e6);
+  lens.cx = section.needed(reader, "cx_px", -1e6, 1e6);
+  lens.cy = section.needed(reader, "cy_px", -1e6, 1e6);
+  const std::vector<double> distortion = section.needed(reader, "k1_k2_p1_p2_k3_k4_k5_k6", 8);
+  std::copy(distortion.begin(), distortion.end(), lens.distortion.begin());
+  lens.field_tangent_max = section.needed(reader, "field_tangent", 0.01, 1000);
+  reader.done();
+  return lens;
+}
+
+MotionSettings motion_of(const NamedFile& file) {
+  const Section section(file, "motion", "motion");
+  TomlReader reader = section.reader();
+  MotionSettings motion;
+  motion.linear_noise_m2_s5 = section.needed(reader, "linear_noise_m2_s5", 1e-9, 1e9);
+  motion.linear_damping_1_s = section.needed(reader, "linear_damping_1_s", 1e-3, 1e3);
+  motion.angular_noise_rad2_s5 = section.needed(reader, "angular_noise_rad2_s5", 1e-9, 1e9);
+  motion.angular_damping_1_s = section.needed(reader, "angular_damping_1_s", 1e-3, 1e3);
+  reader.done();
+  return motion;
+}
+
+BiasCorrection correction_of(const NamedFile& file) {
+  const Section section(file, "correction", "bias");
+  TomlReader reader = section.reader();
+  BiasCorrection correction;
+  section.require("frame", "\"tool\" or \"camera\"");
+  correction.frame = reader.one_of("frame", "", {"tool", "camera"}) == "tool"
+                         ? CorrectionFrame::tool
+                         : CorrectionFrame::camera;
+  correction.shift_m = 1e-3 * vector_of(section.needed(reader, "shift_mm", 3));
+  correction.turn_rad = k_radians_per_degree * vector_of(section.needed(reader, "turn_deg", 3));
+  const ValidRange range_mm = range_of(section, reader, "range_mm", 100'000);
+  correction.range_m = {1e-3 * range_mm.from, 1e-3 * range_mm.to};
+  correction.off_axis_cosine = cosines_of(range_of(section, reader, "off_axis_deg", 180));
+  correction.tilt_cosine = cosines_of(range_of(section, reader, "tilt_deg", 180));
+  reader.done();
+  return correction;
+}
+
+}  // namespace glint

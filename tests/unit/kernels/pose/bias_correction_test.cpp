@@ -1,0 +1,90 @@
+#include "kernels/pose/bias_correction.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+
+#include "kernels/motion/interpolate.hpp"
+#include "tests/unit/kernels/pose/scene.hpp"
+
+namespace glint {
+namespace {
+
+const Pose k_truth{from_rotation_vector({0.3, -0.7, 0.2}), {0.05, -0.1, 0.5}};
+
+BiasCorrection correction(CorrectionFrame frame) {
+  BiasCorrection out;
+  out.frame = frame;
+  out.shift_m = {0.001, -0.002, 0.003};
+  out.turn_rad = {0.01, 0.02, -0.005};
+  out.range_m = {0.4, 0.6};
+  out.off_axis_cosine = {0.9, 1.0};
+  out.tilt_cosine = {-1, 1};
+  return out;
+}
+
+TEST(BiasCorrection, TakesOffAnErrorAlongTheToolsAxes) {
+  const BiasCorrection known = correction(CorrectionFrame::tool);
+  const Pose error{from_rotation_vector(known.turn_rad), known.shift_m};
+  const CorrectedPose out = correct_bias(known, k_truth * error.inverse());
+  EXPECT_EQ(out.reason, Reason::none);
+  EXPECT_LT((out.T_camera_tool.translation - k_truth.translation).norm(), 1e-15);
+  EXPECT_LT(out.T_camera_tool.rotation.angularDistance(k_truth.rotation), 1e-14);
+}
+
+TEST(BiasCorrection, TakesOffAnErrorAlongTheCamerasAxes) {
+  const BiasCorrection known = correction(CorrectionFrame::camera);
+  const Pose off{from_rotation_vector(-known.turn_rad) * k_truth.rotation,
+                 k_truth.translation - known.shift_m};
+  const CorrectedPose out = correct_bias(known, off);
+  EXPECT_EQ(out.reason, Reason::none);
+  EXPECT_LT((out.T_camera_tool.translation - k_truth.translation).norm(), 1e-15);
+  EXPECT_LT(out.T_camera_tool.rotation.angularDistance(k_truth.rotation), 1e-14);
+}
+
+void expect_left_alone(const BiasCorrection& known, const Pose& pose, Reason reason) {
+  const CorrectedPose out = correct_bias(known, pose);
+  EXPECT_EQ(out.reason, reason);
+  EXPECT_EQ(std::memcmp(&out.T_camera_tool, &pose, sizeof pose), 0);
+}
+
+TEST(BiasCorrection, LeavesAloneWhatLiesOutsideOfWhatWasMeasured) {
+  Pose far = k_truth;
+  far.translation *= 1.2;
+  expect_left_alone(correction(CorrectionFrame::tool), far, Reason::out_of_range);
+  Pose near = k_truth;
+  near.translation *= 0.7;
+  expect_left_alone(correction(CorrectionFrame::camera), near, Reason::out_of_range);
+  Pose aside = k_truth;
+  aside.translation = {0.3, 0, 0.4};  // 37 degrees off the axis
+  expect_left_alone(correction(CorrectionFrame::tool), aside, Reason::out_of_range);
+  BiasCorrection upright = correction(CorrectionFrame::tool);
+  upright.tilt_cosine = {-1, 0};
+  expect_left_alone(upright, k_truth, Reason::out_of_range);
+}
+
+TEST(BiasCorrection, LeavesAloneWhereThereIsNoneAndWhatIsNoPose) {
+  expect_left_alone({}, k_truth, Reason::not_prepared);
+  Pose none = k_truth;
+  none.translation.x() = std::numeric_limits<double>::quiet_NaN();
+  expect_left_alone(correction(CorrectionFrame::tool), none, Reason::out_of_range);
+}
+
+TEST(BiasCorrection, GivesTheSameBitsEverywhere) {
+  test::Random random(1);
+  test::BitHash hash;
+  for (int trial = 0; trial < 1000; ++trial) {
+    for (const auto frame : {CorrectionFrame::tool, CorrectionFrame::camera}) {
+      BiasCorrection known = correction(frame);
+      known.turn_rad *= random.within(0, 3);
+      const Pose out = correct_bias(known, k_truth).T_camera_tool;
+      for (int i = 0; i < 4; ++i) hash.add(out.rotation.coeffs()[i]);
+      for (int i = 0; i < 3; ++i) hash.add(out.translation[i]);
+    }
+  }
+  EXPECT_EQ(hash.value(), 5063840306563722269u);
+}
+
+}  // namespace
+}  // namespace glint
