@@ -44,6 +44,7 @@ void add_calibrate(CLI::App& app, int& exit_code) {
   add_calibrate_tool(*command, exit_code);
   add_calibrate_align(*command, exit_code);
   add_calibrate_bias(*command, exit_code);
+  add_calibrate_depth(*command, exit_code);
   add_calibrate_camera(*command, exit_code);
 }
 

@@ -1,0 +1,77 @@
+// A known tool as a camera saw it, frame by frame: which blob is which marker, its pixel, range and
+// brightness, and the pose that they give.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kernels/motion/interpolate.hpp"
+#include "kernels/pose/local_rays.hpp"
+#include "kernels/pose/tool.hpp"
+#include "platform/sensors/camera.hpp"
+
+namespace glint {
+
+// A bright spot before it is known whose marker it is.
+struct SeenBlob {
+  LocalRays rays;  // around its pixel
+  double surface_range_m = 0;
+  double sigma_x_px = 0, sigma_y_px = 0, sigma_range_m = 0;  // 0: not known
+  double peak = 0;                                           // raw counts; 0: not known
+  std::uint32_t area_px = 0;                                 // 0: not known
+};
+
+struct BlobFrame {
+  Time time;
+  std::vector<SeenBlob> blobs;
+};
+
+struct BlobSeries {
+  std::vector<BlobFrame> frames;
+  Camera camera;
+  bool brightness = false;  // the blobs have peaks
+  std::vector<Tool> tools;  // of the recording's cell; none for a table
+  std::string what;         // the file, for messages
+};
+
+struct SeenMarker {
+  int marker = 0;  // of the tool
+  SeenBlob blob;
+};
+
+struct Sighting {
+  StampedPose pose;  // T_camera_tool
+  std::vector<SeenMarker> markers;
+};
+
+struct SightingSettings {
+  // What a range may be off, an error common to all markers included.
+  double range_sigma_m = 0.010;
+};
+
+struct SightingSeries {
+  std::vector<Sighting> sightings;
+  int frames = 0;     // of the series
+  int unsolved = 0;   // without the tool
+  int ambiguous = 0;  // of these: two ways to name the markers fit alike
+};
+
+// Each frame by itself, without a prior; of each the labeling that the noise explains best.
+[[nodiscard]] SightingSeries find_tool(const BlobSeries& series, const Tool& tool,
+                                       const SightingSettings& settings);
+
+// A recording (.mcap) of level blobs, roi or full, its markers found anew without any bias taken
+// off; or a table of blobs (CSV) `time_s,x_px,y_px,range_m,peak`, in which the camera of the cell
+// file (empty: the built-in one) saw them. Throws InputError for bad files.
+[[nodiscard]] BlobSeries load_blobs(const std::string& path, const std::string& cell_file);
+
+// The table alone. Pixel centres are at integer + 0.5; ranges are to the surface, radial.
+[[nodiscard]] BlobSeries blobs_from_text(std::string_view text, const std::string& path,
+                                         const Camera& camera);
+
+// The one of the recording's tools with this name, or of a tool file; empty: the first recorded.
+[[nodiscard]] Tool tool_of(const BlobSeries& series, const std::string& name);
+
+}  // namespace glint
