@@ -2,10 +2,11 @@
 // sensor's depth bias unknown.
 //
 // What:     across the ray the marker's pixel less the measured one, by the lens's linear map
-//           around it; along it the distance of the centre less the measured range, the bias taken
-//           off. All three in sigmas.
+//           around it; along it the range that the sensor would state, bias and all, less the
+//           measured one. All three in sigmas.
 // Cost:     one quaternion product, a square root; no loop.
-// Worst:    a marker at right angles to its measured ray; none comes near. Sigmas must be positive.
+// Worst:    a marker at right angles to its measured ray; none comes near. Sigmas must be
+//           positive, per_metre below 1.
 // Accuracy: the lens's curvature over the residual, 1e-4 of it within a pixel.
 // Source:   Lindner, Schiller, Kolb, Koch, "Time-of-Flight sensor calibration for accurate range
 //           sensing", Computer Vision and Image Understanding 114 (2010), section 4: distance and
@@ -44,12 +45,15 @@ template <class Scalar>
   const Vector3Of<Scalar> p =
       rotated<Scalar>(rotation, sample.marker_m.cast<Scalar>()) + translation_m;
   const Scalar along = p.dot(sample.ray.cast<Scalar>());
-  const Scalar too_long = bias[0] + bias[1] * (sample.surface_range_m - DepthBias::k_reference_m) +
-                          bias[2] * sample.dimness;
-  const Scalar range = sample.surface_range_m - too_long + sample.centre_behind_m;
+  // The sensor states range = surface + bias(range). By the range that the pose gives, not by the
+  // measured one: its noise in both would draw the slope upwards.
+  const Scalar surface = sqrt(p.squaredNorm()) - sample.centre_behind_m;
+  const Scalar range =
+      (surface + bias[0] - bias[1] * DepthBias::k_reference_m + bias[2] * sample.dimness) /
+      (Scalar(1) - bias[1]);
   return {p.dot(sample.per_x.cast<Scalar>()) / along / sample.sigma_x_px,
           p.dot(sample.per_y.cast<Scalar>()) / along / sample.sigma_y_px,
-          (sqrt(p.squaredNorm()) - range) / sample.sigma_range_m};
+          (range - sample.surface_range_m) / sample.sigma_range_m};
 }
 
 }  // namespace glint

@@ -153,10 +153,16 @@ void check_certainty(const DepthCalibration& result, bool determined, double dim
 
 void check_fit(const DepthCalibration& result, const DepthCalibrationSettings& settings,
                const std::string& what) {
-  if (result.outliers <= (1 - settings.inliers_min) * result.markers) return;
+  const bool others = result.outliers > (1 - settings.inliers_min) * result.markers;
+  if (!others && result.pixel_sigma_px <= settings.pixel_sigma_max_px &&
+      result.range_sigma_m <= settings.range_sigma_max_m)
+    return;
   throw InputError(what + ": " + std::to_string(result.outliers) + " of " +
-                   std::to_string(result.markers) + " markers do not fit; expected at most " +
-                   say("%.0f %%", 100 * (1 - settings.inliers_min)) +
+                   std::to_string(result.markers) + " markers do not fit, the others miss by " +
+                   say("%.2g px", result.pixel_sigma_px) + " and " + say_mm(result.range_sigma_m) +
+                   "; expected at most " + say("%.0f %%", 100 * (1 - settings.inliers_min)) + ", " +
+                   say("%.2g px", settings.pixel_sigma_max_px) + " and " +
+                   say_mm(settings.range_sigma_max_m) +
                    ": the tool's file and the camera's lens must be those of the recording");
 }
 

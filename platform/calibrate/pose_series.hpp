@@ -1,4 +1,5 @@
-// Poses to calibrate with: from a trajectory file, or from bare marker positions and the tool.
+// Poses to calibrate with: from a trajectory file, a recording, or bare marker positions and the
+// tool.
 #pragma once
 
 #include <optional>
@@ -11,7 +12,9 @@
 namespace glint {
 
 struct PoseSource {
-  std::string poses;    // TUM text or EuRoC-like CSV, of the tool's frame
+  // TUM text or EuRoC-like CSV, of the tool's frame; or a recording (.mcap) of level blobs or more:
+  // the tool in the camera's frame, each frame by itself; the tool is one of its own, by name.
+  std::string poses;
   std::string points;   // unlabelled marker positions (CSV); needs the tool
   std::string tool;     // a tool file
   bool of_tip = false;  // the poses' origin is the tool's tip, as in a run's tip.tum

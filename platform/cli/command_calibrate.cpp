@@ -15,7 +15,8 @@ void add_output_options(CLI::App& command, CalibrationOutput& output) {
 }
 
 void add_pose_options(CLI::App& command, PoseSource& source) {
-  command.add_option("--poses", source.poses, "poses of the tool: TUM text, or EuRoC-like CSV");
+  command.add_option("--poses", source.poses,
+                     "poses of the tool: TUM text, EuRoC-like CSV, or a run's .mcap");
   command.add_option("--points", source.points,
                      "marker positions instead: CSV time_s,x_m,y_m,z_m, unlabelled");
   command.add_option("--tool", source.tool, "the tool (.toml, .rom, .ini), or pen (built in)");
@@ -36,7 +37,8 @@ void finish_calibration(const CalibrationOutput& output, const Figures& figures,
 
 void add_calibrate(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "calibrate", "Find a tool's tip, axis and markers, a lens, an offset, from measurements");
+      "calibrate",
+      "Find a tool's tip, axis and markers, a lens, biases, a hand's motion, from measurements");
   command->require_subcommand(1);
   command->footer("Example: glint calibrate pivot --poses tip.tum --of-tip --tool pen.toml");
   add_calibrate_pivot(*command, exit_code);
@@ -45,6 +47,7 @@ void add_calibrate(CLI::App& app, int& exit_code) {
   add_calibrate_align(*command, exit_code);
   add_calibrate_bias(*command, exit_code);
   add_calibrate_depth(*command, exit_code);
+  add_calibrate_motion(*command, exit_code);
   add_calibrate_camera(*command, exit_code);
 }
 

@@ -10,10 +10,10 @@
 namespace glint::test {
 
 struct DepthScene {
-  DepthBias bias{0.006, -0.008, 0.02, 0.01, 10};
+  DepthBias bias{0.006, -0.008, 0.004, 0.01, 10};
   double near_m = 0.3, far_m = 0.8;
   // The peak at 0.5 m, from dim_part of it on; by the square of the range where `falls`.
-  double peak = 9000, dim_part = 0.15;
+  double peak = 20'000, dim_part = 0.15;
   double falls = 2;  // power of the range by which brightness falls
   double pixel_sigma_px = 0.1, range_sigma_m = 0.002;
   int frames = 300;
