@@ -15,6 +15,7 @@ namespace {
 
 constexpr double k_early = 0.9;  // a sample this part of a period after the last one counts
 constexpr double k_fit_part = 2.0 / 3;
+constexpr double k_hardly_part = 1e-3;
 constexpr double k_still_part = 1e-4;               // of the noise found: a tool that hardly moves
 constexpr Duration k_warm_up = milliseconds(1000);  // of the prediction, not judged
 constexpr Duration k_truth_gap_max = milliseconds(100);
@@ -123,28 +124,43 @@ HeldOut judged(std::span<const sim::Trajectory> recordings, const MotionSeries& 
 
 const char* name_of(MotionPart part) { return part == MotionPart::shift ? "shift" : "rotation"; }
 
+[[noreturn]] void refuse(const std::string& what, MotionPart part, const std::string& open,
+                         const std::string& expected) {
+  throw InputError(what + ": the motion leaves the " + name_of(part) + "'s " + open +
+                   "; expected " + expected +
+                   ": record a minute or more of the work to be done, with starts, stops and " +
+                   "turns, and declare the noise of these poses");
+}
+
+// Whether a tool that hardly moves is as likely, and one that moves still less likelier yet.
+bool rests(const MotionSeries& series, MotionPart part, const MotionUnknowns& start,
+           const LikelihoodSettings& likelihood, double gain_min) {
+  const Likelihood still =
+      likelihood_of(series, part, {k_still_part * start.noise, start.damping}, likelihood);
+  const Likelihood moving =
+      likelihood_of(series, part, {k_hardly_part * start.noise, start.damping}, likelihood);
+  return still.gradient[0] < 0 || moving.log_likelihood < still.log_likelihood + gain_min;
+}
+
 MotionFit fitted(const MotionSeries& series, MotionPart part,
                  const MotionCalibrationSettings& settings, const LikelihoodSettings& likelihood,
                  const std::function<void()>& evaluated, const std::string& what) {
-  const MotionFit fit =
-      most_likely(series, part, unknowns_of(settings.start, part), likelihood, evaluated);
-  const MotionUnknowns still{k_still_part * unknowns_of(settings.start, part).noise,
-                             unknowns_of(settings.start, part).damping};
-  const double gain =
-      fit.log_likelihood - likelihood_of(series, part, still, likelihood).log_likelihood;
-  const double worst = fit.determined ? std::sqrt(fit.covariance.diagonal().maxCoeff()) : 1e9;
-  if (fit.determined && gain >= settings.motion_gain_min && worst <= settings.log_sigma_max)
-    return fit;
-  const bool noise_worse = fit.determined && fit.covariance(0, 0) > fit.covariance(1, 1);
-  throw InputError(
-      what + ": the motion leaves the " + name_of(part) + "'s " +
-      (fit.determined ? (noise_worse ? "noise" : "damping") : "noise and damping") + " open" +
-      (fit.determined
-           ? ", " + say("%.2g", worst) + " of its logarithm, 1 sigma; expected at most " +
-                 say("%.2g", settings.log_sigma_max)
-           : std::string("; expected motion well above the declared noise")) +
-      ": record a minute or more of the work to be done, with starts, stops and turns, and " +
-      "declare the noise of these poses");
+  const MotionUnknowns start = unknowns_of(settings.start, part);
+  if (rests(series, part, start, likelihood, settings.motion_gain_min)) {
+    refuse(what, part, "noise and damping open", "it to stand out of the declared noise");
+  }
+  const MotionFit fit = most_likely(series, part, start, likelihood, evaluated);
+  if (!fit.determined) {
+    refuse(what, part, "noise and damping open", "a likelihood that has a maximum");
+  }
+  const double worst = std::sqrt(fit.covariance.diagonal().maxCoeff());
+  if (worst > settings.log_sigma_max) {
+    refuse(what, part,
+           std::string(fit.covariance(0, 0) > fit.covariance(1, 1) ? "noise" : "damping") +
+               " open, " + say("%.2g", worst) + " of its logarithm, 1 sigma",
+           "at most " + say("%.2g", settings.log_sigma_max));
+  }
+  return fit;
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <nvector/nvector_serial.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "kernels/motion/motion_state.hpp"
@@ -12,10 +11,9 @@
 namespace glint {
 namespace {
 
-constexpr int k_size = 9 + 81;  // mean, covariance
-constexpr double k_relative = 1e-8;
-// Of what a start after a gap holds: a metre or radian a second.
-constexpr double k_absolute = 1e-13;
+constexpr double k_relative = 1e-6;
+// Of each component's own sigma: what is far below it needs no digits.
+constexpr double k_absolute = 1e-6;
 constexpr long k_steps_max = 20'000;
 
 struct Problem {
@@ -25,20 +23,42 @@ struct Problem {
 
 using ConstMean = Eigen::Map<const Vector9>;
 using Mean = Eigen::Map<Vector9>;
-using ConstCovariance = Eigen::Map<const Matrix9>;
-using Covariance = Eigen::Map<Matrix9>;
 
 double* data_of(N_Vector vector) { return N_VGetArrayPointer(vector); }
 
-void write(const Moments& moments, N_Vector vector) {
-  Mean(data_of(vector)) = moments.mean;
-  Covariance(data_of(vector) + 9) = moments.covariance;
+// A shift's axes are alike and apart: of its covariance one axis's triangle is enough. Behind the
+// mean stands the triangle, row by row.
+int width_of(MotionPart part) { return part == MotionPart::shift ? 3 : 9; }
+int size_of(MotionPart part) { return 9 + width_of(part) * (width_of(part) + 1) / 2; }
+
+void pack(MotionPart part, const Matrix9& p, N_Vector vector) {
+  const int width = width_of(part), step = 9 / width;
+  double* out = data_of(vector) + 9;
+  for (int r = 0; r < width; ++r)
+    for (int c = r; c < width; ++c) *out++ = p(step * r, step * c);
 }
 
-void read(N_Vector vector, Moments& moments) {
+Matrix9 unpacked(MotionPart part, N_Vector vector) {
+  const int width = width_of(part), step = 9 / width;
+  const double* in = data_of(vector) + 9;
+  Matrix9 p = Matrix9::Zero();
+  for (int r = 0; r < width; ++r) {
+    for (int c = r; c < width; ++c, ++in) {
+      for (int axis = 0; axis < step; ++axis)
+        p(step * r + axis, step * c + axis) = p(step * c + axis, step * r + axis) = *in;
+    }
+  }
+  return p;
+}
+
+void write(MotionPart part, const Moments& moments, N_Vector vector) {
+  Mean(data_of(vector)) = moments.mean;
+  pack(part, moments.covariance, vector);
+}
+
+void read(MotionPart part, N_Vector vector, Moments& moments) {
   moments.mean = ConstMean(data_of(vector));
-  const ConstCovariance covariance(data_of(vector) + 9);
-  moments.covariance = 0.5 * (covariance + covariance.transpose());
+  moments.covariance = unpacked(part, vector);
 }
 
 Vector9 mean_rate(const Vector9& mean, double damping) {
@@ -65,12 +85,11 @@ int rates(realtype, N_Vector at, N_Vector out, void* user) {
   const auto& problem = *static_cast<const Problem*>(user);
   const Vector9 mean = ConstMean(data_of(at));
   const double damping = problem.unknowns.damping;
-  const Matrix9 half =
-      carried(ConstCovariance(data_of(at) + 9), damping, turn_of(problem.part, mean));
-  Mean(data_of(out)) = mean_rate(mean, damping);
-  Covariance covariance(data_of(out) + 9);
-  covariance = half + half.transpose();
+  const Matrix9 half = carried(unpacked(problem.part, at), damping, turn_of(problem.part, mean));
+  Matrix9 covariance = half + half.transpose();
   covariance.diagonal().tail<3>().array() += problem.unknowns.noise;
+  Mean(data_of(out)) = mean_rate(mean, damping);
+  pack(problem.part, covariance, out);
   return 0;
 }
 
@@ -79,22 +98,22 @@ int sensitive_rates(int, realtype, N_Vector at, N_Vector, N_Vector* s, N_Vector*
                     N_Vector, N_Vector) {
   const auto& problem = *static_cast<const Problem*>(user);
   const Vector9 mean = ConstMean(data_of(at));
-  const Matrix9 p = ConstCovariance(data_of(at) + 9);
+  const Matrix9 p = unpacked(problem.part, at);
   const double damping = problem.unknowns.damping;
   const Matrix3 turn = turn_of(problem.part, mean);
   for (int i = 0; i < k_motion_unknowns; ++i) {
     const Vector9 mean_s = ConstMean(data_of(s[i]));
     Vector9 mean_out = mean_rate(mean_s, damping);
-    Matrix9 half = carried(ConstCovariance(data_of(s[i]) + 9), damping, turn);
+    Matrix9 half = carried(unpacked(problem.part, s[i]), damping, turn);
     half.topRows<3>() += turn_of(problem.part, mean_s) * p.topRows<3>();
     if (i == 1) {  // by ln damping
       mean_out.tail<3>() -= damping * mean.tail<3>();
       half.bottomRows<3>() -= damping * p.bottomRows<3>();
     }
-    Mean(data_of(out[i])) = mean_out;
-    Covariance covariance(data_of(out[i]) + 9);
-    covariance = half + half.transpose();
+    Matrix9 covariance = half + half.transpose();
     if (i == 0) covariance.diagonal().tail<3>().array() += problem.unknowns.noise;
+    Mean(data_of(out[i])) = mean_out;
+    pack(problem.part, covariance, out[i]);
   }
   return 0;
 }
@@ -104,44 +123,57 @@ int sensitive_rates(int, realtype, N_Vector at, N_Vector, N_Vector* s, N_Vector*
 struct MotionEquations::Body {
   Problem problem;
   SUNContext context = nullptr;
-  N_Vector state = nullptr;
+  N_Vector state = nullptr, tolerance = nullptr;
   N_Vector* sensitivities = nullptr;
   void* memory = nullptr;
-  SUNNonlinearSolver solver = nullptr;
+  SUNNonlinearSolver alone = nullptr;  // of the state without sensitivities: asked for, not used
+  SUNNonlinearSolver together = nullptr;
 
   explicit Body(MotionPart part) : problem{part, {}} {
     if (SUNContext_Create(nullptr, &context) != 0) return;
-    state = N_VNew_Serial(k_size, context);
+    state = N_VNew_Serial(size_of(part), context);
+    tolerance = N_VClone(state);
     sensitivities = N_VCloneVectorArray(k_motion_unknowns, state);
     memory = CVodeCreate(CV_ADAMS, context);
-    solver = SUNNonlinSol_FixedPointSens(k_motion_unknowns + 1, state, 0, context);
+    alone = SUNNonlinSol_FixedPoint(state, 0, context);
+    together = SUNNonlinSol_FixedPointSens(k_motion_unknowns + 1, state, 0, context);
   }
   ~Body() {
     if (memory != nullptr) CVodeFree(&memory);
-    if (solver != nullptr) SUNNonlinSolFree(solver);
+    for (SUNNonlinearSolver solver : {alone, together})
+      if (solver != nullptr) SUNNonlinSolFree(solver);
     if (sensitivities != nullptr) N_VDestroyVectorArray(sensitivities, k_motion_unknowns);
-    if (state != nullptr) N_VDestroy(state);
+    for (N_Vector vector : {state, tolerance})
+      if (vector != nullptr) N_VDestroy(vector);
     if (context != nullptr) SUNContext_Free(&context);
   }
   Body(const Body&) = delete;
   Body& operator=(const Body&) = delete;
 
   [[nodiscard]] bool prepared() {
-    if (memory == nullptr || solver == nullptr || sensitivities == nullptr) return false;
+    if (memory == nullptr || alone == nullptr || together == nullptr || sensitivities == nullptr)
+      return false;
     N_VConst(0, state);
     for (int i = 0; i < k_motion_unknowns; ++i) N_VConst(0, sensitivities[i]);
-    realtype absolute[k_motion_unknowns];
-    std::fill(absolute, absolute + k_motion_unknowns, k_absolute);
     return CVodeInit(memory, rates, 0, state) == CV_SUCCESS &&
-           CVodeSStolerances(memory, k_relative, k_absolute) == CV_SUCCESS &&
            CVodeSetUserData(memory, &problem) == CV_SUCCESS &&
            CVodeSetMaxNumSteps(memory, k_steps_max) == CV_SUCCESS &&
            CVodeSensInit(memory, k_motion_unknowns, CV_SIMULTANEOUS, sensitive_rates,
                          sensitivities) == CV_SUCCESS &&
-           CVodeSensSStolerances(memory, k_relative, absolute) == CV_SUCCESS &&
            CVodeSetSensErrCon(memory, SUNTRUE) == CV_SUCCESS &&
-           CVodeSetNonlinearSolverSensSim(memory, solver) == CV_SUCCESS &&
+           CVodeSetNonlinearSolver(memory, alone) == CV_SUCCESS &&
+           CVodeSetNonlinearSolverSensSim(memory, together) == CV_SUCCESS &&
            CVodeSetErrFile(memory, nullptr) == CV_SUCCESS;
+  }
+
+  // By the sigmas to begin with; they only grow until the next measurement.
+  [[nodiscard]] bool set_tolerances(const Matrix9& p) {
+    const Vector9 sigma = p.diagonal().cwiseMax(1e-300).cwiseSqrt();
+    Mean(data_of(tolerance)) = k_absolute * sigma;
+    pack(problem.part, k_absolute * sigma * sigma.transpose(), tolerance);
+    N_Vector both[k_motion_unknowns] = {tolerance, tolerance};
+    return CVodeSVtolerances(memory, k_relative, tolerance) == CV_SUCCESS &&
+           CVodeSensSVtolerances(memory, k_relative, both) == CV_SUCCESS;
   }
 };
 
@@ -155,20 +187,21 @@ bool MotionEquations::carry(SensitiveMoments& moments, double seconds,
                             const MotionUnknowns& unknowns) {
   Body& body = *body_;
   body.problem.unknowns = unknowns;
-  write(moments.value, body.state);
+  write(body.problem.part, moments.value, body.state);
   for (int i = 0; i < k_motion_unknowns; ++i)
-    write(moments.by[static_cast<std::size_t>(i)], body.sensitivities[i]);
+    write(body.problem.part, moments.by[static_cast<std::size_t>(i)], body.sensitivities[i]);
   realtype reached = 0;
   const bool carried_on =
+      body.set_tolerances(moments.value.covariance) &&
       CVodeReInit(body.memory, 0, body.state) == CV_SUCCESS &&
       CVodeSensReInit(body.memory, CV_SIMULTANEOUS, body.sensitivities) == CV_SUCCESS &&
       CVodeSetStopTime(body.memory, seconds) == CV_SUCCESS &&
       CVode(body.memory, seconds, body.state, &reached, CV_NORMAL) >= 0 &&
       CVodeGetSens(body.memory, &reached, body.sensitivities) == CV_SUCCESS;
   if (!carried_on) return false;
-  read(body.state, moments.value);
+  read(body.problem.part, body.state, moments.value);
   for (int i = 0; i < k_motion_unknowns; ++i)
-    read(body.sensitivities[i], moments.by[static_cast<std::size_t>(i)]);
+    read(body.problem.part, body.sensitivities[i], moments.by[static_cast<std::size_t>(i)]);
   return true;
 }
 

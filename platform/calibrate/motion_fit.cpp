@@ -101,7 +101,7 @@ MotionFit most_likely(const MotionSeries& series, MotionPart part, const MotionU
   ceres::GradientProblemSolver::Options options;
   options.line_search_direction_type = ceres::BFGS;
   options.max_num_iterations = k_iterations_max;
-  options.function_tolerance = 1e-9;
+  options.function_tolerance = 1e-7;
   options.gradient_tolerance = 1e-6;
   options.logging_type = ceres::SILENT;
   ceres::GradientProblemSolver::Summary summary;

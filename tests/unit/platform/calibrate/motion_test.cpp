@@ -164,29 +164,35 @@ TEST(MotionLikelihood, StartsAnewAfterAGap) {
   EXPECT_EQ(found.innovations, before - 30 - 2);
 }
 
-// Of 16 runs the mean squared error in sigmas of two unknowns each: 1 +- 0.75 (3 sigma of chance).
-TEST(MotionFit, FindsNoiseAndDampingAndKnowsHowSureItIs) {
-  constexpr int k_runs = 16;
-  for (const MotionPart part : k_parts) {
-    double sum = 0;
-    for (int run = 0; run < k_runs; ++run) {
-      const Hand hand{.seconds = 14, .seed = static_cast<std::uint64_t>(run + 1)};
-      const MotionUnknowns truth = unknowns_of(hand.motion, part);
-      const MotionFit fit = most_likely({moved_by(hand).samples}, part, unknowns_of({}, part),
-                                        {hand.noise, {}, 0.5}, {});
-      ASSERT_TRUE(fit.determined);
-      const Vector2 off(std::log(fit.unknowns.noise / truth.noise),
-                        std::log(fit.unknowns.damping / truth.damping));
-      EXPECT_LT(std::abs(off[0]), 0.6);
-      sum += off.dot(fit.covariance.inverse() * off) / (2 * k_runs);
-    }
-    std::printf("motion, %s: NEES/2 %.2f\n", part == MotionPart::shift ? "shift" : "rotation", sum);
-    EXPECT_NEAR(sum, 1, 0.75);
+// The mean squared error in sigmas, of two unknowns and so many runs.
+double errors_in_sigmas(MotionPart part, int runs, double seconds) {
+  double sum = 0;
+  for (int run = 0; run < runs; ++run) {
+    const Hand hand{.seconds = seconds, .seed = static_cast<std::uint64_t>(run + 1)};
+    const MotionUnknowns truth = unknowns_of(hand.motion, part);
+    const MotionFit fit = most_likely({moved_by(hand).samples}, part, unknowns_of({}, part),
+                                      {hand.noise, {}, 0.5}, {});
+    EXPECT_TRUE(fit.determined);
+    const Vector2 off(std::log(fit.unknowns.noise / truth.noise),
+                      std::log(fit.unknowns.damping / truth.damping));
+    EXPECT_LT(off.norm(), 1.2);
+    sum += off.dot(fit.covariance.inverse() * off) / (2 * runs);
   }
+  std::printf("motion, %s: NEES/2 %.2f\n", part == MotionPart::shift ? "shift" : "rotation", sum);
+  return sum;
+}
+
+// 2.5 sigma of chance each.
+TEST(MotionFit, FindsAShiftsNoiseAndDampingAndKnowsHowSureItIs) {
+  EXPECT_NEAR(errors_in_sigmas(MotionPart::shift, 8, 8), 1, 0.9);
+}
+
+TEST(MotionFit, FindsARotationsNoiseAndDampingAndKnowsHowSureItIs) {
+  EXPECT_NEAR(errors_in_sigmas(MotionPart::rotation, 3, 6), 1, 1.4);
 }
 
 TEST(Motion, IsMoreLikelyThanTheBuiltInOneOnWhatWasHeldOut) {
-  const Hand hand{.motion = {0.3, 1.5, 60, 10}, .seconds = 40};
+  const Hand hand{.motion = {0.3, 1.5, 60, 10}, .seconds = 18};
   const sim::Trajectory recording = moved_by(hand);
   MotionCalibrationSettings settings;
   settings.noise = hand.noise;
@@ -194,7 +200,7 @@ TEST(Motion, IsMoreLikelyThanTheBuiltInOneOnWhatWasHeldOut) {
   EXPECT_NEAR(found.held_out, found.samples / 2, 2);
   EXPECT_GT(found.found.log_likelihood, found.built_in.log_likelihood + 0.05);
   EXPECT_LT(found.found.at_25_ms.position_rms_m, 1.02 * found.built_in.at_25_ms.position_rms_m);
-  EXPECT_GT(found.found.at_25_ms.n, 400);
+  EXPECT_GT(found.found.at_25_ms.n, 150);
   EXPECT_EQ(static_cast<int>(found.misses_m.size()), found.found.at_25_ms.n);
   EXPECT_EQ(found.motion.start_speed_m_s, MotionSettings{}.start_speed_m_s);
 }
@@ -204,14 +210,14 @@ TEST(Motion, SaysWhatARecordingLeavesOpen) {
   const sim::Trajectory few = moved_by({.seconds = 5});
   test::expect_input_error([&] { (void)calibrate_motion(std::span(&few, 1), settings, "few.tum"); },
                            {"few.tum", "expected at least 450", "record for longer"});
-  const Hand still{.motion = {1e-12, 3, 1e-9, 12}};
+  const Hand still{.motion = {1e-12, 3, 1e-9, 12}, .seconds = 12};
   sim::Trajectory rest = moved_by(still);
   settings.noise = still.noise;
   test::expect_input_error(
       [&] { (void)calibrate_motion(std::span(&rest, 1), settings, "rest.tum"); },
-      {"rest.tum", "leaves the shift's", "open", "starts, stops and turns"});
+      {"rest.tum", "leaves the shift's", "open", "stand out", "starts, stops and turns"});
   // A tool that is moved and never turned.
-  const Hand hand;
+  const Hand hand{.seconds = 12};
   sim::Trajectory slid = moved_by(hand);
   for (std::size_t i = 0; i < slid.samples.size(); ++i)
     slid.samples[i].pose.rotation = from_rotation_vector(
