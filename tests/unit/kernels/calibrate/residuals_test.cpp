@@ -6,6 +6,7 @@
 
 #include "kernels/calibrate/align_residual.hpp"
 #include "kernels/calibrate/axis_residual.hpp"
+#include "kernels/calibrate/depth_residual.hpp"
 #include "kernels/calibrate/lens_residual.hpp"
 #include "kernels/calibrate/marker_residual.hpp"
 #include "kernels/calibrate/pivot_residual.hpp"
@@ -108,6 +109,33 @@ TEST(Residuals, ProjectAsTheRationalLensDoes) {
     const Vector2 pixel = project(camera, {plane.x(), plane.y(), 1}).value;
     EXPECT_LT(lens_residual<double>(plane, pixel, lens).norm(), 1e-9);
   }
+}
+
+TEST(Residuals, StateARangeAsASensorWithABiasDoes) {
+  DepthSample sample;
+  sample.marker_m = k_point;
+  sample.centre_behind_m = 0.006;
+  sample.dimness = 0.5;
+  sample.sigma_x_px = 0.1;
+  sample.sigma_y_px = 0.2;
+  sample.sigma_range_m = 0.002;
+  const Vector3 at(0.02, -0.03, 0.6);
+  const Vector3 centre = k_turn * k_point + at, bias(0.004, -0.01, 0.002);
+  sample.ray = centre.normalized();
+  sample.per_x = 250 * sample.ray.unitOrthogonal();
+  sample.per_y = 250 * sample.ray.cross(sample.ray.unitOrthogonal());
+  const double surface = centre.norm() - 0.006;
+  double stated = surface;  // range = surface + bias(range), step by step
+  for (int i = 0; i < 20; ++i) {
+    stated = surface + DepthBias{bias[0], bias[1], bias[2], 0.01, 10}.at(stated, 2000);
+  }
+  sample.surface_range_m = stated;
+  EXPECT_LT(depth_residual<double>(sample, k_turn, at, bias).norm(), 1e-9);
+  sample.surface_range_m = stated + 0.002;
+  EXPECT_NEAR(depth_residual<double>(sample, k_turn, at, bias).z(), -1, 1e-9);
+  const Vector3 aside = at + 0.001 * sample.per_y / 250;  // a millimetre across the ray
+  EXPECT_NEAR(depth_residual<double>(sample, k_turn, aside, bias).y(), 0.25 / centre.norm() / 0.2,
+              1e-6);
 }
 
 TEST(Residuals, StayFiniteAtTheirWorst) {

@@ -1,5 +1,7 @@
 #include "platform/session/replay.hpp"
 
+#include <fstream>
+
 #include "tests/unit/platform/session/short_run.hpp"
 
 namespace glint {
@@ -44,6 +46,29 @@ TEST(Replay, SeesADifferentSettingAsADifference) {
   const ReplayResult result = replay(run.recording_file, {});
   EXPECT_FALSE(result.agrees());
   EXPECT_GT(result.mismatches, 50);
+}
+
+// A lens that is not the built-in one: without it the recording would replay to other bytes.
+TEST(Replay, NeedsNoFileThatTheCellNamed) {
+  TemporaryFolder folder;
+  const std::string cell_file = folder.path() + "/cell.toml", lens = folder.path() + "/lens.toml";
+  std::ofstream(lens) << "[camera]\nlens = \"brown\"\nwidth = 512\nheight = 512\nfx_px = 260.0\n"
+                         "fy_px = 260.0\ncx_px = 256.0\ncy_px = 256.0\n"
+                         "k1_k2_p1_p2_k3_k4_k5_k6 = [-0.05, 0.01, 0, 0, 0, 0, 0, 0]\n"
+                         "field_tangent = 1.4\n";
+  std::ofstream(cell_file) << "[camera]\nfile = \"lens.toml\"\n";
+  Cell cell = load_cell(cell_file);
+  ASSERT_EQ(cell.camera.model.fx, 260.0);
+  cell.realtime = false;
+  cell.workers = 1;
+  cell.simulator.duration_s = 1.0;
+  cell.dds.on = false;
+  const SessionResult run = short_run(cell, folder.path());
+  ASSERT_GT(run.accuracy.poses, 30);
+  std::filesystem::remove(lens);
+  const ReplayResult result = replay(run.recording_file, {});
+  EXPECT_TRUE(result.agrees()) << result.mismatches << " differ";
+  EXPECT_EQ(result.output_sha256, run.output_sha256);
 }
 
 }  // namespace
