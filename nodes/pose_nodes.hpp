@@ -1,5 +1,5 @@
-// The nodes from candidate markers to poses. By tool: slice i of n takes the tools whose number
-// leaves i when divided by n, so that the split is a constant of the graph.
+// The nodes from candidate markers to which are whose. By tool: slice i of n takes the tools whose
+// number leaves i when divided by n, so that the split is a constant of the graph.
 #pragma once
 
 #include <array>
@@ -9,9 +9,7 @@
 #include "kernels/nonblocking.hpp"
 #include "kernels/pose/assign.hpp"
 #include "kernels/pose/correspond.hpp"
-#include "kernels/pose/fit_covariance.hpp"
 #include "kernels/pose/marker.hpp"
-#include "kernels/pose/rigid_fit.hpp"
 #include "kernels/pose/tool.hpp"
 #include "nodes/node_limits.hpp"
 #include "nodes/tokens.hpp"
@@ -73,36 +71,6 @@ struct AssignMarkers {
   graph::LoopCounts counts_;
 };
 
-// The declared noise of one marker: 1 sigma along its ray and, from the pixel's, across it.
-struct MarkerNoise {
-  double range_sigma_m = 0.0015;
-  double pixel_sigma_px = 0.1;  // an axis
-  double focal_px = 0;          // 0: as much across as along (points without an image)
-};
-
-// The rigid fit over the markers assigned, with the first-order covariance of the tip.
-struct FitRigid {
-  static constexpr std::array<std::string_view, 4> k_loops = {"call", "tools", "fits", "markers"};
-  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
-    return worst(limits, {0, k_tool_slices});
-  }
-  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits,
-                                                         graph::Slice slice) noexcept {
-    const std::int64_t tools = tools_of(limits, slice);
-    return {{1, tools, tools, tools * limits.markers_per_tool}};
-  }
-  [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
-
-  MarkerNoise noise;
-  Limits limits;
-  void operator()(const FrameVerdict& verdict, const Markers& markers,
-                  const graph::Latest<ToolSet>& tools, const Assignment& assignment,
-                  graph::Slice slice, FittedTools& fitted) noexcept GLINT_NONBLOCKING;
-
- private:
-  graph::LoopCounts counts_;
-};
-
-static_assert(graph::Budgeted<AssignMarkers, Limits> && graph::Budgeted<FitRigid, Limits>);
+static_assert(graph::Budgeted<AssignMarkers, Limits>);
 
 }  // namespace glint

@@ -2,7 +2,7 @@
 //
 //   Frame ─► StampFrame ─► CheckFrame ─► PredictTracks ─► LocateRois ─► RoiThreshold x4 ─►
 //   FindBlobs
-//     ─► BackProject ─► Correspond x4 ─► AssignMarkers ─► FitRigid x4 ─► TrackTools ─► Estimates
+//     ─► BackProject ─► Correspond x4 ─► AssignMarkers ─► RefinePose x4 ─► TrackTools ─► Estimates
 //                           ▲ PredictTracks and TrackTools read Previous<Estimates>
 //
 // MarkerTracker is the same from BackProject's output on: recordings without images feed it.
@@ -13,6 +13,7 @@
 #include "nodes/image_nodes.hpp"
 #include "nodes/locate_rois.hpp"
 #include "nodes/pose_nodes.hpp"
+#include "nodes/refine_pose.hpp"
 #include "nodes/track_tools.hpp"
 
 namespace glint {
@@ -21,14 +22,14 @@ using Tracker = graph::Graph<graph::Inputs<Frame, HeadPose, graph::Latest<ToolSe
                              graph::Outputs<Estimates>, StampFrame, CheckFrame, PredictTracks,
                              LocateRois, graph::Split<RoiThreshold, k_row_bands>, FindBlobs,
                              BackProject, graph::Split<Correspond, k_tool_slices>, AssignMarkers,
-                             graph::Split<FitRigid, k_tool_slices>, TrackTools>;
+                             graph::Split<RefinePose, k_tool_slices>, TrackTools>;
 static_assert(graph::valid<Tracker>);
 
 using MarkerTracker =
     graph::Graph<graph::Inputs<FrameStamp, Markers, HeadPose, graph::Latest<ToolSet>>,
                  graph::Outputs<Estimates>, CheckFrame, PredictTracks,
                  graph::Split<Correspond, k_tool_slices>, AssignMarkers,
-                 graph::Split<FitRigid, k_tool_slices>, TrackTools>;
+                 graph::Split<RefinePose, k_tool_slices>, TrackTools>;
 static_assert(graph::valid<MarkerTracker>);
 
 }  // namespace glint

@@ -130,6 +130,11 @@ BackProjectWork measure_range(const DepthView& view, const NominalMarker& nomina
   return work;
 }
 
+// The part of a ray's change that still is one where the ray has moved by a little.
+Vector3 beside_ray(const Vector3& ray, const Vector3& change) {
+  return change - ray * ray.dot(change);
+}
+
 // By what it now is known to be: a sphere's centre, or more than one marker.
 void correct_centroid(const DepthView& view, const SphereShift& shift, const NominalMarker& nominal,
                       Marker& out) {
@@ -141,6 +146,8 @@ void correct_centroid(const DepthView& view, const SphereShift& shift, const Nom
     const Vector2 moved = shift_px(shift, out.centroid_px, sine);
     out.centroid_px -= moved;
     out.ray = (rays.ray - rays.along_x * moved.x() - rays.along_y * moved.y()).normalized();
+    out.along_x = beside_ray(out.ray, rays.along_x);
+    out.along_y = beside_ray(out.ray, rays.along_y);
   }
   const double radius_px = sine / std::sqrt(rays.steradian_per_pixel());
   const double widened = radius_px + k_blur_px;
@@ -165,6 +172,8 @@ Measured measure(const Frame& frame, const Blob& blob, std::uint16_t blob_index,
   if (rays) {
     out = {};
     out.ray = rays.value.ray;
+    out.along_x = rays.value.along_x;
+    out.along_y = rays.value.along_y;
     out.centroid_px = blob.centroid_px;
     out.area_px = blob.area_px;
     out.blob = blob_index;

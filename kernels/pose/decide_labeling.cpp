@@ -56,8 +56,10 @@ DecidedLabeling decide_labeling(const Markers& markers, const MarkerSights& sigh
         out.reason = weighed.reason;
         continue;
       }
-      const RefinedPose pose = refine_pose({weighed.items.data(), weighed.count}, tool.tip_m, prior,
-                                           {settings.steps_max, left_out_max});
+      RefineSettings as_decided = settings;
+      as_decided.left_out_max = left_out_max;
+      const RefinedPose pose =
+          refine_pose({weighed.items.data(), weighed.count}, tool.tip_m, prior, as_decided);
       add_work(pose.work, out.work);
       if (pose.reason != Reason::none) continue;
       const double ahead = out.pose.chi_square - pose.chi_square;

@@ -14,18 +14,14 @@
 #include "kernels/limits.hpp"
 #include "kernels/nonblocking.hpp"
 #include "kernels/pose/labeling.hpp"
-#include "kernels/pose/local_rays.hpp"
 #include "kernels/pose/marker.hpp"
+#include "kernels/pose/marker_sight.hpp"
 #include "kernels/pose/refine_pose.hpp"
 #include "kernels/pose/tool.hpp"
 
 namespace glint {
 
-// Beside the marker with the same index in Markers: the lens around it, and its noise.
-struct MarkerSight {
-  LocalRays rays;
-  MarkerVariance variance;
-};
+// Each beside the marker with the same index in Markers.
 using MarkerSights = std::array<MarkerSight, k_blobs_max>;
 
 struct DecidedLabeling {
@@ -46,7 +42,9 @@ struct DecidedLabeling {
 
 // What decide_labeling may do at most.
 [[nodiscard]] constexpr RefineWork decide_work_max(int markers, const RefineSettings& settings) {
-  const RefineWork one = refine_work_max(markers, {settings.steps_max, 0});
+  RefineSettings none_left_out = settings;
+  none_left_out.left_out_max = 0;
+  const RefineWork one = refine_work_max(markers, none_left_out);
   const RefineWork again = refine_work_max(markers, settings);
   const bool twice = settings.left_out_max > 0;
   return {k_labelings_max * (one.fits + (twice ? again.fits : 0)),

@@ -23,6 +23,9 @@ enum MarkerFlag : std::uint8_t {
 // along the ray, a disc's at the surface: which of the two is the tool's affair.
 struct Marker {
   Vector3 ray = Vector3::UnitZ();         // unit, camera frame
+  // How the ray turns where the centroid moves by a pixel, at right angles to it. Zero: not known,
+  // as of a point without an image.
+  Vector3 along_x = Vector3::Zero(), along_y = Vector3::Zero();
   double surface_range_m = 0;             // radial, along the ray
   Vector2 centroid_px = Vector2::Zero();  // of a sphere: where its centre projects
   std::uint32_t area_px = 0;

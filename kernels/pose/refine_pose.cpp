@@ -63,7 +63,7 @@ OtherMinimum other_than(const WeightedFit& best, const WeightedFit& second) {
 }
 
 // All of `markers`, from both starts.
-RefinedPose refine_all(MarkerSpan markers, const Task& task) {
+RefinedPose refine_all(MarkerSpan markers, const Task& task, int steps_max) {
   RefinedPose out;
   const Vector3 mean = mean_of(markers);
   const RigidFit start = rigid_start(markers);
@@ -71,11 +71,11 @@ RefinedPose refine_all(MarkerSpan markers, const Task& task) {
   if (out.reason != Reason::none) return out;
   const bool two = start.reason == Reason::none;
   const Pose first = two ? start.transform : task.prior->T_camera_tool;
-  WeightedFit best = fit_weighted(markers, mean, first, task.prior, task.settings.steps_max);
+  WeightedFit best = fit_weighted(markers, mean, first, task.prior, steps_max);
   count(best, markers, out.work);
   if (two) {
     const Pose flip = depth_flipped(first, flattest_direction(markers, mean), mean);
-    WeightedFit second = fit_weighted(markers, mean, flip, task.prior, task.settings.steps_max);
+    WeightedFit second = fit_weighted(markers, mean, flip, task.prior, steps_max);
     count(second, markers, out.work);
     if (is_better(second, best)) std::swap(best, second);
     out.other = other_than(best, second);
@@ -113,7 +113,7 @@ RefinedPose without_one(MarkerSpan markers, const Task& task, const RefinedPose&
     for (std::size_t i = 0; i < markers.size(); ++i) {
       if (i != left_out) others[n++] = markers[i];
     }
-    RefinedPose pose = refine_all({others.data(), n}, task);
+    RefinedPose pose = refine_all({others.data(), n}, task, task.settings.left_out_steps_max);
     add_work(pose.work, work);
     if (!is_explained(pose)) continue;
     if (best.left_out >= 0 && !(pose.chi_square < best.chi_square)) continue;
@@ -135,7 +135,7 @@ RefinedPose refine_pose(MarkerSpan markers, const Vector3& reference_m, const Po
     return none;
   }
   const Task task{reference_m, prior, settings};
-  RefinedPose pose = refine_all(markers, task);
+  RefinedPose pose = refine_all(markers, task, settings.steps_max);
   if (is_explained(pose)) return pose;
   if (pose.reason == Reason::none) pose.reason = Reason::bad_fit;
   if (settings.left_out_max < 1 || markers.size() <= k_markers_left_least) return pose;

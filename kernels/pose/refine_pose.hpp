@@ -6,8 +6,9 @@
 //           the noise does not explain it, each marker is left out in turn, and the best such fit
 //           that the noise does explain stands.
 // Cost:     two weighted fits of some five steps: 6 us of five markers (bench_tracker); without one
-//           of n markers 2 n more.
-// Worst:    5 or more markers of which none or two are wrong: 2 (n + 1) fits of all steps.
+//           of n markers 2 n more, of half as many steps at most.
+// Worst:    5 or more markers that no pose explains, nor any without one: 2 (n + 1) fits of all
+//           the steps they may take.
 // Accuracy: reaches the Cramer-Rao bound where the tool is tilted by 20 degrees or more (glint
 //           experiment bound); below, where both minima run into each other, within some 15 %.
 // Source:   Foerstner and Wrobel 2016, Photogrammetric Computer Vision, section 4.4 (the weighted
@@ -28,8 +29,11 @@
 namespace glint {
 
 struct RefineSettings {
-  int steps_max = k_refine_steps_max;  // of each fit
+  int steps_max = k_refine_steps_max;  // of each fit of all markers
   int left_out_max = 1;                // 0: no marker is left out, a bad one spoils the pose
+  // Of each fit without one marker: of these there may be many, and one that is to stand is near
+  // its end by then.
+  int left_out_steps_max = k_refine_steps_max / 2;
 };
 
 // So many markers are left when one was left out: three agree too easily.
@@ -45,9 +49,8 @@ struct RefineWork {
 };
 [[nodiscard]] constexpr RefineWork refine_work_max(int markers, const RefineSettings& settings) {
   const int others = settings.left_out_max > 0 && markers > k_markers_left_least ? markers : 0;
-  const int steps = 2 * settings.steps_max;
-  return {2 * (1 + others), steps * (1 + others),
-          steps * (markers + others * (markers > 0 ? markers - 1 : 0))};
+  const int all = 2 * settings.steps_max, each = 2 * settings.left_out_steps_max;
+  return {2 * (1 + others), all + each * others, all * markers + each * others * (markers - 1)};
 }
 
 // The pose in which the markers look nearly as they do in the best one.

@@ -11,7 +11,8 @@ target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/tool.cpp
   ${CMAKE_CURRENT_LIST_DIR}/correspond.cpp ${CMAKE_CURRENT_LIST_DIR}/assign.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fit_covariance.cpp ${CMAKE_CURRENT_LIST_DIR}/bias_correction.cpp)
 target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/pose_factor.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/weighted_marker.cpp ${CMAKE_CURRENT_LIST_DIR}/normal_equations.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/weighted_marker.cpp ${CMAKE_CURRENT_LIST_DIR}/marker_sight.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/normal_equations.cpp
   ${CMAKE_CURRENT_LIST_DIR}/pose_prior.cpp ${CMAKE_CURRENT_LIST_DIR}/weighted_fit.cpp
   ${CMAKE_CURRENT_LIST_DIR}/depth_flip.cpp ${CMAKE_CURRENT_LIST_DIR}/refine_pose.cpp
   ${CMAKE_CURRENT_LIST_DIR}/decide_labeling.cpp)

@@ -58,7 +58,9 @@ Json motion_json(const ToolMotionSettings& settings) {
 }
 
 Json refine_json(const RefineSettings& settings) {
-  return {{"steps_max", settings.steps_max}, {"left_out_max", settings.left_out_max}};
+  return {{"steps_max", settings.steps_max},
+          {"left_out_max", settings.left_out_max},
+          {"left_out_steps_max", settings.left_out_steps_max}};
 }
 
 }  // namespace

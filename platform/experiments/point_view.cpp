@@ -76,7 +76,6 @@ Camera ahat_ray_table() {
 }
 
 MarkerVariance SightNoise::variance() const {
-  constexpr double k_range_sigma_least_m = 0.0001;
   const double pixel = pixel_px * pixel_px;
   const double range = std::max(range_m, k_range_sigma_least_m);
   return {pixel, 0, pixel, range * range};

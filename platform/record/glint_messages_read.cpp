@@ -155,6 +155,14 @@ std::optional<MarkerFrame> read_markers(MessageBytes bytes) {
     marker.range_sigma_m = from.get<float>();
   }
   if (from.failed()) return std::nullopt;
+  if (from.at_end()) return frame;  // so do those from before the rays' turns
+  if (from.get<std::uint32_t>() != count) return std::nullopt;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Marker& marker = frame.markers.items[i];
+    marker.along_x = get_vector(from);
+    marker.along_y = get_vector(from);
+  }
+  if (from.failed()) return std::nullopt;
   return frame;
 }
 

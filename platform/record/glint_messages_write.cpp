@@ -70,6 +70,12 @@ void write_message(CdrWriter& to, const MarkerFrame& frame, Duration unix_offset
     for (const float sigma : marker.sigma_px) to.put(sigma);
     to.put(marker.range_sigma_m);
   }
+  to.put_length(static_cast<std::size_t>(frame.markers.count));
+  for (int i = 0; i < frame.markers.count; ++i) {
+    const Marker& marker = frame.markers.items[static_cast<std::size_t>(i)];
+    put_vector(to, marker.along_x);
+    put_vector(to, marker.along_y);
+  }
 }
 
 void write_message(CdrWriter& to, const ChoiceRecord& choice, Duration unix_offset) {

@@ -58,11 +58,15 @@ constexpr std::array k_definitions{
                "uint32 area_px\nuint16 blob\nuint8 flags\n"},
     Definition{"glint_msgs/MarkerSigma",
                "float32 x_px\nfloat32 y_px\nfloat32 range_m  # of each 0: not known\n"},
+    Definition{"glint_msgs/MarkerTurn",
+               "geometry_msgs/Vector3 along_x  # of the ray, by a pixel\n"
+               "geometry_msgs/Vector3 along_y  # of each zero: not known\n"},
     Definition{"glint_msgs/Markers",
                "std_msgs/Header header  # middle of the exposure\n"
                "int64 mid_exposure_ns\nint64 arrival_ns\nuint32 sequence\nuint8 reason\n"
                "glint_msgs/Marker[] markers\n"
-               "glint_msgs/MarkerSigma[] sigmas  # of the same; older recordings have none\n"},
+               "glint_msgs/MarkerSigma[] sigmas  # of the same; older recordings have none\n"
+               "glint_msgs/MarkerTurn[] turns    # of the same; older recordings have none\n"},
     Definition{"glint_msgs/Choice",
                "std_msgs/Header header\nint64 nominal_ns\nuint64 activation\nuint8 group\n"
                "uint8 overrun  # 0: none; else 1 noticed ahead, 2 missed; plus 4 times the policy\n"

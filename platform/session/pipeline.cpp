@@ -82,7 +82,7 @@ void configure_common(const Cell& cell, AnyTracker& tracker) {
     node.limits = limits;
   });
   tracker.template node<AssignMarkers>().limits = limits;
-  tracker.template for_each<FitRigid>([&](FitRigid& node) {
+  tracker.template for_each<RefinePose>([&](RefinePose& node) {
     node.limits = limits;
     node.noise = MarkerNoise{};
     node.noise.focal_px = cell.camera.model.fx;

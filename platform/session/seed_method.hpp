@@ -3,7 +3,7 @@
 #pragma once
 
 #include "nodes/check_frame.hpp"
-#include "nodes/pose_nodes.hpp"
+#include "nodes/node_limits.hpp"
 #include "nodes/track_tools.hpp"
 #include "platform/cells/cell.hpp"
 #include "platform/seed/seed_tracker.hpp"

@@ -1,5 +1,8 @@
 // Labelings to share out, and labelled markers to fit.
+#include <algorithm>
+
 #include "nodes/pose_nodes.hpp"
+#include "nodes/refine_pose.hpp"
 #include "platform/budget/inputs/node_kernel.hpp"
 #include "platform/budget/inputs/pose_kernels.hpp"
 #include "platform/budget/inputs/views.hpp"
@@ -57,25 +60,42 @@ class AssignKernel final : public NodeKernel<AssignMarkers> {
   Assignment assignment_;
 };
 
-class FitKernel final : public NodeKernel<FitRigid> {
+// How much of its loops the fit of one tool runs.
+int marker_steps_of(const Tool& tool, const Marker* seen, const MarkerNoise& noise) {
+  std::array<WeightedMarker, k_markers_per_tool_max> markers;
+  for (int m = 0; m < tool.marker_count; ++m) {
+    const double range_m = seen[m].surface_range_m + tool.centre_offset_m();
+    const MarkerSight sight = sight_of(seen[m], range_m, noise);
+    markers[m] = weigh_marker(tool.markers_m[m], sight.rays, range_m, sight.variance).value;
+  }
+  const std::size_t count = static_cast<std::size_t>(tool.marker_count);
+  return refine_pose({markers.data(), count}, tool.tip_m).work.marker_steps;
+}
+
+class RefineKernel final : public NodeKernel<RefinePose> {
  public:
-  FitKernel() : NodeKernel("FitRigid") { start_.noise.focal_px = 253; }
+  RefineKernel() : NodeKernel("RefinePose") {}
   void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
     Numbers numbers(kind, number);
-    start_.limits = limits;
     const bool all = at_its_worst(kind);
+    start_.limits = limits;
+    start_.noise = all ? k_surest : MarkerNoise{};
+    start_.noise.focal_px = 253;
     set_.count = all ? limits.tools : 1 + numbers.below(limits.tools);
     markers_.count = 0;
     for (int t = 0; t < set_.count; ++t) {
-      set_.items[t] = any_tool(
-          numbers, all ? limits.markers_per_tool : 3 + numbers.below(limits.markers_per_tool - 2));
       assignment_.reason[t] = all || !numbers.one_in(5) ? Reason::none : Reason::taken_by_other;
+      const int first = markers_.count;
+      if (all) {
+        set_.items[t] = add_hardest(limits.markers_per_tool, numbers);
+      } else {
+        set_.items[t] = any_tool(numbers, 3 + numbers.below(limits.markers_per_tool - 2));
+        add_tool(markers_, set_.items[t], any_view(numbers), numbers.within(0, 0.005), numbers,
+                 k_blobs_max);
+      }
       Labeling& labeling = assignment_.labeling[t];
       labeling = {};
       labeling.marker.fill(-1);
-      const int first = markers_.count;
-      add_tool(markers_, set_.items[t], any_view(numbers), numbers.within(0, 0.005), numbers,
-               k_blobs_max);
       labeling.count = markers_.count - first;
       for (int m = 0; m < labeling.count; ++m) {
         labeling.marker[m] = static_cast<std::int16_t>(first + m);
@@ -89,6 +109,36 @@ class FitKernel final : public NodeKernel<FitRigid> {
   }
 
  private:
+  // The surer the markers the longer every fit walks.
+  static constexpr MarkerNoise k_surest = {k_range_sigma_least_m, k_pixel_sigma_least_px, 0};
+  static constexpr int k_tries = 200;
+
+  // A tool whose markers were seen where no pose has them, with all or without any one, and no fit
+  // ends before its last step: the hardest of some.
+  Tool add_hardest(int count, Numbers& numbers) {
+    const int first = markers_.count;
+    const int most = refine_work_max(count, {}).marker_steps;
+    Tool hardest;
+    std::array<Marker, k_markers_per_tool_max> seen;
+    for (int reached = -1, tried = 0; reached < most && tried < k_tries; ++tried) {
+      const Tool tool = any_tool(numbers, count);
+      const Pose view = any_view(numbers);
+      markers_.count = first;
+      for (int m = 0; m < count; ++m) {
+        const bool astray = m < 2 || count < 5;
+        const Vector3 off = astray ? numbers.in_box(0.3) : Vector3(Vector3::Zero());
+        add_marker(markers_, view * tool.markers_m[m] + off, tool, k_blobs_max);
+      }
+      const int steps = marker_steps_of(tool, &markers_.items[first], start_.noise);
+      if (steps <= reached) continue;
+      reached = steps;
+      hardest = tool;
+      std::copy_n(&markers_.items[first], count, seen.begin());
+    }
+    std::copy_n(seen.begin(), count, &markers_.items[first]);
+    return hardest;
+  }
+
   FrameVerdict verdict_ = admitted(1);
   Markers markers_;
   ToolSet set_;
@@ -100,6 +150,6 @@ class FitKernel final : public NodeKernel<FitRigid> {
 }  // namespace
 
 std::unique_ptr<MeasuredKernel> assign_markers_kernel() { return std::make_unique<AssignKernel>(); }
-std::unique_ptr<MeasuredKernel> fit_rigid_kernel() { return std::make_unique<FitKernel>(); }
+std::unique_ptr<MeasuredKernel> refine_pose_kernel() { return std::make_unique<RefineKernel>(); }
 
 }  // namespace glint::inputs

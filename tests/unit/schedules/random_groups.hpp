@@ -56,7 +56,7 @@ inline TaskGroup like_the_tracker() {
                        {"BackProject", 1, 27'000},
                        {"Correspond", 4, 55'000},
                        {"AssignMarkers", 1, 12'000},
-                       {"FitRigid", 4, 18'000},
+                       {"RefinePose", 4, 18'000},
                        {"TrackTools", 1, 16'000}});
 }
 

@@ -94,7 +94,7 @@ void add_frame(Sample& sample, const FrameBuffer& buffer, const FrameLayout& lay
 
 void add_markers(Sample& sample, const MarkerFrame& frame) {
   sample.writer.write_markers(frame);
-  json markers = json::array(), sigmas = json::array();
+  json markers = json::array(), sigmas = json::array(), turns = json::array();
   for (int i = 0; i < frame.markers.count; ++i) {
     const Marker& marker = frame.markers.items[static_cast<std::size_t>(i)];
     markers.push_back({{"ray", xyz(marker.ray)},
@@ -107,6 +107,7 @@ void add_markers(Sample& sample, const MarkerFrame& frame) {
     sigmas.push_back({{"x_px", marker.sigma_px[0]},
                       {"y_px", marker.sigma_px[1]},
                       {"range_m", marker.range_sigma_m}});
+    turns.push_back({{"along_x", xyz(marker.along_x)}, {"along_y", xyz(marker.along_y)}});
   }
   sample.expect("/glint/blobs", frame.arrival,
                 {{"header", sample.header(frame.mid_exposure, "hmd_tof_optical")},
@@ -115,7 +116,8 @@ void add_markers(Sample& sample, const MarkerFrame& frame) {
                  {"sequence", frame.sequence},
                  {"reason", static_cast<int>(frame.reason)},
                  {"markers", markers},
-                 {"sigmas", sigmas}});
+                 {"sigmas", sigmas},
+                 {"turns", turns}});
 }
 
 void add_inputs(Sample& sample) {

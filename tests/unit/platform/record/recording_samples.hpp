@@ -78,6 +78,8 @@ inline MarkerFrame sample_markers(int count) {
     marker.flags = k_marker_ring_depth;
     marker.sigma_px = {0.25F, 0.5F + static_cast<float>(i)};
     marker.range_sigma_m = 0.125F;
+    marker.along_x = Vector3(0.004, 0.0, -0.003);
+    marker.along_y = Vector3(0.0, 0.005 + 0.001 * i, 0.0);
   }
   return frame;
 }

@@ -154,17 +154,26 @@ TEST(Recording, GivesBackMarkersAtLevelBlobs) {
     EXPECT_EQ(a.flags, b.flags);
     EXPECT_EQ(a.sigma_px, b.sigma_px);
     EXPECT_EQ(a.range_sigma_m, b.range_sigma_m);
+    EXPECT_EQ(a.along_x, b.along_x);
+    EXPECT_EQ(a.along_y, b.along_y);
   }
 }
 
-// A message as it was written before markers had sigmas: its last array left out.
+// A message as it was written before markers had turns, and before they had sigmas: its last arrays
+// left out.
 TEST(Recording, ReadsMarkersOfOlderRecordings) {
   CdrWriter writer;
   write_message(writer, sample_markers(3), {});
-  // Its number and three a marker, after a byte that fills up to it.
-  const std::size_t sigmas = 1 + 4 + 3 * 3 * 4;
+  // Its number and three a marker, after a byte that fills up to it; its number and six a marker,
+  // with four bytes between.
+  const std::size_t sigmas = 1 + 4 + 3 * 3 * 4, turns = 4 + 4 + 3 * 6 * 8;
   const auto all = writer.bytes();
-  const auto read = read_markers(all.first(all.size() - sigmas));
+  const auto without_turns = read_markers(all.first(all.size() - turns));
+  ASSERT_TRUE(without_turns);
+  EXPECT_EQ(without_turns->markers.items[2].sigma_px[0], 0.25F);
+  EXPECT_TRUE(without_turns->markers.items[2].along_y.isZero());
+  EXPECT_FALSE(read_markers(all.first(all.size() - turns - 1)));
+  const auto read = read_markers(all.first(all.size() - turns - sigmas));
   ASSERT_TRUE(read);
   EXPECT_EQ(read->markers.count, 3);
   EXPECT_EQ(read->markers.items[2].flags, k_marker_ring_depth);

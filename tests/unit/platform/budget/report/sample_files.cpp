@@ -28,7 +28,7 @@ const std::vector<SampleKernel>& sample_kernels() {
        {{"call", {1, 1}}, {"runs", {32768, 32768}}, {"pixels", {262144, 262144}}}},
       {"BackProject", 61440, 53980, {{"call", {1, 1}}, {"blobs", {64, 64}}}},
       {"Correspond", 221184, 170142, {{"call", {1, 1}}, {"pairs", {4096, 3712}}}},
-      {"FitRigid", 48830, 44391, {{"call", {1, 1}}, {"sweeps", {12, 9}}}},
+      {"RefinePose", 48830, 44391, {{"call", {1, 1}}, {"sweeps", {12, 9}}}},
       {"PackCan", 1840, 1772, {{"call", {1, 1}}, {"tools", {16, 16}}}}};
   return kernels;
 }

@@ -1,0 +1,39 @@
+#include "kernels/pose/marker_sight.hpp"
+
+#include <algorithm>
+
+namespace glint {
+namespace {
+
+double variance_of(double own_sigma, double declared_sigma, double least) {
+  return std::max(own_sigma * own_sigma + declared_sigma * declared_sigma, least * least);
+}
+
+// Rays at right angles to each other, turning by this much a unit.
+LocalRays made_up(const Marker& marker, double turn) {
+  const Vector3 first = marker.ray.unitOrthogonal();
+  return {marker.centroid_px, marker.ray, turn * first, turn * marker.ray.cross(first)};
+}
+
+}  // namespace
+
+MarkerSight sight_of(const Marker& marker, double range_m, const MarkerNoise& noise) noexcept {
+  MarkerSight sight;
+  sight.rays = {marker.centroid_px, marker.ray, marker.along_x, marker.along_y};
+  MarkerVariance& variance = sight.variance;
+  variance.range_m2 = variance_of(marker.range_sigma_m, noise.range_sigma_m, k_range_sigma_least_m);
+  variance.xy_px2 = 0;
+  const bool has_image = sight.rays.steradian_per_pixel() > 0;
+  if (!has_image && !(noise.focal_px > 0)) {
+    // In place of pixels metres at the marker's range.
+    sight.rays = made_up(marker, 1 / range_m);
+    variance.xx_px2 = variance.yy_px2 = variance.range_m2;
+    return sight;
+  }
+  if (!has_image) sight.rays = made_up(marker, 1 / noise.focal_px);
+  variance.xx_px2 = variance_of(marker.sigma_px[0], noise.pixel_sigma_px, k_pixel_sigma_least_px);
+  variance.yy_px2 = variance_of(marker.sigma_px[1], noise.pixel_sigma_px, k_pixel_sigma_least_px);
+  return sight;
+}
+
+}  // namespace glint

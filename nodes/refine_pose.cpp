@@ -1,0 +1,84 @@
+#include "nodes/refine_pose.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace glint {
+namespace {
+
+// The labelled markers, weighed, and which of the tool's each is.
+struct SeenMarkers {
+  std::array<WeightedMarker, k_markers_per_tool_max> items;
+  std::array<int, k_markers_per_tool_max> of_tool{};
+  std::size_t count = 0;
+  Reason reason = Reason::none;
+};
+
+SeenMarkers weigh(const Tool& tool, int marker_count, const Markers& markers,
+                  const Labeling& labeling, const MarkerNoise& noise) {
+  SeenMarkers out;
+  for (int i = 0; i < marker_count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (labeling.marker[at] < 0) continue;
+    const Marker& marker = markers.items[static_cast<std::size_t>(labeling.marker[at])];
+    const double range_m = marker.surface_range_m + tool.centre_offset_m();
+    const MarkerSight sight = sight_of(marker, range_m, noise);
+    const Result<WeightedMarker> weighed =
+        weigh_marker(tool.markers_m[at], sight.rays, range_m, sight.variance);
+    if (!weighed) out.reason = weighed.reason;
+    out.items[out.count] = weighed.value;
+    out.of_tool[out.count++] = i;
+  }
+  return out;
+}
+
+}  // namespace
+
+void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& labeling,
+                     FittedTool& out) noexcept {
+  const SeenMarkers seen = weigh(tool, markers_within(tool, limits), markers, labeling, noise);
+  out.reason = seen.reason;
+  if (out.reason != Reason::none) return;
+  constexpr RefineSettings k_most;
+  const RefineSettings within = {std::min(settings.steps_max, k_most.steps_max),
+                                 settings.left_out_max,
+                                 std::min(settings.left_out_steps_max, k_most.left_out_steps_max)};
+  const RefinedPose pose =
+      refine_pose({seen.items.data(), seen.count}, tool.tip_m, nullptr, within);
+  counts_[2] += pose.work.fits;
+  counts_[3] += pose.work.steps;
+  counts_[4] += pose.work.marker_steps;
+  out.reason = pose.reason;
+  if (out.reason != Reason::none) return;
+  out.T_camera_tool = pose.T_camera_tool;
+  out.covariance = pose.covariance;
+  double squares = 0;
+  int kept = 0;
+  for (std::size_t i = 0; i < seen.count; ++i) {
+    if (static_cast<int>(i) == pose.left_out) continue;
+    const WeightedMarker& marker = seen.items[i];
+    squares += (pose.T_camera_tool * marker.model_m - marker.measured_m()).squaredNorm();
+    out.marker_mask = static_cast<std::uint8_t>(out.marker_mask | (1u << seen.of_tool[i]));
+    ++kept;
+  }
+  out.rms_m = std::sqrt(squares / kept);
+}
+
+void RefinePose::operator()(const FrameVerdict& verdict, const Markers& markers,
+                            const graph::Latest<ToolSet>& tools, const Assignment& assignment,
+                            graph::Slice slice, FittedTools& fitted) noexcept {
+  counts_ = {{1}};
+  const ToolSet& set = tools.value();
+  const int count = tools_within(set, limits);
+  for (int t = slice.index; t < count; t += slice.count) {
+    ++counts_[1];
+    const auto i = static_cast<std::size_t>(t);
+    FittedTool& out = fitted.tools[i];
+    out = FittedTool{};
+    out.reason = verdict.usable() ? assignment.reason[i] : verdict.reason;
+    if (out.reason == Reason::none) fit(set.items[i], markers, assignment.labeling[i], out);
+  }
+}
+
+}  // namespace glint

@@ -1,0 +1,51 @@
+// The weighted fit over the markers that each tool was given: its most likely pose, and how sure
+// that is. By tool, as Correspond: slice i of n takes the tools whose number leaves i.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "graph/graph.hpp"
+#include "kernels/nonblocking.hpp"
+#include "kernels/pose/marker.hpp"
+#include "kernels/pose/marker_sight.hpp"
+#include "kernels/pose/refine_pose.hpp"
+#include "kernels/pose/tool.hpp"
+#include "nodes/node_limits.hpp"
+#include "nodes/tokens.hpp"
+
+namespace glint {
+
+// A pose that the noise does not explain, with any one marker left out or with all, is none: its
+// reason is bad_fit. The mask names the markers that count.
+struct RefinePose {
+  static constexpr std::array<std::string_view, 5> k_loops = {"call", "tools", "fits", "steps",
+                                                              "marker_steps"};
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
+    return worst(limits, {0, k_tool_slices});
+  }
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits,
+                                                         graph::Slice slice) noexcept {
+    const std::int64_t tools = tools_of(limits, slice);
+    const RefineWork work = refine_work_max(limits.markers_per_tool, {});
+    return {{1, tools, tools * work.fits, tools * work.steps, tools * work.marker_steps}};
+  }
+  [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
+
+  RefineSettings settings;  // at most the default's steps are taken: worst() counts on these
+  MarkerNoise noise;
+  Limits limits;
+  void operator()(const FrameVerdict& verdict, const Markers& markers,
+                  const graph::Latest<ToolSet>& tools, const Assignment& assignment,
+                  graph::Slice slice, FittedTools& fitted) noexcept GLINT_NONBLOCKING;
+
+ private:
+  void fit(const Tool& tool, const Markers& markers, const Labeling& labeling,
+           FittedTool& out) noexcept GLINT_NONBLOCKING;
+
+  graph::LoopCounts counts_;
+};
+
+static_assert(graph::Budgeted<RefinePose, Limits>);
+
+}  // namespace glint
