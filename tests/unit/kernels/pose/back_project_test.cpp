@@ -140,6 +140,25 @@ TEST(BackProject, MovesASpheresCentroidToWhereItsCentreProjects) {
             blobs.items[0].centroid_px);
 }
 
+// Where the middle was moved to as where it was left.
+TEST(BackProject, SaysHowTheRayTurnsWithThePixel) {
+  Scene scene;
+  scene.camera.model.lens = Lens::pinhole;
+  scene.camera.depth.wrap_range_m = 0;
+  scene.centre_m = Vector3(0.8, 0.2, 1).normalized() * 0.3;
+  const FrameBuffer buffer = scene.render();
+  for (const MarkerShape shape : {MarkerShape::sphere, MarkerShape::disc}) {
+    const Marker marker = marker_of(scene, buffer, {0.006, shape});
+    const Vector3* const along[] = {&marker.along_x, &marker.along_y};
+    for (int axis = 0; axis < 2; ++axis) {
+      const Vector2 beside = marker.centroid_px + 0.2 * Vector2::Unit(axis);
+      const Vector3 turned = unproject(scene.camera.model, beside).value;
+      EXPECT_NEAR(marker.ray.dot(*along[axis]), 0, 1e-15);
+      EXPECT_LT((turned - marker.ray - 0.2 * *along[axis]).norm(), 0.005 * along[axis]->norm());
+    }
+  }
+}
+
 TEST(BackProject, StatesHowFarItsRangesMeanMayBeOff) {
   for (const double noise_m : {0.002, 0.008}) {
     double squares = 0, variances = 0;

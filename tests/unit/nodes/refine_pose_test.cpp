@@ -1,0 +1,279 @@
+#include "nodes/refine_pose.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "kernels/pose/pose_factor.hpp"
+#include "kernels/pose/rigid_fit.hpp"
+#include "tests/unit/kernels/pose/weighted_scene.hpp"
+
+namespace glint {
+namespace {
+
+using test::Random;
+
+const Vector3 k_place(0.08, -0.05, 0.5);
+constexpr double k_pixel_sigma_px = 0.1, k_range_sigma_m = 0.0015;
+
+class RefinePose : public testing::Test {
+ protected:
+  RefinePose() {
+    node_.noise = {k_range_sigma_m, k_pixel_sigma_px, 253};
+    world_->assignment.reason.fill(Reason::too_few_markers);
+  }
+
+  // Tool number t, its markers seen in the reverse of their order, with noise of `share` sigmas.
+  void add_tool(int t, const Tool& tool, const Pose& truth, double share, Random& random) {
+    const auto at = static_cast<std::size_t>(t);
+    set_.count = std::max(set_.count, t + 1);
+    set_.items[at] = tool;
+    world_->assignment.reason[at] = Reason::none;
+    Labeling& labeling = world_->assignment.labeling[at];
+    labeling = {};
+    labeling.marker.fill(-1);
+    labeling.count = tool.marker_count;
+    const CameraModel camera = test::pinhole();
+    for (int i = tool.marker_count - 1; i >= 0; --i) {
+      const Vector3 point = truth * tool.markers_m[static_cast<std::size_t>(i)];
+      const double right = random.normal(), down = random.normal(), away = random.normal();
+      const Vector2 pixel =
+          project(camera, point).value + share * k_pixel_sigma_px * Vector2(right, down);
+      int lens_steps = 0;
+      const LocalRays rays = local_rays(camera, pixel, k_ray_steps_max, lens_steps).value;
+      labeling.marker[static_cast<std::size_t>(i)] =
+          static_cast<std::int16_t>(world_->markers.count);
+      Marker& marker = world_->markers.items[static_cast<std::size_t>(world_->markers.count++)];
+      marker = {};
+      marker.ray = rays.ray;
+      marker.along_x = rays.along_x;
+      marker.along_y = rays.along_y;
+      marker.centroid_px = pixel;
+      marker.surface_range_m =
+          point.norm() + share * k_range_sigma_m * away - tool.centre_offset_m();
+    }
+  }
+  Marker& marker_of(int t, int i) {
+    return world_->markers
+        .items[static_cast<std::size_t>(world_->assignment.labeling[static_cast<std::size_t>(t)]
+                                            .marker[static_cast<std::size_t>(i)])];
+  }
+  void forget(int t, int i) {
+    Labeling& labeling = world_->assignment.labeling[static_cast<std::size_t>(t)];
+    labeling.marker[static_cast<std::size_t>(i)] = -1;
+    --labeling.count;
+  }
+  void start_over() { world_->markers.count = set_.count = 0; }
+  const FittedTools& run(graph::Slice slice = {0, 1}) {
+    tools_.set(set_, 1, 0);
+    node_(verdict_, world_->markers, tools_, world_->assignment, slice, world_->fitted);
+    return world_->fitted;
+  }
+  const FittedTool& run_one() { return run().tools[0]; }
+
+  struct World {
+    Markers markers;
+    Assignment assignment;
+    FittedTools fitted;
+  };
+  std::unique_ptr<World> world_ = std::make_unique<World>();
+  FrameVerdict verdict_;
+  ToolSet set_;
+  graph::Latest<ToolSet> tools_;
+  glint::RefinePose node_;
+};
+
+Vector6 error_of(const FittedTool& found, const Pose& truth, const Vector3& tip) {
+  Vector6 error;
+  error << found.T_camera_tool * tip - truth * tip,
+      rotation_vector(found.T_camera_tool.rotation * truth.rotation.conjugate());
+  return error;
+}
+
+TEST_F(RefinePose, BeatsTheRigidFitOnNoisyMarkersAndSaysHowSureItIs) {
+  Random random(1);
+  Tool tool = test::five_marker_pen();
+  tool.tip_m = test::mean_of_markers(tool) - Vector3(0, 0, 0.15);
+  constexpr int k_trials = 3000;
+  double nees = 0, squares = 0, rigid_squares = 0;
+  for (int trial = 0; trial < k_trials; ++trial) {
+    start_over();
+    const Pose truth = test::tilted_pose(tool, random.within(0.4, 1), k_place, random);
+    add_tool(0, tool, truth, 1, random);
+    const FittedTool& found = run_one();
+    ASSERT_EQ(found.reason, Reason::none);
+    EXPECT_EQ(found.marker_mask, 31);
+    const Vector6 error = error_of(found, truth, tool.tip_m);
+    nees += error.dot(pose_factor(found.covariance).value.solve(error)) / (6 * k_trials);
+    squares += error.head<3>().squaredNorm();
+    std::array<Vector3, 5> measured;
+    for (int i = 0; i < 5; ++i) {
+      const Marker& marker = marker_of(0, i);
+      measured[static_cast<std::size_t>(i)] =
+          marker.ray * (marker.surface_range_m + tool.centre_offset_m());
+    }
+    const RigidFit rigid = fit_rigid({tool.markers_m.data(), 5}, measured);
+    rigid_squares += (rigid.transform * tool.tip_m - truth * tool.tip_m).squaredNorm();
+  }
+  const double part = std::sqrt(squares / rigid_squares);
+  std::printf("  tip: %.2f mm rms, %.2f of the rigid fit's; NEES/6 %.3f\n",
+              1e3 * std::sqrt(squares / k_trials), part, nees);
+  EXPECT_LT(part, 0.7);
+  EXPECT_NEAR(nees, 1, 0.05);  // 3,000 means of six squares: 0.01, 1 sigma
+}
+
+TEST_F(RefinePose, LeavesOutOneBadMarkerOfFiveAndTheMaskSaysSo) {
+  Random random(2);
+  for (int bad = 0; bad < 6; ++bad) {
+    if (bad == 1) continue;
+    start_over();
+    const Tool tool = test::random_tool(random, 6);
+    const Pose truth = test::tilted_pose(tool, 0.5, k_place, random);
+    add_tool(0, tool, truth, 0, random);
+    forget(0, 1);  // so that the seen markers' numbers are not the tool's
+    marker_of(0, bad).surface_range_m += 0.05;
+    const FittedTool& found = run_one();
+    ASSERT_EQ(found.reason, Reason::none) << bad;
+    EXPECT_EQ(found.marker_mask, 0b111101 & ~(1 << bad));
+    EXPECT_LT(error_of(found, truth, tool.tip_m).norm(), 1e-5);
+    EXPECT_LT(found.rms_m, 1e-6) << "the marker left out counts no more";
+  }
+}
+
+TEST_F(RefinePose, StatesTheMeanDistanceThatIsLeft) {
+  Random random(3);
+  const Tool tool = test::five_marker_pen();
+  add_tool(0, tool, test::tilted_pose(tool, 0.5, k_place, random), 1, random);
+  const FittedTool& found = run_one();
+  ASSERT_EQ(found.reason, Reason::none);
+  double squares = 0;
+  for (int i = 0; i < 5; ++i) {
+    const Marker& marker = marker_of(0, i);
+    const Vector3 measured = marker.ray * (marker.surface_range_m + tool.centre_offset_m());
+    squares += (found.T_camera_tool * tool.markers_m[static_cast<std::size_t>(i)] - measured)
+                   .squaredNorm();
+  }
+  EXPECT_NEAR(found.rms_m, std::sqrt(squares / 5), 1e-12);
+}
+
+TEST_F(RefinePose, WeighsABlurredMarkerLess) {
+  Random random(4);
+  const Tool tool = test::five_marker_pen();
+  const Pose truth = test::tilted_pose(tool, 0.5, k_place, random);
+  double off[2];
+  for (const int known : {0, 1}) {
+    start_over();
+    add_tool(0, tool, truth, 0, random);
+    marker_of(0, 2).surface_range_m += 0.004;
+    if (known == 1) marker_of(0, 2).range_sigma_m = 0.02F;
+    const FittedTool& found = run_one();
+    ASSERT_EQ(found.reason, Reason::none);
+    off[known] = error_of(found, truth, tool.tip_m).head<3>().norm();
+  }
+  EXPECT_LT(off[1], 0.2 * off[0]);
+}
+
+TEST_F(RefinePose, SaysWhyAToolHasNoPoseAndGivesNone) {
+  Random random(5);
+  const Tool flat = test::flat_tool();
+  const Pose truth = test::tilted_pose(flat, 0.5, k_place, random);
+  const auto reason_of = [&] {
+    const FittedTool& found = run_one();
+    EXPECT_EQ(found.marker_mask, 0);
+    EXPECT_TRUE(found.covariance.isZero());
+    EXPECT_TRUE(found.T_camera_tool.translation.isZero());
+    return found.reason;
+  };
+  add_tool(0, flat, truth, 0, random);
+  marker_of(0, 1).surface_range_m += 0.03;  // of four none can be left out
+  EXPECT_EQ(reason_of(), Reason::bad_fit);
+  marker_of(0, 1).surface_range_m = -1;
+  EXPECT_EQ(reason_of(), Reason::out_of_range);
+  forget(0, 1);
+  forget(0, 2);
+  EXPECT_EQ(reason_of(), Reason::too_few_markers);
+
+  start_over();
+  Tool line = flat;
+  for (int i = 0; i < 4; ++i) {
+    line.markers_m[static_cast<std::size_t>(i)] = Vector3(0, 0.03 * (i + 0.1 * i * i), 0);
+  }
+  add_tool(0, line, truth, 0, random);
+  EXPECT_EQ(reason_of(), Reason::collinear);
+
+  start_over();
+  add_tool(0, flat, truth, 0, random);
+  world_->assignment.reason[0] = Reason::taken_by_other;
+  EXPECT_EQ(reason_of(), Reason::taken_by_other);
+  verdict_.reason = Reason::frame_late;
+  EXPECT_EQ(reason_of(), Reason::frame_late);
+}
+
+TEST_F(RefinePose, FitsEachToolInOneSliceAlike) {
+  Random random(6);
+  for (int t = 0; t < 7; ++t) {
+    const Tool tool = test::random_tool(random, 4 + t % 3);
+    add_tool(t, tool, test::tilted_pose(tool, 0.5, k_place, random), 1, random);
+  }
+  run();
+  const FittedTools whole = world_->fitted;
+  graph::LoopCounts sum{};
+  const graph::LoopCounts together = node_.counts();
+  world_->fitted = {};
+  for (int slice = 0; slice < k_tool_slices; ++slice) {
+    FittedTools before = world_->fitted;
+    run({slice, k_tool_slices});
+    for (std::size_t loop = 0; loop < sum.size(); ++loop) sum[loop] += node_.counts()[loop];
+    for (int t = 0; t < 7; ++t) {
+      const FittedTool& found = world_->fitted.tools[static_cast<std::size_t>(t)];
+      const bool own = t % k_tool_slices == slice;
+      const FittedTool& expected = (own ? whole : before).tools[static_cast<std::size_t>(t)];
+      EXPECT_EQ(found.reason, expected.reason) << t;
+      EXPECT_EQ(found.rms_m, expected.rms_m) << t;
+    }
+  }
+  for (std::size_t loop = 1; loop < glint::RefinePose::k_loops.size(); ++loop) {
+    EXPECT_EQ(sum[loop], together[loop]) << glint::RefinePose::k_loops[loop];
+  }
+  EXPECT_EQ(together[1], 7);
+  EXPECT_GE(together[2], 14);  // two starts each
+}
+
+TEST_F(RefinePose, NeverRunsItsLoopsMoreOftenThanItSays) {
+  Random random(7);
+  node_.limits.tools = 2;
+  node_.limits.markers_per_tool = 6;
+  node_.settings = {100, 5, 100};
+  const graph::LoopCounts worst = glint::RefinePose::worst(node_.limits, {0, 1});
+  graph::LoopCounts most{};
+  for (int trial = 0; trial < 300; ++trial) {
+    start_over();
+    for (int t = 0; t < 3; ++t) {
+      const Tool tool = test::random_tool(random, 5 + random.below(3));
+      add_tool(t, tool, test::tilted_pose(tool, random.within(0, 1.5), k_place, random), 1, random);
+      for (int bad = 0; bad < 2; ++bad) marker_of(t, bad).surface_range_m *= random.within(0.3, 3);
+    }
+    run();
+    EXPECT_TRUE(graph::within(node_.counts(), worst)) << trial;
+    for (std::size_t i = 0; i < most.size(); ++i) most[i] = std::max(most[i], node_.counts()[i]);
+  }
+  EXPECT_EQ(most[1], 2);
+  EXPECT_EQ(most[2], worst[2]);
+  EXPECT_GT(most[4], worst[4] / 2);
+}
+
+TEST_F(RefinePose, CountsTheMarkersOfItsFitsAndTheirSteps) {
+  Random random(8);
+  const Tool tool = test::flat_tool();
+  add_tool(0, tool, test::tilted_pose(tool, 0.5, k_place, random), 1, random);
+  run();
+  EXPECT_EQ(node_.counts()[0], 1);
+  EXPECT_EQ(node_.counts()[1], 1);
+  EXPECT_EQ(node_.counts()[2], 2);
+  EXPECT_GE(node_.counts()[3], 4);
+  EXPECT_EQ(node_.counts()[4], 4 * node_.counts()[3]);
+}
+
+}  // namespace
+}  // namespace glint
