@@ -96,6 +96,7 @@ TEST_F(RefinePose, BeatsTheRigidFitOnNoisyMarkersAndSaysHowSureItIs) {
   Tool tool = test::five_marker_pen();
   tool.tip_m = test::mean_of_markers(tool) - Vector3(0, 0, 0.15);
   constexpr int k_trials = 3000;
+  int left_out = 0;
   double nees = 0, squares = 0, rigid_squares = 0;
   for (int trial = 0; trial < k_trials; ++trial) {
     start_over();
@@ -103,7 +104,7 @@ TEST_F(RefinePose, BeatsTheRigidFitOnNoisyMarkersAndSaysHowSureItIs) {
     add_tool(0, tool, truth, 1, random);
     const FittedTool& found = run_one();
     ASSERT_EQ(found.reason, Reason::none);
-    EXPECT_EQ(found.marker_mask, 31);
+    left_out += found.marker_mask == 31 ? 0 : 1;
     const Vector6 error = error_of(found, truth, tool.tip_m);
     nees += error.dot(pose_factor(found.covariance).value.solve(error)) / (6 * k_trials);
     squares += error.head<3>().squaredNorm();
@@ -120,6 +121,7 @@ TEST_F(RefinePose, BeatsTheRigidFitOnNoisyMarkersAndSaysHowSureItIs) {
   std::printf("  tip: %.2f mm rms, %.2f of the rigid fit's; NEES/6 %.3f\n",
               1e3 * std::sqrt(squares / k_trials), part, nees);
   EXPECT_LT(part, 0.7);
+  EXPECT_LE(left_out, 3);  // 0.3 by chi-square's tail
   EXPECT_NEAR(nees, 1, 0.05);  // 3,000 means of six squares: 0.01, 1 sigma
 }
 
@@ -224,7 +226,8 @@ TEST_F(RefinePose, FitsEachToolInOneSliceAlike) {
   for (int slice = 0; slice < k_tool_slices; ++slice) {
     FittedTools before = world_->fitted;
     run({slice, k_tool_slices});
-    for (std::size_t loop = 0; loop < sum.size(); ++loop) sum[loop] += node_.counts()[loop];
+    for (std::size_t loop = 0; loop < glint::RefinePose::k_loops.size(); ++loop)
+      sum[loop] += node_.counts()[loop];
     for (int t = 0; t < 7; ++t) {
       const FittedTool& found = world_->fitted.tools[static_cast<std::size_t>(t)];
       const bool own = t % k_tool_slices == slice;
@@ -256,7 +259,8 @@ TEST_F(RefinePose, NeverRunsItsLoopsMoreOftenThanItSays) {
     }
     run();
     EXPECT_TRUE(graph::within(node_.counts(), worst)) << trial;
-    for (std::size_t i = 0; i < most.size(); ++i) most[i] = std::max(most[i], node_.counts()[i]);
+    for (std::size_t i = 0; i < glint::RefinePose::k_loops.size(); ++i)
+      most[i] = std::max(most[i], node_.counts()[i]);
   }
   EXPECT_EQ(most[1], 2);
   EXPECT_EQ(most[2], worst[2]);
