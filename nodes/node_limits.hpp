@@ -10,9 +10,6 @@
 
 namespace glint {
 
-// How many copies the tools are spread over; never the worker count.
-inline constexpr int k_tool_slices = 4;
-
 // Slice i takes the tools whose number leaves i when divided by the slices' count: the first slice
 // has the most.
 [[nodiscard]] constexpr int tools_of(const Limits& limits, graph::Slice slice) {

@@ -22,6 +22,13 @@ PoseSample without_pose(const PoseSample& sample, TrackState state) {
   return bare;
 }
 
+// Neither the search of the next frame nor the tick group moves it on.
+void stand_still(Track& track) {
+  track.has_previous = false;
+  track.motion.velocity_m_s = track.motion.acceleration_m_s2 = Vector3::Zero();
+  track.motion.angular_velocity_rad_s = track.motion.angular_acceleration_rad_s2 = Vector3::Zero();
+}
+
 void move_on(Duration lead, PoseSample& sample) {
   const double seconds = lead.seconds();
   sample.pose.translation += sample.velocity_m_s * seconds;
@@ -50,7 +57,7 @@ bool substitute(OverrunPolicy policy, const OverrunFrame& frame, const Estimates
     if (!track.alive) continue;
     track.reason = reason;
     if (policy == OverrunPolicy::hold_last) {
-      track.has_previous = false;  // without a velocity the tick group lets it stand still
+      stand_still(track);
     } else if (track.has_previous) {
       const Pose T_base_tool =
           extrapolate(track.previous, track.newest, frame.stamp.mid_exposure, frame.lost_after);

@@ -3,49 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/motion/predict_motion.hpp"
+#include "kernels/pose/lever_arm.hpp"
+
 namespace glint {
 namespace {
 
-struct Aged {
-  Pose pose;  // T_base_tool at the actuation time
-  Vector3 velocity_m_s = Vector3::Zero();
-  Vector3 angular_velocity_rad_s = Vector3::Zero();
-};
-
-Aged at(const Track& track, Time when, Duration horizon) {
-  Aged aged{track.newest.pose};
-  if (!track.has_previous) return aged;
-  aged.pose = extrapolate(track.previous, track.newest, when, horizon);
-  const Velocity velocity = velocity_between(track.previous, track.newest);
-  aged.velocity_m_s = velocity.linear_m_s;
-  aged.angular_velocity_rad_s = velocity.angular_rad_s;
-  return aged;
-}
-
-// Moves a pose and its covariance from base to the frame that `T_frame_base` leads to.
-void express(const Pose& T_frame_base, Aged& aged, Matrix6& covariance) {
-  aged.pose = T_frame_base * aged.pose;
-  aged.velocity_m_s = T_frame_base.rotation * aged.velocity_m_s;
-  aged.angular_velocity_rad_s = T_frame_base.rotation * aged.angular_velocity_rad_s;
-  Matrix6 turn = Matrix6::Zero();
-  turn.topLeftCorner<3, 3>() = T_frame_base.rotation.toRotationMatrix();
-  turn.bottomRightCorner<3, 3>() = turn.topLeftCorner<3, 3>();
-  covariance = turn * covariance * turn.transpose();
+// Moves a pose, its speeds and its covariance from base to the frame that `T_frame_base` leads to.
+void express(const Pose& T_frame_base, MovingPose& moving, Matrix6& covariance) {
+  moving.pose = T_frame_base * moving.pose;
+  moving.velocity_m_s = T_frame_base.rotation * moving.velocity_m_s;
+  moving.angular_velocity_rad_s = T_frame_base.rotation * moving.angular_velocity_rad_s;
+  covariance = turned_covariance(covariance, T_frame_base.rotation);
 }
 
 double axis_sigma(const Matrix6& covariance, int first) {
   const double trace = covariance(first, first) + covariance(first + 1, first + 1) +
                        covariance(first + 2, first + 2);
   return std::sqrt(trace > 0 ? trace / 3.0 : 0.0);
-}
-
-// The tip's covariance `lead` seconds on: both poses that the velocity rests on are as uncertain as
-// the newest, so position error grows to (1 + r)^2 + r^2 times its variance with r = lead / gap.
-double growth(const Track& track, Time when) {
-  if (!track.has_previous) return 1.0;
-  const double gap = (track.newest.time - track.previous.time).seconds();
-  const double r = gap > 0 ? (when - track.newest.time).seconds() / gap : 0.0;
-  return r > 0 ? (1 + r) * (1 + r) + r * r : 1.0;
 }
 
 }  // namespace
@@ -85,24 +60,24 @@ void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& es
 
     const Time when = now.tick + settings.actuation_delay;
     ++counts_[2];
-    if (track.has_previous) ++counts_[3];
-    Aged aged = at(track, when, settings.lost_after);
-    Matrix6 covariance = track.covariance * growth(track, when);
+    MovingPose moving = integrator_.after(track.motion, when - track.motion.time).value;
+    Matrix6 covariance = predict_pose(track.motion, when, settings.motion, track.noise).covariance;
     sample.frame = track.base;
     if (track.base == ReferenceFrame::camera) {
       if (sample.reason == Reason::none) sample.reason = Reason::head_pose_missing;
     } else if (robot.value().state == RegistrationState::given ||
                robot.value().state == RegistrationState::accepted) {
-      express(robot.value().T_world_robot.inverse(), aged, covariance);
+      express(robot.value().T_world_robot.inverse(), moving, covariance);
       sample.frame = ReferenceFrame::robot;
     } else if (sample.reason == Reason::none) {
       sample.reason = Reason::no_reference;
     }
 
-    const Vector3 arm = aged.pose.rotation * known.tip_m[t];
-    sample.pose = {aged.pose.rotation, aged.pose.translation + arm};
-    sample.velocity_m_s = aged.velocity_m_s + aged.angular_velocity_rad_s.cross(arm);
-    sample.angular_velocity_rad_s = aged.angular_velocity_rad_s;
+    const Vector3 arm = moving.pose.rotation * known.arm_m[static_cast<std::size_t>(t)];
+    covariance = moved_covariance(covariance, arm);
+    sample.pose = {moving.pose.rotation, moving.pose.translation + arm};
+    sample.velocity_m_s = moving.velocity_m_s + moving.angular_velocity_rad_s.cross(arm);
+    sample.angular_velocity_rad_s = moving.angular_velocity_rad_s;
     sample.covariance = covariance;
     sample.sigma_position_m = axis_sigma(covariance, 0);
     sample.sigma_orientation_rad = axis_sigma(covariance, 3);

@@ -1,11 +1,13 @@
 // Every tick: each tool's pose at the actuation time, in the robot's frame, with its state.
 //
-// What:     constant velocity for the position, SLERP for the orientation (Shoemake 1985), both
-//           from the last two measured poses; then world -> robot; then the tip.
+// What:     the motion's mean equations integrated from the newest estimate to the actuation time
+//           (kernels/motion/integrate_motion.hpp), their covariance in closed form
+//           (predict_motion.hpp); then world -> robot; then from the markers' middle to the tip.
 // States:   measured while the newest accepted pose is at most 1.5 nominal frame gaps old,
 //           predicted until lost_after, then lost: DESIGN contract, so no tuning.
 // Cost:     one pass over the tools; those with a pose cost, the others hardly.
-// Worst:    all moving, predicted and expressed in the robot's frame.
+// Worst:    all with a pose and expressed in the robot's frame. Where the tool is going makes no
+//           difference.
 #pragma once
 
 #include <array>
@@ -14,6 +16,7 @@
 #include "graph/graph.hpp"
 #include "graph/loops.hpp"
 #include "kernels/limits.hpp"
+#include "kernels/motion/integrate_motion.hpp"
 #include "kernels/nonblocking.hpp"
 #include "nodes/tokens.hpp"
 
@@ -23,22 +26,26 @@ struct PredictSettings {
   Duration nominal_gap = {22'222'222};      // the camera's period: 22.2 ms for AHAT
   Duration lost_after = milliseconds(250);  // at most 400
   Duration actuation_delay = {};            // the pose is for tick + this
+  MotionSettings motion;                    // as those that the estimates were followed with
 };
 
 struct PredictTools {
-  static constexpr std::array<std::string_view, 4> k_loops = {"call", "tools", "poses", "moving"};
+  static constexpr std::array<std::string_view, 3> k_loops = {"call", "tools", "poses"};
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
-    return {{1, limits.tools, limits.tools, limits.tools}};
+    return {{1, limits.tools, limits.tools}};
   }
   [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
 
   PredictSettings settings;
   Limits limits;
+  // The only place that allocates. Reason: not_prepared where SUNDIALS refuses.
+  [[nodiscard]] Reason prepare() noexcept { return integrator_.prepare(settings.motion); }
   void operator()(const Now& now, const graph::Latest<Estimates>& estimates,
                   const graph::Latest<RobotFrame>& robot,
                   PoseSamples& samples) noexcept GLINT_NONBLOCKING;
 
  private:
+  MotionIntegrator integrator_;
   graph::LoopCounts counts_;
 };
 

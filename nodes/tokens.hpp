@@ -7,6 +7,7 @@
 
 #include "kernels/limits.hpp"
 #include "kernels/motion/interpolate.hpp"
+#include "kernels/motion/motion_track.hpp"
 #include "kernels/pose/labeling.hpp"
 #include "kernels/reason.hpp"
 #include "kernels/units.hpp"
@@ -14,6 +15,10 @@
 #include "kernels/wire/pose_sample.hpp"
 
 namespace glint {
+
+// How many copies the tools are spread over; never the worker count.
+inline constexpr int k_tool_slices = 4;
+inline constexpr int k_tools_per_slice = (k_tools_max + k_tool_slices - 1) / k_tool_slices;
 
 // What is known of a frame without its pixels.
 struct FrameStamp {
@@ -71,6 +76,19 @@ struct FittedTools {
   std::array<FittedTool, k_tools_max> tools;
 };
 
+// A tool's motion up to this frame, of the middle of its markers.
+struct FollowedTool {
+  Reason reason = Reason::no_frame_yet;  // why this frame did not move it on
+  MotionTrack motion;
+  MotionState estimate;  // motion's, once it is known
+  NoiseScale noise;      // motion's
+  ReferenceFrame base = ReferenceFrame::camera;
+};
+// Of one slice: tool t is number t / k_tool_slices.
+struct FollowedTools {
+  std::array<FollowedTool, k_tools_per_slice> items;
+};
+
 // What is known of a tool after a frame: its newest pose and the one before, from which velocity
 // follows. `base` is the frame both are in: the world, or the camera where no head pose was valid.
 struct Track {
@@ -82,16 +100,18 @@ struct Track {
   std::uint8_t marker_mask = 0;
   std::uint32_t frame_sequence = 0;
   double rms_m = 0;
-  StampedPose newest, previous;          // T_base_tool
-  Pose T_camera_tool;                    // the newest, as the camera saw it
-  Matrix6 covariance = Matrix6::Zero();  // of the tip, about the base's axes
+  StampedPose newest, previous;  // T_base_tool
+  Pose T_camera_tool;            // the newest, as the camera saw it
+  MotionState motion;  // T_base_middle (of its markers) and how it changes, at newest.time
+  NoiseScale noise;    // of what the hand does next, as motion's filter has it
 };
 
 // The frame group's result.
 struct Estimates {
   FrameVerdict verdict;
   int tool_count = 0;
-  std::array<Vector3, k_tools_max> tip_m;  // tool frame: the tick group needs no tool set
+  // From the markers' middle to the tip, along the tool's axes: the tick group needs no tool set.
+  std::array<Vector3, k_tools_max> arm_m;
   std::array<Track, k_tools_max> tracks;
 };
 

@@ -3,16 +3,8 @@
 namespace glint {
 namespace {
 
-// The covariance about the axes of another frame.
-Matrix6 rotated(const Matrix6& covariance, const Quaternion& rotation) {
-  Matrix6 turn = Matrix6::Zero();
-  turn.topLeftCorner<3, 3>() = rotation.toRotationMatrix();
-  turn.bottomRightCorner<3, 3>() = turn.topLeftCorner<3, 3>();
-  return turn * covariance * turn.transpose();
-}
-
-void accept(const FittedTool& found, const FrameStamp& stamp, const HeadPose& head,
-            Duration velocity_gap_max, Track& track) {
+void accept(const FittedTool& found, const FollowedTool& followed, const FrameStamp& stamp,
+            const HeadPose& head, Duration velocity_gap_max, Track& track) {
   const ReferenceFrame base = head.valid ? ReferenceFrame::world : ReferenceFrame::camera;
   const Pose pose = head.valid ? head.T_world_camera * found.T_camera_tool : found.T_camera_tool;
   track.has_previous = track.alive && track.base == base &&
@@ -27,8 +19,8 @@ void accept(const FittedTool& found, const FrameStamp& stamp, const HeadPose& he
   track.frame_sequence = stamp.sequence;
   track.rms_m = found.rms_m;
   track.T_camera_tool = found.T_camera_tool;
-  track.covariance =
-      head.valid ? rotated(found.covariance, head.T_world_camera.rotation) : found.covariance;
+  track.motion = followed.estimate;
+  track.noise = followed.noise;
 }
 
 }  // namespace
@@ -36,6 +28,7 @@ void accept(const FittedTool& found, const FrameStamp& stamp, const HeadPose& he
 void TrackTools::operator()(const FrameVerdict& verdict, const HeadPose& head,
                             const graph::Latest<ToolSet>& tools,
                             const graph::Parts<FittedTools, k_tool_slices>& fitted,
+                            const graph::Parts<FollowedTools, k_tool_slices>& followed,
                             const graph::Previous<Estimates>& last, Estimates& estimates) noexcept {
   const ToolSet& set = tools.value();
   const int count = tools_within(set, limits);
@@ -46,22 +39,23 @@ void TrackTools::operator()(const FrameVerdict& verdict, const HeadPose& head,
     Track& track = estimates.tracks[t];
     if (t >= count) {
       track = Track{};
-      estimates.tip_m[t] = Vector3::Zero();
+      estimates.arm_m[t] = Vector3::Zero();
       continue;
     }
-    estimates.tip_m[t] = set.items[t].tip_m;
+    estimates.arm_m[t] = set.items[t].tip_m - set.items[t].middle_m();
     track = last.value().tracks[t];
     if (!verdict.usable()) continue;  // a refused frame changes nothing that is known of a tool
     if (verdict.resynchronised) track = Track{};
 
-    const FittedTool& found = fitted[t % fitted.size()].tools[t];
-    if (found.reason == Reason::none) {
+    const FollowedTool& tool = followed[t % k_tool_slices].items[t / k_tool_slices];
+    if (tool.reason == Reason::none) {
       ++counts_[2];
-      accept(found, verdict.stamp, head, settings.velocity_gap_max, track);
+      accept(fitted[t % k_tool_slices].tools[t], tool, verdict.stamp, head,
+             settings.velocity_gap_max, track);
       continue;
     }
     track.seen_now = false;
-    track.reason = found.reason;
+    track.reason = tool.reason;
     if (verdict.stamp.mid_exposure - track.newest.time > settings.lost_after) {
       const Reason why = track.reason;
       track = Track{};

@@ -34,6 +34,7 @@ struct TrackTools {
   void operator()(const FrameVerdict& verdict, const HeadPose& head,
                   const graph::Latest<ToolSet>& tools,
                   const graph::Parts<FittedTools, k_tool_slices>& fitted,
+                  const graph::Parts<FollowedTools, k_tool_slices>& followed,
                   const graph::Previous<Estimates>& last,
                   Estimates& estimates) noexcept GLINT_NONBLOCKING;
 

@@ -112,9 +112,10 @@ Reason MotionIntegrator::prepare(const MotionSettings& settings) noexcept {
 #define GLINT_EFFECTS_IGNORED
 #endif
 #endif
-Result<Pose> MotionIntegrator::after(const MotionState& state, Duration ahead) noexcept {
-  if (!workspace_) return {state.pose, Reason::not_prepared};
-  if (ahead <= Duration{}) return {state.pose, Reason::none};
+Result<MovingPose> MotionIntegrator::after(const MotionState& state, Duration ahead) noexcept {
+  const MovingPose now{state.pose, state.velocity_m_s, state.angular_velocity_rad_s};
+  if (!workspace_) return {now, Reason::not_prepared};
+  if (ahead <= Duration{}) return {now, Reason::none};
   Workspace& w = *workspace_;
   fill(state, State::of(w.state));
   w.drive.acceleration = state.acceleration_m_s2;
@@ -125,10 +126,13 @@ Result<Pose> MotionIntegrator::after(const MotionState& state, Duration ahead) n
   double reached = 0;
   for (int i = 0; i < k_integration_steps && done; ++i)
     done = ERKStepEvolve(w.memory, ahead.seconds(), w.state, &reached, ARK_ONE_STEP) >= 0;
-  if (!done) return {state.pose, Reason::not_prepared};
+  if (!done) return {now, Reason::not_prepared};
   const Values& y = State::of(w.state);
-  return {{Quaternion(y[9], y[6], y[7], y[8]).normalized(), Vector3(y[0], y[1], y[2])},
-          Reason::none};
+  MovingPose later;
+  later.pose = {Quaternion(y[9], y[6], y[7], y[8]).normalized(), Vector3(y[0], y[1], y[2])};
+  later.velocity_m_s = {y[3], y[4], y[5]};
+  later.angular_velocity_rad_s = {y[10], y[11], y[12]};
+  return {later, Reason::none};
 }
 #ifdef GLINT_EFFECTS_IGNORED
 #pragma clang diagnostic pop

@@ -22,6 +22,12 @@ namespace glint {
 
 inline constexpr int k_integration_steps = 4;
 
+struct MovingPose {
+  Pose pose;
+  Vector3 velocity_m_s = Vector3::Zero();
+  Vector3 angular_velocity_rad_s = Vector3::Zero();
+};
+
 class MotionIntegrator {
  public:
   MotionIntegrator() noexcept;
@@ -33,9 +39,9 @@ class MotionIntegrator {
   // none, or not_prepared where SUNDIALS refuses.
   [[nodiscard]] Reason prepare(const MotionSettings& settings) noexcept;
 
-  // The state's pose `ahead` of its time; not before it.
-  [[nodiscard]] Result<Pose> after(const MotionState& state,
-                                   Duration ahead) noexcept GLINT_NONBLOCKING;
+  // The state's pose and speeds `ahead` of its time; not before it.
+  [[nodiscard]] Result<MovingPose> after(const MotionState& state,
+                                         Duration ahead) noexcept GLINT_NONBLOCKING;
 
  private:
   struct Workspace;

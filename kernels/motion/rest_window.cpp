@@ -14,32 +14,31 @@ constexpr double k_axes = 6;
 
 }  // namespace
 
-void RestWindow::restart(const UncertainPose& only) {
+void RestWindow::restart(const UncertainPose& only, RestSums& sums) {
   anchor_ = only.pose;
   time_ = only.time;
-  newest_ = 1;
-  sums_[0] = Sum{};
-  sums_[1] = {Vector6::Zero(), only.covariance, only.time};
+  sums[newest_ + 1] = Sum{};
+  sums[newest_ + 2] = {Vector6::Zero(), only.covariance, only.time};
+  newest_ = (newest_ + 2) % RestSums::k_size;
   kept_ = frames_ = 1;
 }
 
-const RestWindow::Sum& RestWindow::sum_before(int frames) const {
-  const int size = k_rest_frames_max + 1;
-  return sums_[static_cast<std::size_t>((newest_ - frames + size) % size)];
+const RestWindow::Sum& RestWindow::sum_before(int frames, const RestSums& sums) const {
+  return sums[newest_ - frames + RestSums::k_size];
 }
 
-RestWindow::Sum RestWindow::newest(int frames) const {
-  const Sum& all = sum_before(0);
-  const Sum& before = sum_before(frames);
+RestWindow::Sum RestWindow::newest(int frames, const RestSums& sums) const {
+  const Sum& all = sum_before(0, sums);
+  const Sum& before = sum_before(frames, sums);
   return {all.place - before.place, all.covariance - before.covariance, all.time};
 }
 
-RestWindow::Halves RestWindow::halves(int frames) const {
+RestWindow::Halves RestWindow::halves(int frames, const RestSums& sums) const {
   const int newer_frames = frames / 2;
   const double newer_share = 1.0 / newer_frames;
   const double older_share = 1.0 / (frames - newer_frames);
-  const Sum all = newest(frames);
-  const Sum newer = newest(newer_frames);
+  const Sum all = newest(frames, sums);
+  const Sum newer = newest(newer_frames, sums);
   const Sum older{all.place - newer.place, all.covariance - newer.covariance, newer.time};
   const Cholesky<6> factor(newer_share * newer_share * newer.covariance +
                            older_share * older_share * older.covariance);
@@ -48,42 +47,50 @@ RestWindow::Halves RestWindow::halves(int frames) const {
   return {difference, factor.squared_length(difference)};
 }
 
-void RestWindow::push(Time time, const Sum& added) {
-  const Sum& before = sum_before(0);
+int RestWindow::push(Time time, const Sum& added, const RestSettings& settings, RestSums& sums) {
+  const Sum& before = sum_before(0, sums);
   const Sum after{before.place + added.place, before.covariance + added.covariance, time};
-  newest_ = (newest_ + 1) % (k_rest_frames_max + 1);
-  sums_[static_cast<std::size_t>(newest_)] = after;
+  newest_ = (newest_ + 1) % RestSums::k_size;
+  sums[newest_] = after;
   time_ = time;
   kept_ = std::min(kept_ + 1, k_rest_frames_max);
   frames_ = 1;
+  int tests = 0;
   for (int level = k_rest_levels - 1; level >= 0; --level) {
     // n, 3/4 n, 1/2 n, 3/8 n ..
     const int frames = level % 2 == 0 ? kept_ >> level / 2 : 3 * kept_ >> (level / 2 + 2);
     if (frames < 2) continue;
     const bool brief = frames <= settings.frames_min;
     const double limit = brief ? settings.short_chi_square_max : settings.long_chi_square_max;
-    if (!(halves(frames).chi_square <= limit)) {
+    ++tests;
+    if (!(halves(frames, sums).chi_square <= limit)) {
       kept_ = brief ? frames_ : kept_ - kept_ / 8;
       break;
     }
     frames_ = frames;
   }
+  return tests;
 }
 
-void RestWindow::add(const UncertainPose& measured) noexcept {
+int RestWindow::add(const UncertainPose& measured, const RestSettings& settings,
+                    RestSums& sums) noexcept {
+  frames_min_ = settings.frames_min;
+  drift_chi_square_ = settings.drift_chi_square;
   Vector6 place = pose_difference(measured.pose, anchor_);
   const bool near = place.head<3>().norm() <= k_anchor_m && place.tail<3>().norm() <= k_anchor_rad;
   if (kept_ == 0 || !near || measured.time - time_ > settings.gap_max) {
-    restart(measured);
-    return;
+    restart(measured, sums);
+    return 0;
   }
-  push(measured.time, {place, measured.covariance, measured.time});
+  const int tests =
+      push(measured.time, {place, measured.covariance, measured.time}, settings, sums);
   // In motion the anchor follows.
-  if (kept_ == 1) restart(measured);
+  if (kept_ == 1) restart(measured, sums);
+  return tests;
 }
 
-Duration RestWindow::length() const {
-  return frames_ < 2 ? Duration{} : sum_before(0).time - sum_before(frames_ - 1).time;
+Duration RestWindow::length(const RestSums& sums) const {
+  return frames_ < 2 ? Duration{} : sum_before(0, sums).time - sum_before(frames_ - 1, sums).time;
 }
 
 Pose RestWindow::placed(const Vector6& place) const {
@@ -91,17 +98,16 @@ Pose RestWindow::placed(const Vector6& place) const {
           anchor_.translation + place.head<3>()};
 }
 
-Rest RestWindow::rest() const noexcept {
+Rest RestWindow::rest(const RestSums& sums) const noexcept {
   const double share = 1.0 / frames_;
-  const Sum all = newest(frames_);
+  const Sum all = newest(frames_, sums);
   const Matrix6 mean_covariance = share * share * all.covariance;
-  const Halves cut = halves(frames_);
+  const Halves cut = halves(frames_, sums);
   // A steady drift moves the halves apart by half the window's length times its speed, and the
   // newest frame from the mean by as much. By chance they differ with four times the mean's
   // covariance. What exceeds chance is drift, and is shrunk by how little it exceeds it.
-  const double drifting = cut.chi_square > settings.drift_chi_square
-                              ? 1 - settings.drift_chi_square / cut.chi_square
-                              : 0.0;
+  const double drifting =
+      cut.chi_square > drift_chi_square_ ? 1 - drift_chi_square_ / cut.chi_square : 0.0;
   const double unseen = cut.chi_square > k_axes ? 1 - k_axes / cut.chi_square : 0.0;
   const double left = (1 - drifting) * (1 - drifting) * unseen;
   Rest rest;
@@ -109,7 +115,7 @@ Rest RestWindow::rest() const noexcept {
   rest.pose.pose = placed(share * all.place + drifting * cut.difference);
   rest.pose.covariance = (1 + 4 * drifting * drifting) * mean_covariance +
                          left * (cut.difference * cut.difference.transpose());
-  const double per_s = 2 / length().seconds();
+  const double per_s = 2 / length(sums).seconds();
   rest.drift_per_s = (drifting * per_s) * cut.difference;
   rest.drift_covariance = (4 * per_s * per_s) * mean_covariance;
   return rest;

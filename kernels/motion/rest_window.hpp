@@ -42,43 +42,62 @@ struct Rest {
   Matrix6 drift_covariance = Matrix6::Zero();
 };
 
-class RestWindow {
+// Sums over frames since the window's anchor, one entry a frame: 45 KB.
+class RestSums {
  public:
-  RestSettings settings;
-
-  void add(const UncertainPose& measured) noexcept GLINT_NONBLOCKING;
-  void clear() noexcept { frames_ = kept_ = 0; }
-
-  [[nodiscard]] bool rests() const { return frames_ >= settings.frames_min; }
-  [[nodiscard]] int frames() const { return frames_; }
-  // At the newest frame's time. Meaningless if frames() < 2.
-  [[nodiscard]] Rest rest() const noexcept GLINT_NONBLOCKING;
-
- private:
   struct Sum {
     Vector6 place = Vector6::Zero();  // from the anchor
     Matrix6 covariance = Matrix6::Zero();
     Time time;  // of the newest frame in it
   };
-  void restart(const UncertainPose& only);
-  [[nodiscard]] Duration length() const;
-  void push(Time time, const Sum& added);
-  [[nodiscard]] const Sum& sum_before(int frames) const;
-  [[nodiscard]] Sum newest(int frames) const;
+  [[nodiscard]] const Sum& operator[](int index) const { return items_[wrapped(index)]; }
+  [[nodiscard]] Sum& operator[](int index) { return items_[wrapped(index)]; }
+
+  // A full window's entries, one before it, and the three that one frame may write: they never lie
+  // on entries that the window before that frame needs.
+  static constexpr int k_size = k_rest_frames_max + 1 + 3;
+
+ private:
+  static std::size_t wrapped(int index) { return static_cast<std::size_t>(index % k_size); }
+  std::array<Sum, k_size> items_;
+};
+
+// Where the window lies in the sums. A copy from before add() still holds after it, so that a frame
+// can be undone; one window's sums serve no other.
+class RestWindow {
+ public:
+  // Returns how often it tested the halves.
+  int add(const UncertainPose& measured, const RestSettings& settings,
+          RestSums& sums) noexcept GLINT_NONBLOCKING;
+  void clear() noexcept { frames_ = kept_ = 0; }
+
+  [[nodiscard]] bool rests() const { return frames_ >= frames_min_; }
+  [[nodiscard]] int frames() const { return frames_; }
+  // At the newest frame's time. Meaningless if frames() < 2.
+  [[nodiscard]] Rest rest(const RestSums& sums) const noexcept GLINT_NONBLOCKING;
+
+ private:
+  using Sum = RestSums::Sum;
+  void restart(const UncertainPose& only, RestSums& sums);
+  [[nodiscard]] Duration length(const RestSums& sums) const;
+  int push(Time time, const Sum& added, const RestSettings& settings, RestSums& sums);
+  [[nodiscard]] const Sum& sum_before(int frames, const RestSums& sums) const;
+  [[nodiscard]] Sum newest(int frames, const RestSums& sums) const;
   struct Halves {
     Vector6 difference;  // newer mean - older mean
     double chi_square;
   };
-  [[nodiscard]] Halves halves(int frames) const;
+  [[nodiscard]] Halves halves(int frames, const RestSums& sums) const;
   [[nodiscard]] Pose placed(const Vector6& place) const;
 
-  // Sums since the anchor; entry next_ - 1 holds all frames, next_ - 1 - n all but the newest n.
-  std::array<Sum, k_rest_frames_max + 1> sums_;
   Pose anchor_;
   Time time_;
+  // Entry newest_ holds all frames, newest_ - n all but the newest n.
   int newest_ = 0;
   int kept_ = 0;    // frames that may belong to the rest
   int frames_ = 0;  // of them, those that do
+  int frames_min_ = RestSettings{}.frames_min;
+  double drift_chi_square_ = RestSettings{}.drift_chi_square;
 };
 
 }  // namespace glint

@@ -1,70 +1,37 @@
-// One tool between frames: the filter for motion, the window for rest, and which of them answers.
-//
-// What:     a Kalman filter under damped accelerations whose process noise follows the innovations,
-//           not below a floor; as long as the rest window holds, its mean is the pose and the tool
-//           stands still, or drifts as its halves say.
-// Cost:     propagate + correct + rest window: 11 us a measured pose.
-// Worst:    a full rest window; nothing else depends on the input.
-// Accuracy: by simulation: `glint experiment rest | lag | sine | prediction | occlusion`.
-// Source:   motion_filter.hpp, rest_window.hpp; adaptation: Mehra 1972, Approaches to adaptive
-//           filtering (covariance matching), here as one factor that each frame moves a little.
+// One tool between frames with all that it remembers: motion_track.hpp and the rest window's sums
+// in one object, some 50 KB, for whoever follows a tool outside a graph.
 #pragma once
 
 #include <span>
 
-#include "kernels/motion/motion_filter.hpp"
-#include "kernels/motion/rest_window.hpp"
-#include "kernels/nonblocking.hpp"
+#include "kernels/motion/motion_track.hpp"
 
 namespace glint {
-
-struct AdaptationSettings {
-  double frames;  // over which the factor follows
-  double floor;   // a noise that shrank freely at rest would answer the next start late
-  double ceiling;
-  double innovation_max;  // of chi square over its mean: one bad frame moves the factor no further
-};
-
-inline constexpr std::size_t k_points_max = 2;  // of one partial measurement: three are a pose
-
-struct ToolMotionSettings {
-  MotionSettings motion;
-  AdaptationSettings linear{15, 0.55, 10, 2.3};
-  AdaptationSettings angular{13, 0.40, 12, 9};
-  RestSettings rest;
-  // One or two markers hold a tool loosely: what the hand does meanwhile shows only when all are
-  // back. Then counts the briskest that it was, fading over this many frames, times a factor.
-  double partial_noise = 2;
-  double briskest_frames = 1000;
-  Duration gap_max = milliseconds(1000);  // after a longer silence it starts anew
-};
 
 class ToolMotion {
  public:
   ToolMotionSettings settings;
 
-  // Reason: frame_doubled or frame_late for a stamp that does not rise, out_of_range for a pose
-  // that is none. Then nothing has changed.
-  Reason update(const UncertainPose& measured) noexcept GLINT_NONBLOCKING;
-  // One marker or two, of one time; needs a pose before: too_few_markers.
-  Reason update(Time time, std::span<const MeasuredPoint> points) noexcept GLINT_NONBLOCKING;
-  void forget() noexcept;
+  // As MotionTrack has them.
+  Reason update(const UncertainPose& measured) noexcept GLINT_NONBLOCKING {
+    return track_.update(measured, settings, sums_).reason;
+  }
+  Reason update(Time time, std::span<const MeasuredPoint> points) noexcept GLINT_NONBLOCKING {
+    return track_.update(time, points, settings, sums_);
+  }
+  void forget() noexcept { track_.forget(); }
 
-  [[nodiscard]] bool known() const { return known_; }
-  [[nodiscard]] bool rests() const { return rest_.rests(); }
-  [[nodiscard]] const NoiseScale& noise_scale() const { return scale_; }
-  // At the newest measurement's time.
-  [[nodiscard]] MotionState estimate() const noexcept GLINT_NONBLOCKING;
-  [[nodiscard]] const Correction& last_correction() const { return correction_; }
+  [[nodiscard]] bool known() const { return track_.known(); }
+  [[nodiscard]] bool rests() const { return track_.rests(); }
+  [[nodiscard]] const NoiseScale& noise_scale() const { return track_.noise_scale(); }
+  [[nodiscard]] MotionState estimate() const noexcept GLINT_NONBLOCKING {
+    return track_.estimate(sums_);
+  }
+  [[nodiscard]] const Correction& last_correction() const { return track_.last_correction(); }
 
  private:
-  [[nodiscard]] Reason stamp(Time time) const;
-
-  bool known_ = false;
-  MotionState state_;
-  NoiseScale scale_, briskest_;
-  RestWindow rest_;
-  Correction correction_;
+  MotionTrack track_;
+  RestSums sums_;
 };
 
 }  // namespace glint

@@ -29,4 +29,13 @@ namespace glint {
   return j * covariance * j.transpose();
 }
 
+// A pose's covariance about the axes of the frame that `rotation` leads to.
+[[nodiscard]] inline Matrix6 turned_covariance(const Matrix6& covariance,
+                                               const Quaternion& rotation) {
+  Matrix6 turn = Matrix6::Zero();
+  turn.topLeftCorner<3, 3>() = rotation.toRotationMatrix();
+  turn.bottomRightCorner<3, 3>() = turn.topLeftCorner<3, 3>();
+  return turn * covariance * turn.transpose();
+}
+
 }  // namespace glint

@@ -21,6 +21,13 @@ struct Tool {
   Vector3 tip_m = Vector3::Zero();  // tool frame
   std::array<char, 32> name{};      // zero-terminated
 
+  // The mean of its markers, in the tool's frame.
+  [[nodiscard]] Vector3 middle_m() const {
+    Vector3 sum = Vector3::Zero();
+    for (int i = 0; i < marker_count; ++i) sum += markers_m[static_cast<std::size_t>(i)];
+    return sum / (marker_count > 0 ? marker_count : 1);
+  }
+
   // How far behind the surface that the camera sees the marker's centre lies, along the ray.
   [[nodiscard]] double centre_offset_m() const {
     return shape == MarkerShape::sphere ? marker_radius_m : 0.0;

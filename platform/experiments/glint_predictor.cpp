@@ -15,7 +15,7 @@ void GlintPredictor::update(const UncertainPose& measured) {
 }
 
 Pose GlintPredictor::predict(Time time) const {
-  return integrator_.after(state_, time - state_.time).value;
+  return integrator_.after(state_, time - state_.time).value.pose;
 }
 
 }  // namespace glint

@@ -87,6 +87,7 @@ void configure_common(const Cell& cell, AnyTracker& tracker) {
     node.noise = MarkerNoise{};
     node.noise.focal_px = cell.camera.model.fx;
   });
+  tracker.template for_each<FollowMotion>([&](FollowMotion& node) { node.limits = limits; });
   tracker.template node<TrackTools>().settings = track_settings(cell);
   tracker.template node<TrackTools>().limits = limits;
 }

@@ -1,6 +1,8 @@
 // What all nodes have in common as measured kernels.
 #pragma once
 
+#include <type_traits>
+
 #include "platform/budget/measured_kernel.hpp"
 
 namespace glint::inputs {
@@ -14,7 +16,10 @@ class NodeKernel : public MeasuredKernel {
   [[nodiscard]] graph::LoopCounts worst(const Limits& limits) const override {
     return Node::worst(limits);
   }
-  void rewind() override { node_ = start_; }
+  // One that cannot be copied has no state that a run would change.
+  void rewind() override {
+    if constexpr (std::is_copy_assignable_v<Node>) node_ = start_;
+  }
   [[nodiscard]] graph::LoopCounts counts() const override { return node_.counts(); }
 
  protected:

@@ -1,4 +1,6 @@
 // The tick group's kernels: estimates of any age, and samples of any state.
+#include <stdexcept>
+
 #include "nodes/output.hpp"
 #include "platform/budget/inputs/node_kernel.hpp"
 #include "platform/budget/inputs/pose_kernels.hpp"
@@ -13,11 +15,14 @@ bool at_its_worst(InputKind kind) {
 
 class PredictToolsKernel final : public NodeKernel<PredictTools> {
  public:
-  PredictToolsKernel() : NodeKernel("PredictTools") {}
+  PredictToolsKernel() : NodeKernel("PredictTools") {
+    if (node_.prepare() != Reason::none)
+      throw std::runtime_error("PredictTools cannot be prepared: no memory");
+  }
   void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
     Numbers numbers(kind, number);
     const bool all = at_its_worst(kind);
-    start_.limits = limits;
+    node_.limits = limits;
     now_ = {Time{} + milliseconds(1000), static_cast<std::uint32_t>(number),
             1'700'000'000'000'000'000};
     known_.tool_count = all ? limits.tools : 1 + numbers.below(limits.tools);
@@ -25,16 +30,21 @@ class PredictToolsKernel final : public NodeKernel<PredictTools> {
       Track& track = known_.tracks[t];
       track = {};
       track.alive = all || !numbers.one_in(5);
-      track.has_previous = all || !numbers.one_in(4);
       track.base = all || !numbers.one_in(4) ? ReferenceFrame::world : ReferenceFrame::camera;
       track.reason = Reason::none;
       const Pose pose = any_view(numbers);
       const int age_ms = numbers.below(all ? 200 : 300);
-      track.newest = {now_.tick - milliseconds(age_ms), pose};
-      track.previous = {now_.tick - milliseconds(age_ms + 22), moved(pose, numbers)};
-      track.covariance = Matrix6::Identity() * 1e-6;
+      const Time seen = now_.tick - milliseconds(age_ms);
+      track.newest = {seen, pose};
+      track.motion.time = seen;
+      track.motion.pose = pose;
+      track.motion.velocity_m_s = numbers.in_box(2);
+      track.motion.acceleration_m_s2 = numbers.in_box(10);
+      track.motion.angular_velocity_rad_s = numbers.in_box(6);
+      track.motion.angular_acceleration_rad_s2 = numbers.in_box(40);
+      track.motion.covariance = MotionCovariance::Identity() * 1e-4;
       track.marker_mask = 31;
-      known_.tip_m[t] = {0, 0, -0.12};
+      known_.arm_m[t] = {0, 0, -0.12};
     }
     estimates_.set(known_, 1, 0);
     RobotFrame robot;

@@ -102,7 +102,6 @@ struct Tracked {
       track.newest = {Time{} + milliseconds(44), base * seen};
       track.previous = {Time{} + milliseconds(22), base * before};
       track.T_camera_tool = seen;
-      track.covariance = Matrix6::Identity() * 1e-6;
       track.marker_mask = 31;
     }
     tools.set(set, 1, 0);
@@ -219,18 +218,19 @@ class TrackToolsKernel final : public NodeKernel<TrackTools> {
       FittedTool& tool = fitted_[t % k_tool_slices].tools[t];
       tool.reason = at_its_worst(kind) || !numbers.one_in(4) ? Reason::none : Reason::no_labeling;
       tool.T_camera_tool = any_view(numbers);
-      tool.covariance = Matrix6::Identity() * 1e-6;
+      followed_[t % k_tool_slices].items[t / k_tool_slices].reason = tool.reason;
     }
     rewind();
   }
   void run() noexcept override {
-    node_(tracked_.verdict, tracked_.head, tracked_.tools, fitted_,
+    node_(tracked_.verdict, tracked_.head, tracked_.tools, fitted_, followed_,
           graph::Previous<Estimates>(tracked_.last), estimates_);
   }
 
  private:
   Tracked tracked_;
   graph::Parts<FittedTools, k_tool_slices> fitted_;
+  graph::Parts<FollowedTools, k_tool_slices> followed_;
   Estimates estimates_;
 };
 

@@ -26,6 +26,8 @@ std::unique_ptr<Estimates> moving() {
   track.newest = {Time{} + milliseconds(1000), {}};
   track.previous = {Time{} + milliseconds(980), {}};
   track.previous.pose.translation.x() = -0.020;
+  track.motion.time = track.newest.time;
+  track.motion.velocity_m_s.x() = 1;
   return estimates;
 }
 
@@ -44,7 +46,9 @@ PoseSample sample_of(const Estimates& estimates, std::int64_t tick_ms) {
   graph::Latest<RobotFrame> robot;
   robot.set({RegistrationState::given, {}, 0}, 1, 0);
   auto samples = std::make_unique<PoseSamples>();
-  PredictTools{}(Now{Time{} + milliseconds(tick_ms), 5, 0}, latest, robot, *samples);
+  PredictTools predict;
+  EXPECT_EQ(predict.prepare(), Reason::none);
+  predict(Now{Time{} + milliseconds(tick_ms), 5, 0}, latest, robot, *samples);
   return samples->items[0];
 }
 

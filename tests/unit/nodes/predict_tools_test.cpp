@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
+
+#include "kernels/motion/predict_motion.hpp"
 
 namespace glint {
 namespace {
@@ -11,7 +14,8 @@ class PredictTools : public testing::Test {
  protected:
   PredictTools() {
     estimates_->tool_count = 1;
-    estimates_->tip_m[0] = Vector3(0.1, 0, 0);
+    EXPECT_EQ(node_.prepare(), Reason::none);
+    estimates_->arm_m[0] = Vector3(0.1, 0, 0);
     Track& track = estimates_->tracks[0];
     track.alive = true;
     track.seen_now = true;
@@ -19,6 +23,8 @@ class PredictTools : public testing::Test {
     track.base = ReferenceFrame::world;
     track.newest = {Time{} + milliseconds(1000), {}};
     track.newest.pose.translation = Vector3(0, 0, 0.5);
+    track.motion.time = track.newest.time;
+    track.motion.pose = track.newest.pose;
   }
 
   PoseSample at(std::int64_t tick_ms) {
@@ -78,25 +84,40 @@ TEST_F(PredictTools, StaysInTheCamerasFrameWithoutAHeadPose) {
   EXPECT_EQ(sample.reason, Reason::head_pose_missing);
 }
 
-TEST_F(PredictTools, MovesAtConstantVelocityWithGrowingUncertainty) {
+TEST_F(PredictTools, MovesOnByTheEquationsOfMotionWithGrowingUncertainty) {
   Track& track = estimates_->tracks[0];
-  track.has_previous = true;
-  track.previous = {Time{} + milliseconds(980), {}};
-  track.previous.pose.translation = Vector3(-0.02, 0, 0.5);
-  track.covariance = Matrix6::Identity() * 1e-6;
+  track.motion.velocity_m_s = Vector3(1, 0, 0);
+  track.motion.angular_velocity_rad_s = Vector3(0, 0, 2);
+  track.motion.covariance.diagonal().setConstant(1e-6);
   const PoseSample near = at(1000);
   const PoseSample far = at(1040);
-  EXPECT_TRUE(far.velocity_m_s.isApprox(Vector3(1, 0, 0), 1e-9));
-  EXPECT_NEAR(far.pose.translation.x(), 0.1 + 0.04, 1e-9);
-  EXPECT_NEAR(near.sigma_position_m, 1e-3, 1e-9);
-  EXPECT_NEAR(far.sigma_position_m, 1e-3 * std::sqrt(3.0 * 3.0 + 2.0 * 2.0), 1e-9);
+  const double turn = 2 * 0.04;
+  EXPECT_NEAR(far.pose.translation.x(), 0.04 + 0.1 * std::cos(turn), 1e-7);
+  EXPECT_NEAR(far.pose.translation.y(), 0.1 * std::sin(turn), 1e-7);
+  const Vector3 tip_velocity(1 - 0.2 * std::sin(turn), 0.2 * std::cos(turn), 0);
+  EXPECT_TRUE(far.velocity_m_s.isApprox(tip_velocity, 1e-6));
+  // The tip turns with the tool: 0.1 m of arm and 1e-3 rad make another 1e-4 m on two axes.
+  EXPECT_NEAR(near.sigma_position_m, std::sqrt(1e-6 + 2.0 / 3 * 1e-8), 1e-9);
+  const UncertainPose middle =
+      predict_pose(track.motion, Time{} + milliseconds(1040), {}, NoiseScale{});
+  EXPECT_NEAR(far.covariance(5, 5), middle.covariance(5, 5), 1e-15);
+  EXPECT_NEAR(
+      far.covariance(0, 0),
+      middle.covariance(0, 0) + 0.01 * std::sin(turn) * std::sin(turn) * middle.covariance(5, 5),
+      1e-9);
+  EXPECT_GT(far.sigma_position_m, 2 * near.sigma_position_m);
+}
+
+TEST_F(PredictTools, IsLessSureOfAHandThatHasBeenBrisk) {
+  Track& track = estimates_->tracks[0];
+  track.motion.covariance.diagonal().setConstant(1e-6);
+  const double calm = at(1040).sigma_position_m;
+  track.noise = {4, 4};
+  EXPECT_GT(at(1040).sigma_position_m, 1.1 * calm);
 }
 
 TEST_F(PredictTools, AddsTheActuationDelayToTheLead) {
-  Track& track = estimates_->tracks[0];
-  track.has_previous = true;
-  track.previous = {Time{} + milliseconds(980), {}};
-  track.previous.pose.translation = Vector3(-0.02, 0, 0.5);
+  estimates_->tracks[0].motion.velocity_m_s = Vector3(1, 0, 0);
   node_.settings.actuation_delay = milliseconds(10);
   EXPECT_NEAR(at(1000).pose.translation.x(), 0.1 + 0.01, 1e-9);
 }

@@ -70,12 +70,12 @@ TEST(IntegrateMotion, AgreesWithCvodesAdaptiveSteps) {
   for (const Limit& limit : {Limit{25, 1e-8, 1e-5}, {50, 1e-7, 3e-5}, {250, 1e-4, 2e-3}}) {
     for (int trial = 0; trial < 30; ++trial) {
       const MotionState state = test::random_state(random);
-      const Result<Pose> pose = integrator.after(state, milliseconds(limit.ms));
-      ASSERT_TRUE(pose);
+      const Result<MovingPose> later = integrator.after(state, milliseconds(limit.ms));
+      ASSERT_TRUE(later);
+      const Pose& pose = later.value.pose;
       const Pose truth = by_cvode(state, 1e-3 * limit.ms);
-      EXPECT_LT((pose.value.translation - truth.translation).norm(), limit.metres) << limit.ms;
-      EXPECT_LT(test::angle_between(pose.value.rotation, truth.rotation), limit.radians)
-          << limit.ms;
+      EXPECT_LT((pose.translation - truth.translation).norm(), limit.metres) << limit.ms;
+      EXPECT_LT(test::angle_between(pose.rotation, truth.rotation), limit.radians) << limit.ms;
     }
   }
 }
@@ -89,9 +89,24 @@ TEST(IntegrateMotion, AgreesWithTheClosedFormAboutOneAxis) {
   state.angular_velocity_rad_s = {0, 0, 2};
   state.angular_acceleration_rad_s2 = {0, 0, 8};
   const UncertainPose closed = predict_pose(state, Time{50'000'000}, {}, {});
-  const Result<Pose> pose = integrator.after(state, milliseconds(50));
-  ASSERT_TRUE(pose);
-  EXPECT_LT(pose_difference(pose.value, closed.pose).norm(), 1e-5);
+  const Result<MovingPose> later = integrator.after(state, milliseconds(50));
+  ASSERT_TRUE(later);
+  EXPECT_LT(pose_difference(later.value.pose, closed.pose).norm(), 1e-5);
+}
+
+TEST(IntegrateMotion, GivesTheSpeedsToo) {
+  MotionIntegrator integrator;
+  const MotionSettings settings;
+  ASSERT_EQ(integrator.prepare(settings), Reason::none);
+  test::Random random(6);
+  for (int trial = 0; trial < 30; ++trial) {
+    MotionState state = test::random_state(random), closed = state;
+    propagate(closed, state.time + milliseconds(50), settings, {});
+    const Result<MovingPose> later = integrator.after(state, milliseconds(50));
+    ASSERT_TRUE(later);
+    EXPECT_LT((later.value.velocity_m_s - closed.velocity_m_s).norm(), 1e-6);
+    EXPECT_LT((later.value.angular_velocity_rad_s - closed.angular_velocity_rad_s).norm(), 1e-3);
+  }
 }
 
 TEST(IntegrateMotion, KeepsToItsStateAtNoTimeAndBefore) {
@@ -100,9 +115,10 @@ TEST(IntegrateMotion, KeepsToItsStateAtNoTimeAndBefore) {
   ASSERT_EQ(integrator.prepare({}), Reason::none);
   const MotionState state = test::random_state(random);
   for (const std::int64_t ns : {0LL, -1'000'000LL}) {
-    const Result<Pose> pose = integrator.after(state, Duration{ns});
-    ASSERT_TRUE(pose);
-    EXPECT_EQ(pose.value.translation, state.pose.translation);
+    const Result<MovingPose> same = integrator.after(state, Duration{ns});
+    ASSERT_TRUE(same);
+    EXPECT_EQ(same.value.pose.translation, state.pose.translation);
+    EXPECT_EQ(same.value.velocity_m_s, state.velocity_m_s);
   }
 }
 
@@ -129,8 +145,8 @@ TEST(IntegrateMotion, DoesNotRememberWhatItDidBefore) {
   for (int i = 0; i < 100; ++i) (void)used.after(test::random_state(random), milliseconds(1 + i));
   ASSERT_EQ(fresh.prepare({}), Reason::none);
   const MotionState state = test::random_state(random);
-  const Pose a = used.after(state, milliseconds(30)).value;
-  const Pose b = fresh.after(state, milliseconds(30)).value;
+  const Pose a = used.after(state, milliseconds(30)).value.pose;
+  const Pose b = fresh.after(state, milliseconds(30)).value.pose;
   EXPECT_EQ(a.translation, b.translation);
   EXPECT_EQ(a.rotation.coeffs(), b.rotation.coeffs());
 }
@@ -142,7 +158,7 @@ TEST(IntegrateMotion, GivesTheSameBitsEverywhere) {
   ASSERT_EQ(integrator.prepare({}), Reason::none);
   for (int trial = 0; trial < 500; ++trial) {
     const MotionState state = test::random_state(random);
-    hash.add(integrator.after(state, Duration{1 + random.below(200'000'000)}).value);
+    hash.add(integrator.after(state, Duration{1 + random.below(200'000'000)}).value.pose);
   }
   EXPECT_EQ(hash.value(), 15960565719376230231u);
 }

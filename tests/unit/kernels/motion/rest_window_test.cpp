@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -11,6 +12,17 @@ namespace glint {
 namespace {
 
 constexpr double k_shift_sigma = 0.0005, k_turn_sigma = 0.005;
+
+// The window with its sums.
+struct Window {
+  RestWindow at;
+  RestSums sums;
+  void add(const UncertainPose& measured) { at.add(measured, RestSettings{}, sums); }
+  void clear() { at.clear(); }
+  [[nodiscard]] bool rests() const { return at.rests(); }
+  [[nodiscard]] int frames() const { return at.frames(); }
+  [[nodiscard]] Rest rest() const { return at.rest(sums); }
+};
 
 UncertainPose seen(const Pose& truth, int frame, test::Random& random) {
   return test::measured_pose(truth, test::frame_time(frame), k_shift_sigma, k_turn_sigma, random);
@@ -23,7 +35,7 @@ Pose drifted(const Pose& start, const Vector3& by) {
 TEST(RestWindow, GrowsToItsMaximumAtRestAndAverages) {
   test::Random random(1);
   const Pose truth{random.rotation(), random.vector(0.3)};
-  const auto window = std::make_unique<RestWindow>();
+  const auto window = std::make_unique<Window>();
   Vector3 sum = Vector3::Zero();
   for (int frame = 0; frame < 60; ++frame) {
     const UncertainPose measured = seen(truth, frame, random);
@@ -41,7 +53,7 @@ TEST(RestWindow, GrowsToItsMaximumAtRestAndAverages) {
 
 TEST(RestWindow, KnowsItsMeansErrorOverManyRests) {
   test::Random random(2);
-  const auto window = std::make_unique<RestWindow>();
+  const auto window = std::make_unique<Window>();
   double squares = 0;
   const int rests = 300;
   for (int trial = 0; trial < rests; ++trial) {
@@ -57,7 +69,7 @@ TEST(RestWindow, KnowsItsMeansErrorOverManyRests) {
 TEST(RestWindow, EndsWithTheFirstFrameOfAMove) {
   test::Random random(3);
   const Pose truth{random.rotation(), random.vector(0.3)};
-  const auto window = std::make_unique<RestWindow>();
+  const auto window = std::make_unique<Window>();
   for (int frame = 0; frame < 100; ++frame) window->add(seen(truth, frame, random));
   ASSERT_TRUE(window->rests());
   window->add(seen(drifted(truth, {0.006, 0, 0}), 100, random));
@@ -68,7 +80,7 @@ TEST(RestWindow, EndsWithTheFirstFrameOfAMove) {
 TEST(RestWindow, NeverHoldsAHandInMotion) {
   test::Random random(4);
   const Pose start{random.rotation(), random.vector(0.3)};
-  const auto window = std::make_unique<RestWindow>();
+  const auto window = std::make_unique<Window>();
   for (int frame = 0; frame < 500; ++frame) {
     window->add(seen(drifted(start, {0.1 * frame / 45.0, 0, 0}), frame, random));
     EXPECT_FALSE(window->rests()) << frame;
@@ -78,7 +90,7 @@ TEST(RestWindow, NeverHoldsAHandInMotion) {
 TEST(RestWindow, FindsARestAgainAfterAStroke) {
   test::Random random(5);
   const Pose start{random.rotation(), random.vector(0.3)};
-  const auto window = std::make_unique<RestWindow>();
+  const auto window = std::make_unique<Window>();
   for (int frame = 0; frame < 150; ++frame) {
     const double moved = 0.2 * std::min(frame, 50) / 45.0;
     window->add(seen(drifted(start, {0, moved, 0}), frame, random));
@@ -91,7 +103,7 @@ TEST(RestWindow, TellsASlowDriftByItsHalves) {
   test::Random random(6);
   const Vector3 per_s(0.002, 0, 0);
   double drift = 0, still = 0;
-  const auto window = std::make_unique<RestWindow>();
+  const auto window = std::make_unique<Window>();
   for (int trial = 0; trial < 100; ++trial) {
     const Pose start{random.rotation(), random.vector(0.3)};
     window->clear();
@@ -109,7 +121,7 @@ TEST(RestWindow, TellsASlowDriftByItsHalves) {
 TEST(RestWindow, EndsInALongSilence) {
   test::Random random(7);
   const Pose truth{random.rotation(), random.vector(0.3)};
-  const auto window = std::make_unique<RestWindow>();
+  const auto window = std::make_unique<Window>();
   for (int frame = 0; frame < 20; ++frame) window->add(seen(truth, frame, random));
   UncertainPose late = seen(truth, 20, random);
   late.time = late.time + milliseconds(300);
@@ -118,7 +130,7 @@ TEST(RestWindow, EndsInALongSilence) {
 }
 
 TEST(RestWindow, StaysFiniteForDegenerateCovariances) {
-  const auto window = std::make_unique<RestWindow>();
+  const auto window = std::make_unique<Window>();
   UncertainPose measured;
   for (int frame = 0; frame < 300; ++frame) {
     measured.time = test::frame_time(frame);
@@ -127,11 +139,43 @@ TEST(RestWindow, StaysFiniteForDegenerateCovariances) {
   }
 }
 
+// What an abandoned frame wrote must not be seen in the next: of every frame another is tried
+// first.
+TEST(RestWindow, HoldsAfterAFrameThatIsUndone) {
+  test::Random random(9), other(10);
+  const Pose truth{random.rotation(), random.vector(0.3)};
+  const auto plain = std::make_unique<Window>(), undone = std::make_unique<Window>();
+  for (int frame = 0; frame < 600; ++frame) {
+    const double moved = frame % 200 < 180 ? 0 : 0.002 * (frame % 200 - 180);
+    const UncertainPose measured = seen(drifted(truth, {moved, 0, 0}), frame, random);
+    plain->add(measured);
+    const RestWindow before = undone->at;
+    const Vector3 aside(frame % 2 == 0 ? 0.5 : 0.003, 0, 0);  // begins a new window, or ends one
+    undone->add(seen(drifted(truth, aside), frame, other));
+    undone->at = before;
+    undone->add(measured);
+    ASSERT_EQ(undone->frames(), plain->frames()) << frame;
+    if (plain->frames() < 2) continue;
+    ASSERT_EQ(undone->rest().pose.pose.translation, plain->rest().pose.pose.translation) << frame;
+    ASSERT_EQ(undone->rest().pose.covariance, plain->rest().pose.covariance) << frame;
+  }
+}
+
+TEST(RestWindow, TestsItsHalvesAtMostOnceALevel) {
+  test::Random random(11);
+  const Pose truth{random.rotation(), random.vector(0.3)};
+  const auto window = std::make_unique<Window>();
+  int most = 0;
+  for (int frame = 0; frame < 200; ++frame)
+    most = std::max(most, window->at.add(seen(truth, frame, random), RestSettings{}, window->sums));
+  EXPECT_EQ(most, k_rest_levels);
+}
+
 TEST(RestWindow, GivesTheSameBitsEverywhere) {
   test::Random random(8);
   test::BitHash hash;
   const Pose truth{random.rotation(), random.vector(0.3)};
-  const auto window = std::make_unique<RestWindow>();
+  const auto window = std::make_unique<Window>();
   for (int frame = 0; frame < 400; ++frame) {
     const double moved = frame % 100 < 80 ? 0 : 0.002 * (frame % 100 - 80);
     window->add(seen(drifted(truth, {moved, 0, 0}), frame, random));

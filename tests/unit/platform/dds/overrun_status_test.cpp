@@ -24,7 +24,7 @@ constexpr Time k_taken = Time{} + milliseconds(100);
 Estimates seen_pen() {
   Estimates estimates;
   estimates.tool_count = 1;
-  estimates.tip_m.fill(Vector3::Zero());
+  estimates.arm_m.fill(Vector3::Zero());
   Track& track = estimates.tracks[0];
   track.alive = track.seen_now = track.has_previous = true;
   track.reason = Reason::none;
@@ -34,6 +34,9 @@ Estimates seen_pen() {
   track.newest.pose.translation = Vector3(0.002, 0, 0.5);
   track.previous.time = k_taken - milliseconds(20);
   track.previous.pose.translation = Vector3(0, 0, 0.5);
+  track.motion.time = k_taken;
+  track.motion.pose = track.newest.pose;
+  track.motion.velocity_m_s = Vector3(0.1, 0, 0);
   return estimates;
 }
 

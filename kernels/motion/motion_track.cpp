@@ -1,4 +1,4 @@
-#include "kernels/motion/tool_motion.hpp"
+#include "kernels/motion/motion_track.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -30,18 +30,18 @@ bool usable(const UncertainPose& measured) {
 
 }  // namespace
 
-Reason ToolMotion::stamp(Time time) const {
+Reason MotionTrack::stamp(Time time) const {
   if (!known_ || time > state_.time) return Reason::none;
   return time == state_.time ? Reason::frame_doubled : Reason::frame_late;
 }
 
-Reason ToolMotion::update(const UncertainPose& measured) noexcept {
-  const Reason reason = stamp(measured.time);
-  if (reason != Reason::none) return reason;
-  if (!usable(measured)) return Reason::out_of_range;
+MotionUpdate MotionTrack::update(const UncertainPose& measured, const ToolMotionSettings& settings,
+                                 RestSums& sums) noexcept {
+  MotionUpdate done{stamp(measured.time), 0};
+  if (done.reason == Reason::none && !usable(measured)) done.reason = Reason::out_of_range;
+  if (done.reason != Reason::none) return done;
   if (known_ && measured.time - state_.time > settings.gap_max) forget();
-  rest_.settings = settings.rest;
-  rest_.add(measured);
+  done.rest_tests = rest_.add(measured, settings.rest, sums);
   if (known_) {
     propagate(state_, measured.time, settings.motion, scale_);
     correction_ = correct_by_pose(state_, measured);
@@ -52,23 +52,24 @@ Reason ToolMotion::update(const UncertainPose& measured) noexcept {
     state_ = start_motion(measured, settings.motion);
     scale_ = briskest_ = {};
     correction_ = {};
-    return Reason::none;
+    return done;
   }
   scale_.linear = moved(scale_.linear, correction_.linear_chi_square, settings.linear);
   scale_.angular = moved(scale_.angular, correction_.angular_chi_square, settings.angular);
   const double faded = 1 - 1 / settings.briskest_frames;
   briskest_.linear = std::max(scale_.linear, faded * briskest_.linear);
   briskest_.angular = std::max(scale_.angular, faded * briskest_.angular);
-  return Reason::none;
+  return done;
 }
 
-Reason ToolMotion::update(Time time, std::span<const MeasuredPoint> points) noexcept {
+Reason MotionTrack::update(Time time, std::span<const MeasuredPoint> points,
+                           const ToolMotionSettings& settings, const RestSums& sums) noexcept {
   const Reason reason = stamp(time);
   if (reason != Reason::none) return reason;
   if (!known_ || time - state_.time > settings.gap_max || points.empty())
     return Reason::too_few_markers;
   // Single markers are no poses to average: from a rest the filter goes on where the rest was.
-  MotionState next = estimate();
+  MotionState next = estimate(sums);
   const NoiseScale scale{settings.partial_noise * briskest_.linear,
                          settings.partial_noise * briskest_.angular};
   propagate(next, time, settings.motion, scale);
@@ -83,15 +84,15 @@ Reason ToolMotion::update(Time time, std::span<const MeasuredPoint> points) noex
   return Reason::none;
 }
 
-void ToolMotion::forget() noexcept {
+void MotionTrack::forget() noexcept {
   known_ = false;
   scale_ = briskest_ = {};
   rest_.clear();
 }
 
-MotionState ToolMotion::estimate() const noexcept {
+MotionState MotionTrack::estimate(const RestSums& sums) const noexcept {
   if (!known_ || !rests()) return state_;
-  const Rest rest = rest_.rest();
+  const Rest rest = rest_.rest(sums);
   MotionState state;
   state.time = state_.time;
   state.pose = rest.pose.pose;

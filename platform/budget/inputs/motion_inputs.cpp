@@ -1,0 +1,125 @@
+// Poses to follow: tools that have long been at rest, that move, or that begin.
+#include <array>
+
+#include "kernels/motion/interpolate.hpp"
+#include "kernels/pose/lever_arm.hpp"
+#include "nodes/follow_motion.hpp"
+#include "platform/budget/inputs/node_kernel.hpp"
+#include "platform/budget/inputs/pose_kernels.hpp"
+#include "platform/budget/inputs/views.hpp"
+
+namespace glint::inputs {
+namespace {
+
+constexpr double k_shift_sigma_m = 0.0005, k_turn_sigma_rad = 0.004;
+constexpr int k_frames_to_fill = k_rest_frames_max + 2;
+constexpr int k_rests = 4;  // full windows that the worst inputs begin from
+
+// The slice with the most tools, and the frame that it is given next.
+class FollowKernel final : public NodeKernel<FollowMotion> {
+ public:
+  FollowKernel() : NodeKernel("FollowMotion") {
+    for (int i = 0; i < k_rests; ++i) {
+      Numbers numbers(InputKind::worst, static_cast<std::uint64_t>(i));
+      begin(numbers, k_tools_max, k_markers_per_tool_max);
+      for (int frame = 0; frame < k_frames_to_fill; ++frame) follow(numbers, Vector3::Zero());
+      rests_[i] = {start_, head_, set_, rest_, last_, frame_};
+    }
+  }
+  void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
+    Numbers numbers(kind, number);
+    if (kind == InputKind::worst || kind == InputKind::searched) {
+      const Rested& rested = rests_[number % k_rests];
+      start_ = rested.node;
+      head_ = rested.head;
+      set_ = rested.set;
+      rest_ = rested.rest;
+      last_ = rested.last;
+      frame_ = rested.frame;
+      set_.count = limits.tools;
+      start_.limits = limits;
+      see(numbers, Vector3::Zero(), 0);
+    } else {
+      const int markers = 3 + numbers.below(limits.markers_per_tool - 2);
+      begin(numbers, 1 + numbers.below(limits.tools), markers);
+      start_.limits = limits;
+      const Vector3 velocity = numbers.one_in(3) ? Vector3(Vector3::Zero()) : numbers.in_box(1);
+      const int before = numbers.below(24);
+      for (int frame = 0; frame < before; ++frame) follow(numbers, velocity);
+      see(numbers, velocity, 5);
+    }
+    tools_.set(set_, 1, 0);
+    rewind();
+  }
+  void run() noexcept override { call(node_, followed_); }
+
+ private:
+  using Followed = graph::Parts<FollowedTools, k_tool_slices>;
+  struct Rested {
+    FollowMotion node;
+    HeadPose head;
+    ToolSet set;
+    std::array<Pose, k_tools_max> rest;
+    Followed last;
+    int frame;
+  };
+
+  void begin(Numbers& numbers, int tools, int markers) {
+    start_ = {};
+    last_ = {};
+    frame_ = 0;
+    set_.count = tools;
+    for (int t = 0; t < tools; ++t) {
+      set_.items[t] = any_tool(numbers, markers);
+      rest_[t] = any_view(numbers);
+    }
+    head_.valid = true;
+    head_.T_world_camera = {numbers.rotation(), numbers.in_box(2)};
+    tools_.set(set_, 1, 0);
+  }
+  // One tool in `missed` is not found, none for 0.
+  void see(Numbers& numbers, const Vector3& velocity, int missed) {
+    verdict_ = admitted(static_cast<std::uint32_t>(++frame_));
+    head_.time = verdict_.stamp.mid_exposure;
+    for (int t = 0; t < set_.count; t += k_tool_slices) {
+      FittedTool& tool = fitted_[0].tools[t];
+      const bool found = missed == 0 || !numbers.one_in(missed);
+      tool.reason = found ? Reason::none : Reason::no_labeling;
+      const Vector3 noise = 1.7 * k_shift_sigma_m * numbers.in_box(2);
+      const Vector3 turn = 1.7 * k_turn_sigma_rad * numbers.in_box(2);
+      tool.T_camera_tool.rotation = (from_rotation_vector(turn) * rest_[t].rotation).normalized();
+      tool.T_camera_tool.translation = rest_[t].translation + noise + velocity * (0.022 * frame_);
+      tool.covariance = Matrix6::Zero();
+      tool.covariance.diagonal() << Vector3::Constant(k_shift_sigma_m * k_shift_sigma_m),
+          Vector3::Constant(k_turn_sigma_rad * k_turn_sigma_rad);
+      const Vector3 arm = set_.items[t].tip_m - set_.items[t].middle_m();
+      tool.covariance = moved_covariance(tool.covariance, tool.T_camera_tool.rotation * arm);
+    }
+  }
+  void follow(Numbers& numbers, const Vector3& velocity) {
+    see(numbers, velocity, 0);
+    call(start_, followed_);
+    last_[0] = followed_;
+  }
+  void call(FollowMotion& node, FollowedTools& followed) noexcept {
+    node(verdict_, head_, tools_, fitted_, graph::Previous<Followed>(last_),
+         graph::Slice{0, k_tool_slices}, followed);
+  }
+
+  std::array<Rested, k_rests> rests_;
+  std::array<Pose, k_tools_max> rest_;
+  int frame_ = 0;
+  FrameVerdict verdict_;
+  HeadPose head_;
+  ToolSet set_;
+  graph::Latest<ToolSet> tools_;
+  graph::Parts<FittedTools, k_tool_slices> fitted_;
+  Followed last_;
+  FollowedTools followed_;
+};
+
+}  // namespace
+
+std::unique_ptr<MeasuredKernel> follow_motion_kernel() { return std::make_unique<FollowKernel>(); }
+
+}  // namespace glint::inputs
