@@ -5,24 +5,19 @@
 namespace glint {
 namespace {
 
-// The frame at the middle of the tool's markers, in the base, with its covariance about the base's
-// axes: there shift and rotation are measured nearly apart.
-UncertainPose middle_of(const FittedTool& found, const Tool& tool, const HeadPose& head,
-                        Time time) {
-  const Vector3 middle = tool.middle_m();
-  const Pose& seen = found.T_camera_tool;
-  const Matrix6 covariance =
-      moved_covariance(found.covariance, seen.rotation * (middle - tool.tip_m));
-  const Pose T_camera_middle{seen.rotation, seen * middle};
-  if (!head.valid) return {time, T_camera_middle, covariance};
-  return {time, head.T_world_camera * T_camera_middle,
-          turned_covariance(covariance, head.T_world_camera.rotation)};
+UncertainPose in_base(const UncertainPose& T_camera_middle, const AnchoredHead& anchored) {
+  if (!anchored.head.valid) return T_camera_middle;
+  const Pose& T_world_camera = anchored.head.T_world_camera;
+  const Pose T_world_middle = T_world_camera * T_camera_middle.pose;
+  return {T_camera_middle.time, T_world_middle,
+          turned_covariance(T_camera_middle.covariance, T_world_camera.rotation) +
+              anchored.fresh_at(T_world_middle.translation)};
 }
 
 }  // namespace
 
 void FollowMotion::operator()(
-    const FrameVerdict& verdict, const HeadPose& head, const graph::Latest<ToolSet>& tools,
+    const FrameVerdict& verdict, const Anchor& anchor, const graph::Latest<ToolSet>& tools,
     const graph::Parts<FittedTools, k_tool_slices>& fitted,
     const graph::Previous<graph::Parts<FollowedTools, k_tool_slices>>& last, graph::Slice slice,
     FollowedTools& followed) noexcept {
@@ -37,14 +32,18 @@ void FollowMotion::operator()(
     tool.reason = verdict.reason;
     if (!verdict.usable()) continue;  // a refused frame changes nothing that is known of a tool
     if (verdict.resynchronised) tool.motion.forget();
+    const AnchoredHead& anchored = anchor.now;
+    if (anchored.moved_along && tool.base == ReferenceFrame::world)
+      tool.motion.move(anchored.moved);
     const FittedTool& found = fitted[slice.index].tools[t];
     tool.reason = found.reason;
     if (found.reason != Reason::none) continue;
-    const ReferenceFrame base = head.valid ? ReferenceFrame::world : ReferenceFrame::camera;
+    const ReferenceFrame base =
+        anchored.head.valid ? ReferenceFrame::world : ReferenceFrame::camera;
     if (tool.base != base) tool.motion.forget();
     tool.base = base;
-    const MotionUpdate done = tool.motion.update(
-        middle_of(found, set.items[t], head, verdict.stamp.mid_exposure), settings, sums_[place]);
+    const UncertainPose seen = middle_of(found, set.items[t], verdict.stamp.mid_exposure);
+    const MotionUpdate done = tool.motion.update(in_base(seen, anchored), settings, sums_[place]);
     tool.reason = done.reason;
     if (done.reason != Reason::none) continue;
     ++counts_[2];

@@ -14,7 +14,6 @@
 #include "graph/graph.hpp"
 #include "kernels/motion/motion_track.hpp"
 #include "kernels/nonblocking.hpp"
-#include "kernels/pose/head_pose.hpp"
 #include "kernels/pose/tool.hpp"
 #include "nodes/node_limits.hpp"
 #include "nodes/tokens.hpp"
@@ -36,7 +35,7 @@ struct FollowMotion {
 
   ToolMotionSettings settings;
   Limits limits;
-  void operator()(const FrameVerdict& verdict, const HeadPose& head,
+  void operator()(const FrameVerdict& verdict, const Anchor& anchor,
                   const graph::Latest<ToolSet>& tools,
                   const graph::Parts<FittedTools, k_tool_slices>& fitted,
                   const graph::Previous<graph::Parts<FollowedTools, k_tool_slices>>& last,

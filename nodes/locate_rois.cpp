@@ -62,8 +62,11 @@ bool box_of(const CameraModel& camera, const Prediction& prediction, Roi& box) {
 
 void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head,
                                const graph::Latest<ToolSet>& tools,
+                               const graph::Previous<Anchor>& anchor,
                                const graph::Previous<Estimates>& last,
                                Predictions& predictions) noexcept {
+  // As the frame before corrected it: this one's correction rests on what is yet to be found.
+  const Pose T_camera_world = anchor.value().state.corrected(head.T_world_camera).inverse();
   predictions.marker_count = 0;
   counts_ = {{1}};
   int lens_steps = 0;
@@ -89,7 +92,7 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
           extrapolate(track.previous, track.newest, verdict.stamp.mid_exposure, settings.horizon);
     }
     if (in_world) {
-      predicted = head.T_world_camera.inverse() * predicted;
+      predicted = T_camera_world * predicted;
     } else if (track.base == ReferenceFrame::world) {
       predicted = track.T_camera_tool;  // the head's pose went missing: hold what the camera saw
     }

@@ -47,7 +47,8 @@ struct PredictTracks {
   CameraModel camera;
   Limits limits;
   void operator()(const FrameVerdict& verdict, const HeadPose& head,
-                  const graph::Latest<ToolSet>& tools, const graph::Previous<Estimates>& last,
+                  const graph::Latest<ToolSet>& tools, const graph::Previous<Anchor>& anchor,
+                  const graph::Previous<Estimates>& last,
                   Predictions& predictions) noexcept GLINT_NONBLOCKING;
 
  private:

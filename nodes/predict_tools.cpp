@@ -17,6 +17,16 @@ void express(const Pose& T_frame_base, MovingPose& moving, Matrix6& covariance) 
   covariance = turned_covariance(covariance, T_frame_base.rotation);
 }
 
+bool is_placed(const RobotFrame& robot, const Estimates& known) {
+  const bool registered =
+      robot.state == RegistrationState::given || robot.state == RegistrationState::accepted;
+  return registered && (!robot.in_reference || known.reference_known);
+}
+
+Pose T_world_robot(const RobotFrame& robot, const Estimates& known) {
+  return robot.in_reference ? known.T_world_reference * robot.T_world_robot : robot.T_world_robot;
+}
+
 double axis_sigma(const Matrix6& covariance, int first) {
   const double trace = covariance(first, first) + covariance(first + 1, first + 1) +
                        covariance(first + 2, first + 2);
@@ -61,13 +71,13 @@ void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& es
     const Time when = now.tick + settings.actuation_delay;
     ++counts_[2];
     MovingPose moving = integrator_.after(track.motion, when - track.motion.time).value;
-    Matrix6 covariance = predict_pose(track.motion, when, settings.motion, track.noise).covariance;
+    Matrix6 covariance = predict_pose(track.motion, when, settings.motion, track.noise).covariance +
+                         track.head_covariance;
     sample.frame = track.base;
     if (track.base == ReferenceFrame::camera) {
       if (sample.reason == Reason::none) sample.reason = Reason::head_pose_missing;
-    } else if (robot.value().state == RegistrationState::given ||
-               robot.value().state == RegistrationState::accepted) {
-      express(robot.value().T_world_robot.inverse(), moving, covariance);
+    } else if (is_placed(robot.value(), known)) {
+      express(T_world_robot(robot.value(), known).inverse(), moving, covariance);
       sample.frame = ReferenceFrame::robot;
     } else if (sample.reason == Reason::none) {
       sample.reason = Reason::no_reference;

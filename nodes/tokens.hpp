@@ -6,9 +6,12 @@
 #include <cstdint>
 
 #include "kernels/limits.hpp"
+#include "kernels/motion/head_anchor.hpp"
 #include "kernels/motion/interpolate.hpp"
 #include "kernels/motion/motion_track.hpp"
 #include "kernels/pose/labeling.hpp"
+#include "kernels/pose/lever_arm.hpp"
+#include "kernels/pose/tool.hpp"
 #include "kernels/reason.hpp"
 #include "kernels/units.hpp"
 #include "kernels/wire/can_frames.hpp"
@@ -76,6 +79,23 @@ struct FittedTools {
   std::array<FittedTool, k_tools_max> tools;
 };
 
+// The frame at the middle of a tool's markers, as the camera saw it, with its covariance about the
+// camera's axes: there shift and rotation are measured nearly apart.
+[[nodiscard]] inline UncertainPose middle_of(const FittedTool& found, const Tool& tool, Time time) {
+  const Pose& seen = found.T_camera_tool;
+  const Vector3 middle = tool.middle_m();
+  return {time,
+          {seen.rotation, seen * middle},
+          moved_covariance(found.covariance, seen.rotation * (middle - tool.tip_m))};
+}
+
+// The head's pose in this frame as the reference body corrects it, and what is known for the next.
+struct Anchor {
+  HeadAnchor state;
+  AnchoredHead now;
+  Pose T_world_reference;  // of the reference tool's own frame, once state.known()
+};
+
 // A tool's motion up to this frame, of the middle of its markers.
 struct FollowedTool {
   Reason reason = Reason::no_frame_yet;  // why this frame did not move it on
@@ -104,6 +124,8 @@ struct Track {
   Pose T_camera_tool;            // the newest, as the camera saw it
   MotionState motion;  // T_base_middle (of its markers) and how it changes, at newest.time
   NoiseScale noise;    // of what the hand does next, as motion's filter has it
+  // What the headset's own error adds to motion's covariance, about the same point and axes.
+  Matrix6 head_covariance = Matrix6::Zero();
 };
 
 // The frame group's result.
@@ -112,6 +134,8 @@ struct Estimates {
   int tool_count = 0;
   // From the markers' middle to the tip, along the tool's axes: the tick group needs no tool set.
   std::array<Vector3, k_tools_max> arm_m;
+  bool reference_known = false;
+  Pose T_world_reference;  // where the reference tool is
   std::array<Track, k_tools_max> tracks;
 };
 
@@ -127,6 +151,7 @@ struct RobotFrame {
   RegistrationState state = RegistrationState::none;
   Pose T_world_robot;
   double rms_m = 0;
+  bool in_reference = false;  // T_world_robot leads to the reference body's frame, not the world's
 };
 
 struct PoseSamples {

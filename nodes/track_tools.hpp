@@ -9,7 +9,6 @@
 
 #include "graph/graph.hpp"
 #include "kernels/nonblocking.hpp"
-#include "kernels/pose/head_pose.hpp"
 #include "kernels/pose/tool.hpp"
 #include "nodes/node_limits.hpp"
 #include "nodes/tokens.hpp"
@@ -31,7 +30,7 @@ struct TrackTools {
 
   TrackSettings settings;
   Limits limits;
-  void operator()(const FrameVerdict& verdict, const HeadPose& head,
+  void operator()(const FrameVerdict& verdict, const Anchor& anchor,
                   const graph::Latest<ToolSet>& tools,
                   const graph::Parts<FittedTools, k_tool_slices>& fitted,
                   const graph::Parts<FollowedTools, k_tool_slices>& followed,

@@ -3,13 +3,14 @@
 //   Frame ─► StampFrame ─► CheckFrame ─► PredictTracks ─► LocateRois ─► RoiThreshold x4 ─►
 //   FindBlobs
 //     ─► BackProject ─► Correspond x4 ─► AssignMarkers ─► RefinePose x4 ─►
-//   FollowMotion x4 ─► TrackTools ─► Estimates
+//   AnchorHead ─► FollowMotion x4 ─► TrackTools ─► Estimates
 //                           ▲ PredictTracks and TrackTools read Previous<Estimates>
 //
 // MarkerTracker is the same from BackProject's output on: recordings without images feed it.
 #pragma once
 
 #include "graph/graph.hpp"
+#include "nodes/anchor_head.hpp"
 #include "nodes/check_frame.hpp"
 #include "nodes/follow_motion.hpp"
 #include "nodes/image_nodes.hpp"
@@ -20,17 +21,20 @@
 
 namespace glint {
 
-using Tracker = graph::Graph<
-    graph::Inputs<Frame, HeadPose, graph::Latest<ToolSet>>, graph::Outputs<Estimates>, StampFrame,
-    CheckFrame, PredictTracks, LocateRois, graph::Split<RoiThreshold, k_row_bands>, FindBlobs,
-    BackProject, graph::Split<Correspond, k_tool_slices>, AssignMarkers,
-    graph::Split<RefinePose, k_tool_slices>, graph::Split<FollowMotion, k_tool_slices>, TrackTools>;
+using Tracker = graph::Graph<graph::Inputs<Frame, HeadPose, graph::Latest<ToolSet>>,
+                             graph::Outputs<Estimates>, StampFrame, CheckFrame, PredictTracks,
+                             LocateRois, graph::Split<RoiThreshold, k_row_bands>, FindBlobs,
+                             BackProject, graph::Split<Correspond, k_tool_slices>, AssignMarkers,
+                             graph::Split<RefinePose, k_tool_slices>, AnchorHead,
+                             graph::Split<FollowMotion, k_tool_slices>, TrackTools>;
 static_assert(graph::valid<Tracker>);
 
-using MarkerTracker = graph::Graph<
-    graph::Inputs<FrameStamp, Markers, HeadPose, graph::Latest<ToolSet>>, graph::Outputs<Estimates>,
-    CheckFrame, PredictTracks, graph::Split<Correspond, k_tool_slices>, AssignMarkers,
-    graph::Split<RefinePose, k_tool_slices>, graph::Split<FollowMotion, k_tool_slices>, TrackTools>;
+using MarkerTracker =
+    graph::Graph<graph::Inputs<FrameStamp, Markers, HeadPose, graph::Latest<ToolSet>>,
+                 graph::Outputs<Estimates>, CheckFrame, PredictTracks,
+                 graph::Split<Correspond, k_tool_slices>, AssignMarkers,
+                 graph::Split<RefinePose, k_tool_slices>, AnchorHead,
+                 graph::Split<FollowMotion, k_tool_slices>, TrackTools>;
 static_assert(graph::valid<MarkerTracker>);
 
 }  // namespace glint

@@ -153,6 +153,22 @@ Vector6 pose_difference(const Pose& measured, const Pose& predicted) noexcept {
   return difference;
 }
 
+MotionState moved_state(const MotionState& state, const Pose& moved) noexcept {
+  MotionState out = state;
+  out.pose = {(moved.rotation * state.pose.rotation).normalized(), moved * state.pose.translation};
+  for (Vector3* v : {&out.velocity_m_s, &out.acceleration_m_s2, &out.angular_velocity_rad_s,
+                     &out.angular_acceleration_rad_s2})
+    *v = moved.rotation * *v;
+  const Matrix3 turn = moved.rotation.toRotationMatrix();
+  for (int side = 0; side < 2; ++side) {  // T P, then its transpose again: T (T P)'
+    for (int row = 0; row < k_motion_size; row += 3)
+      out.covariance.middleRows<3>(row) =
+          turn.lazyProduct(out.covariance.middleRows<3>(row)).eval();
+    out.covariance.transposeInPlace();
+  }
+  return out;
+}
+
 UncertainPose pose_of(const MotionState& state) noexcept {
   UncertainPose result{state.time, state.pose, {}};
   const MotionCovariance& p = state.covariance;

@@ -59,6 +59,10 @@ void propagate(MotionState& state, Time time, const MotionSettings& settings,
 [[nodiscard]] Vector6 pose_difference(const Pose& measured,
                                       const Pose& predicted) noexcept GLINT_NONBLOCKING;
 
+// In a frame whose poses are `moved` times those of the state's own.
+[[nodiscard]] MotionState moved_state(const MotionState& state,
+                                      const Pose& moved) noexcept GLINT_NONBLOCKING;
+
 // The state's pose with its share of the covariance.
 [[nodiscard]] UncertainPose pose_of(const MotionState& state) noexcept GLINT_NONBLOCKING;
 

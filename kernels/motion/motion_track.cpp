@@ -90,6 +90,11 @@ void MotionTrack::forget() noexcept {
   rest_.clear();
 }
 
+void MotionTrack::move(const Pose& moved) noexcept {
+  state_ = moved_state(state_, moved);
+  rest_.move(moved);
+}
+
 MotionState MotionTrack::estimate(const RestSums& sums) const noexcept {
   if (!known_ || !rests()) return state_;
   const Rest rest = rest_.rest(sums);

@@ -57,6 +57,9 @@ class MotionTrack {
                 const ToolMotionSettings& settings,
                 const RestSums& sums) noexcept GLINT_NONBLOCKING;
   void forget() noexcept;
+  // The frame that all is given in turned out to lie elsewhere, by little: every pose p becomes
+  // `moved` p.
+  void move(const Pose& moved) noexcept GLINT_NONBLOCKING;
 
   [[nodiscard]] bool known() const { return known_; }
   [[nodiscard]] bool rests() const { return rest_.rests(); }

@@ -70,6 +70,11 @@ class RestWindow {
   int add(const UncertainPose& measured, const RestSettings& settings,
           RestSums& sums) noexcept GLINT_NONBLOCKING;
   void clear() noexcept { frames_ = kept_ = 0; }
+  // All poses move by this little: the anchor does, from which the sums are counted. That their
+  // axes turn too is left out, for what they hold is as small as the noise.
+  void move(const Pose& moved) noexcept {
+    anchor_ = {(moved.rotation * anchor_.rotation).normalized(), moved * anchor_.translation};
+  }
 
   [[nodiscard]] bool rests() const { return frames_ >= frames_min_; }
   [[nodiscard]] int frames() const { return frames_; }

@@ -9,6 +9,7 @@
 #include "kernels/pose/local_rays.hpp"
 #include "kernels/wire/can_frames.hpp"
 #include "platform/cells/calibration_files.hpp"
+#include "platform/cells/cell_headset.hpp"
 #include "platform/cells/toml_reader.hpp"
 #include "platform/cells/tool_file.hpp"
 #include "platform/cells/tool_notices.hpp"
@@ -303,6 +304,12 @@ void read_robot(const toml::table* table, Cell& cell) {
   if (const auto rotation = reader.reals("rotation_deg", 3)) {
     cell.T_world_robot.rotation = from_fixed_axes(*rotation);
   }
+  cell.robot_in_reference = reader.one_of("frame", "world", {"world", "reference"}) == "reference";
+  if (cell.robot_in_reference && cell.reference < 0) {
+    throw InputError(cell.file + ":" + std::to_string(reader.line_of("frame")) +
+                     ": robot.frame is \"reference\", but no tool is the reference; expected "
+                     "reference = \"NAME\" at the top, a listed tool that does not move");
+  }
   reader.done();
 }
 
@@ -349,6 +356,8 @@ Cell cell_from_text(const std::string& text, const std::string& file, const Cell
   parser.read_camera(root.table("camera"));
   cell.ray_steps = ray_steps_needed(cell.camera.model);
   parser.read_tools(root);
+  read_reference(root, cell);
+  read_headset(root.table("headset"), cell);
   parser.read_simulator(root.table("simulator"));
   read_rates(root.table("rates"), cell);
   read_deadlines(root.table("deadlines"), cell);

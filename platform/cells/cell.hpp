@@ -12,6 +12,7 @@
 #include "graph/overrun.hpp"
 #include "kernels/geometry.hpp"
 #include "kernels/limits.hpp"
+#include "kernels/motion/head_anchor.hpp"
 #include "kernels/motion/motion_filter.hpp"
 #include "kernels/pose/bias_correction.hpp"
 #include "kernels/pose/tool.hpp"
@@ -101,11 +102,13 @@ struct Cell {
   std::string ray_table;            // path, or empty
   ToolSet tools;
   std::vector<std::string> tool_files;
+  int reference = -1;                  // the tool that does not move: its number; -1: none
   std::vector<std::string> notices;    // what its user should know, a line each
   std::vector<NamedFile> named_files;  // of `glint calibrate`, as read: a recording carries them
   MotionSettings motion;               // as built in, or by [motion] file
   BiasCorrection correction;           // none, or by [correction] file
   SimulatorSettings simulator;
+  HeadNoise head_noise;  // of the headset's own localisation
   bool realtime = true;  // frames arrive at their time; otherwise as fast as can be
   double tick_hz = 250;
   Duration lost_after = milliseconds(250);
@@ -120,8 +123,9 @@ struct Cell {
   DdsCellSettings dds;
   RecordSettings record;
   FileSettings files;
-  Method method = Method::glint;  // chosen on the command line
-  bool robot_given = true;        // T_world_robot holds; otherwise the pose stays in the world
+  Method method = Method::glint;    // chosen on the command line
+  bool robot_given = true;          // T_world_robot holds; otherwise the pose stays in the world
+  bool robot_in_reference = false;  // T_world_robot is T_reference_robot
   Pose T_world_robot;
 };
 

@@ -87,6 +87,9 @@ void configure_common(const Cell& cell, AnyTracker& tracker) {
     node.noise = MarkerNoise{};
     node.noise.focal_px = cell.camera.model.fx;
   });
+  tracker.template node<AnchorHead>().limits = limits;
+  tracker.template node<AnchorHead>().reference = cell.reference;
+  tracker.template node<AnchorHead>().noise = cell.head_noise;
   tracker.template for_each<FollowMotion>([&](FollowMotion& node) { node.limits = limits; });
   tracker.template node<TrackTools>().settings = track_settings(cell);
   tracker.template node<TrackTools>().limits = limits;
@@ -151,6 +154,7 @@ RobotFrame declared_robot_frame(const Cell& cell) {
   if (!cell.robot_given) return robot;
   robot.state = RegistrationState::given;
   robot.T_world_robot = cell.T_world_robot;
+  robot.in_reference = cell.robot_in_reference;
   return robot;
 }
 

@@ -60,7 +60,8 @@ const Estimates& SeedMethod::process(const ArrivedFrame& arrived) {
                              head.valid ? ReferenceFrame::world : ReferenceFrame::camera,
                              tools_.value().items[0].middle_m(), track_.settings.velocity_gap_max);
   }
-  track_(verdict, arrived.head, tools_, fitted_, followed_, graph::Previous<Estimates>(last_),
+  anchor_.now.head = arrived.head;
+  track_(verdict, anchor_, tools_, fitted_, followed_, graph::Previous<Estimates>(last_),
          estimates_);
   return estimates_;
 }

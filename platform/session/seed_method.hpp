@@ -24,6 +24,7 @@ class SeedMethod final : public FrameMethod {
   TrackTools track_;
   graph::Latest<ToolSet> tools_;
   graph::Parts<FittedTools, k_tool_slices> fitted_;
+  Anchor anchor_;  // the publication has no reference body
   graph::Parts<FollowedTools, k_tool_slices> followed_;
   Estimates last_, estimates_;
 };

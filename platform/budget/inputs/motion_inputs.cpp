@@ -1,8 +1,10 @@
-// Poses to follow: tools that have long been at rest, that move, or that begin.
+// A head to anchor, and poses to follow: tools that have long been at rest, that move, or that
+// begin.
 #include <array>
 
 #include "kernels/motion/interpolate.hpp"
 #include "kernels/pose/lever_arm.hpp"
+#include "nodes/anchor_head.hpp"
 #include "nodes/follow_motion.hpp"
 #include "platform/budget/inputs/node_kernel.hpp"
 #include "platform/budget/inputs/pose_kernels.hpp"
@@ -23,7 +25,7 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
       Numbers numbers(InputKind::worst, static_cast<std::uint64_t>(i));
       begin(numbers, k_tools_max, k_markers_per_tool_max);
       for (int frame = 0; frame < k_frames_to_fill; ++frame) follow(numbers, Vector3::Zero());
-      rests_[i] = {start_, head_, set_, rest_, last_, frame_};
+      rests_[i] = {start_, anchor_, set_, rest_, last_, frame_};
     }
   }
   void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
@@ -31,7 +33,7 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
     if (kind == InputKind::worst || kind == InputKind::searched) {
       const Rested& rested = rests_[number % k_rests];
       start_ = rested.node;
-      head_ = rested.head;
+      anchor_ = rested.anchor;
       set_ = rested.set;
       rest_ = rested.rest;
       last_ = rested.last;
@@ -39,6 +41,7 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
       set_.count = limits.tools;
       start_.limits = limits;
       see(numbers, Vector3::Zero(), 0);
+      anchor_.now.moved_along = true;
     } else {
       const int markers = 3 + numbers.below(limits.markers_per_tool - 2);
       begin(numbers, 1 + numbers.below(limits.tools), markers);
@@ -57,7 +60,7 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
   using Followed = graph::Parts<FollowedTools, k_tool_slices>;
   struct Rested {
     FollowMotion node;
-    HeadPose head;
+    Anchor anchor;
     ToolSet set;
     std::array<Pose, k_tools_max> rest;
     Followed last;
@@ -73,14 +76,16 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
       set_.items[t] = any_tool(numbers, markers);
       rest_[t] = any_view(numbers);
     }
-    head_.valid = true;
-    head_.T_world_camera = {numbers.rotation(), numbers.in_box(2)};
+    anchor_.now = {};
+    anchor_.now.head.valid = true;
+    anchor_.now.head.T_world_camera = {numbers.rotation(), numbers.in_box(2)};
+    anchor_.now.fresh = Matrix6::Identity() * 1e-9;
     tools_.set(set_, 1, 0);
   }
   // One tool in `missed` is not found, none for 0.
   void see(Numbers& numbers, const Vector3& velocity, int missed) {
     verdict_ = admitted(static_cast<std::uint32_t>(++frame_));
-    head_.time = verdict_.stamp.mid_exposure;
+    anchor_.now.head.time = verdict_.stamp.mid_exposure;
     for (int t = 0; t < set_.count; t += k_tool_slices) {
       FittedTool& tool = fitted_[0].tools[t];
       const bool found = missed == 0 || !numbers.one_in(missed);
@@ -102,7 +107,7 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
     last_[0] = followed_;
   }
   void call(FollowMotion& node, FollowedTools& followed) noexcept {
-    node(verdict_, head_, tools_, fitted_, graph::Previous<Followed>(last_),
+    node(verdict_, anchor_, tools_, fitted_, graph::Previous<Followed>(last_),
          graph::Slice{0, k_tool_slices}, followed);
   }
 
@@ -110,7 +115,7 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
   std::array<Pose, k_tools_max> rest_;
   int frame_ = 0;
   FrameVerdict verdict_;
-  HeadPose head_;
+  Anchor anchor_;
   ToolSet set_;
   graph::Latest<ToolSet> tools_;
   graph::Parts<FittedTools, k_tool_slices> fitted_;
@@ -118,8 +123,58 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
   FollowedTools followed_;
 };
 
+// A headset that drifts before a body that does not, or without one.
+class AnchorKernel final : public NodeKernel<AnchorHead> {
+ public:
+  AnchorKernel() : NodeKernel("AnchorHead") {}
+  void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
+    Numbers numbers(kind, number);
+    const bool all = kind == InputKind::worst || kind == InputKind::searched;
+    start_.limits = limits;
+    start_.reference = all || !numbers.one_in(3) ? 0 : -1;
+    set_.count = 1;
+    set_.items[0] = any_tool(numbers, limits.markers_per_tool);
+    tools_.set(set_, 1, 0);
+    last_ = {};
+    const Pose T_world_camera{numbers.rotation(), numbers.in_box(2)};
+    const Pose T_camera_body = any_view(numbers);
+    const int before = k_anchor_frames + numbers.below(20);
+    for (int frame = 0; frame <= before; ++frame) {
+      verdict_ = admitted(static_cast<std::uint32_t>(frame));
+      const bool last = frame == before;
+      head_.valid = all || !last || !numbers.one_in(4);
+      head_.time = verdict_.stamp.mid_exposure;
+      head_.T_world_camera = {T_world_camera.rotation,
+                              T_world_camera.translation + 0.001 * numbers.in_box(1)};
+      FittedTool& body = fitted_[0].tools[0];
+      // Hidden in the frame before the last: poses then move along.
+      const bool seen = all ? frame != before - 1 : !numbers.one_in(4);
+      body.reason = seen ? Reason::none : Reason::no_labeling;
+      body.T_camera_tool = {T_camera_body.rotation,
+                            T_camera_body.translation + 0.0003 * numbers.in_box(1)};
+      body.covariance = Matrix6::Identity() * 1e-7;
+      if (last) break;
+      start_(verdict_, head_, tools_, fitted_, graph::Previous<Anchor>(last_), anchor_);
+      last_ = anchor_;
+    }
+    rewind();
+  }
+  void run() noexcept override {
+    node_(verdict_, head_, tools_, fitted_, graph::Previous<Anchor>(last_), anchor_);
+  }
+
+ private:
+  FrameVerdict verdict_;
+  HeadPose head_;
+  ToolSet set_;
+  graph::Latest<ToolSet> tools_;
+  graph::Parts<FittedTools, k_tool_slices> fitted_;
+  Anchor last_, anchor_;
+};
+
 }  // namespace
 
+std::unique_ptr<MeasuredKernel> anchor_head_kernel() { return std::make_unique<AnchorKernel>(); }
 std::unique_ptr<MeasuredKernel> follow_motion_kernel() { return std::make_unique<FollowKernel>(); }
 
 }  // namespace glint::inputs

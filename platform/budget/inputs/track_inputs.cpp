@@ -137,7 +137,7 @@ class PredictTracksKernel final : public NodeKernel<PredictTracks> {
     rewind();
   }
   void run() noexcept override {
-    node_(tracked_.verdict, tracked_.head, tracked_.tools,
+    node_(tracked_.verdict, tracked_.head, tracked_.tools, graph::Previous<Anchor>(anchor_),
           graph::Previous<Estimates>(tracked_.last), predictions_);
   }
 
@@ -159,6 +159,7 @@ class PredictTracksKernel final : public NodeKernel<PredictTracks> {
   }
   std::vector<float> rays_;
   Tracked tracked_;
+  Anchor anchor_;
   Predictions predictions_;
 };
 
@@ -220,10 +221,13 @@ class TrackToolsKernel final : public NodeKernel<TrackTools> {
       tool.T_camera_tool = any_view(numbers);
       followed_[t % k_tool_slices].items[t / k_tool_slices].reason = tool.reason;
     }
+    anchor_.now.head = tracked_.head;
+    anchor_.now.lasting = Matrix6::Identity() * 1e-6;
+    anchor_.now.moved_along = at_its_worst(kind) || numbers.one_in(20);
     rewind();
   }
   void run() noexcept override {
-    node_(tracked_.verdict, tracked_.head, tracked_.tools, fitted_, followed_,
+    node_(tracked_.verdict, anchor_, tracked_.tools, fitted_, followed_,
           graph::Previous<Estimates>(tracked_.last), estimates_);
   }
 
@@ -231,6 +235,7 @@ class TrackToolsKernel final : public NodeKernel<TrackTools> {
   Tracked tracked_;
   graph::Parts<FittedTools, k_tool_slices> fitted_;
   graph::Parts<FollowedTools, k_tool_slices> followed_;
+  Anchor anchor_;
   Estimates estimates_;
 };
 

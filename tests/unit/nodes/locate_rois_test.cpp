@@ -40,13 +40,15 @@ class LocateRois : public testing::Test {
     FrameVerdict verdict;
     verdict.stamp.mid_exposure = Time{} + milliseconds(1000 + gap_ms);
     Rois rois;
-    predict_(verdict, HeadPose{}, tools, graph::Previous<Estimates>(*last_), *predictions_);
+    predict_(verdict, HeadPose{}, tools, graph::Previous<Anchor>(anchor_),
+             graph::Previous<Estimates>(*last_), *predictions_);
     locate_(verdict, tools, *predictions_, rois);
     return rois;
   }
 
   CameraModel camera_;
   std::unique_ptr<ToolSet> tools_ = std::make_unique<ToolSet>();
+  Anchor anchor_;
   std::unique_ptr<Estimates> last_ = std::make_unique<Estimates>();
   std::unique_ptr<Predictions> predictions_ = std::make_unique<Predictions>();
   PredictTracks predict_;

@@ -89,6 +89,7 @@ TEST_F(PredictTools, MovesOnByTheEquationsOfMotionWithGrowingUncertainty) {
   track.motion.velocity_m_s = Vector3(1, 0, 0);
   track.motion.angular_velocity_rad_s = Vector3(0, 0, 2);
   track.motion.covariance.diagonal().setConstant(1e-6);
+  track.motion.covariance.diagonal().segment<3>(k_velocity).setConstant(0.01);
   const PoseSample near = at(1000);
   const PoseSample far = at(1040);
   const double turn = 2 * 0.04;
@@ -110,10 +111,27 @@ TEST_F(PredictTools, MovesOnByTheEquationsOfMotionWithGrowingUncertainty) {
 
 TEST_F(PredictTools, IsLessSureOfAHandThatHasBeenBrisk) {
   Track& track = estimates_->tracks[0];
-  track.motion.covariance.diagonal().setConstant(1e-6);
+  track.motion.covariance.diagonal().setConstant(1e-12);
   const double calm = at(1040).sigma_position_m;
   track.noise = {4, 4};
   EXPECT_GT(at(1040).sigma_position_m, 1.1 * calm);
+}
+
+TEST_F(PredictTools, IsNoSurerThanTheHeadsetItself) {
+  estimates_->tracks[0].head_covariance.diagonal().setConstant(4e-6);
+  EXPECT_GT(at(1000).sigma_position_m, 0.002);
+}
+
+TEST_F(PredictTools, TakesTheRobotsFrameFromTheReferenceToolWhereTheCellSaysSo) {
+  robot_.in_reference = true;
+  robot_.T_world_robot.translation = Vector3(0, 0, 1);
+  EXPECT_EQ(at(1000).frame, ReferenceFrame::world) << "the reference is yet to be seen";
+  EXPECT_EQ(at(1000).reason, Reason::no_reference);
+  estimates_->reference_known = true;
+  estimates_->T_world_reference.translation = Vector3(0, 2, 0);
+  const PoseSample sample = at(1000);
+  EXPECT_EQ(sample.frame, ReferenceFrame::robot);
+  EXPECT_TRUE(sample.pose.translation.isApprox(Vector3(0.1, -2, 0.5 - 1)));
 }
 
 TEST_F(PredictTools, AddsTheActuationDelayToTheLead) {

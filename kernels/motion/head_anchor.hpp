@@ -1,0 +1,92 @@
+// Holds the headset's world to a body that does not move: what the headset's own localisation is
+// off by, from where it puts that body, and how sure that is.
+//
+// What:     the error e (a shift and a small rotation about the body's place) is a random walk that
+//           returns to zero, of the variance that is declared for the headset's speed; each sight
+//           of the body measures it. Corrected poses are those relative to the body, as long as it
+//           is in view; hidden, the correction fades and its covariance grows to the headset's.
+// Cost:     one 6x6 factor and a few products: 1.5 us.
+// Worst:    the body in view, none is worse than another.
+// Accuracy: the body's own, filtered as far as the headset's error allows. The body's first
+//           k_anchor_frames sights define where it is; what they are off by moves the whole world.
+// Source:   Ornstein and Uhlenbeck 1930 (the walk); Bar-Shalom, Li and Kirubarajan 2001, section
+//           5.2 (the update, in Joseph's form, whose two terms are given apart).
+#pragma once
+
+#include "kernels/motion/interpolate.hpp"
+#include "kernels/motion/motion_state.hpp"
+#include "kernels/nonblocking.hpp"
+#include "kernels/pose/head_pose.hpp"
+
+namespace glint {
+
+// The headset's declared error: standard deviations of an axis, at a pivot ahead of the camera.
+struct HeadNoise {
+  double rest_position_m = 0.001;
+  double rest_angle_rad = 0.002;
+  double rest_correlation_s = 20;
+  double position_per_speed_s = 0.03;  // m of error per m/s
+  double position_per_turn_m = 0.01;   // m of error per rad/s
+  double angle_per_speed_s_m = 0.02;   // rad of error per m/s
+  double angle_per_turn_s = 0.02;      // rad of error per rad/s
+  double motion_correlation_s = 0.4;
+  double pivot_m = 0.5;
+};
+
+inline constexpr int k_anchor_frames = 45;  // 1 s
+// Chi square of 6 degrees of freedom, 1e-6: beyond it something else was taken for the body ..
+inline constexpr double k_anchor_chi_square_max = 38.3;
+// .. unless it goes on for 0.2 s: then the headset has lost its place and found another, and the
+// body, which is declared not to move, is believed.
+inline constexpr int k_anchor_refused_max = 9;
+
+// The head's pose of one frame, corrected, with what its error adds to every pose in the world.
+struct AnchoredHead {
+  HeadPose head;
+  Vector3 pivot_m = Vector3::Zero();  // in the world: both covariances are about it
+  Matrix6 fresh = Matrix6::Zero();    // new in this frame: noise among other noise
+  Matrix6 lasting = Matrix6::Zero();  // kept from the frames before: shared by all of them
+  Pose moved;                         // what moves poses of before along: after a gap
+  bool corrected = false;             // by this frame's sight of the body
+  bool moved_along = false;           // `moved` is not the identity
+
+  // Of a pose at `point_m`, about the world's axes.
+  [[nodiscard]] Matrix6 fresh_at(const Vector3& point_m) const;
+  [[nodiscard]] Matrix6 lasting_at(const Vector3& point_m) const;
+};
+
+class HeadAnchor {
+ public:
+  // body: T_camera_body with its covariance about the camera's axes at the body's origin; null
+  // where this frame does not show it, or no body is declared. Frames come in the order of time.
+  [[nodiscard]] AnchoredHead update(const HeadPose& head, const UncertainPose* body,
+                                    const HeadNoise& noise) noexcept GLINT_NONBLOCKING;
+  // The head's pose as the correction of the frame before has it.
+  [[nodiscard]] Pose corrected(const Pose& T_world_camera) const noexcept GLINT_NONBLOCKING;
+
+  [[nodiscard]] bool known() const { return sights_ > 0; }
+  [[nodiscard]] const Pose& T_world_body() const { return T_world_body_; }  // once known()
+  [[nodiscard]] int jumps() const { return jumps_; }  // of the headset, that the body told
+  // The stamps begin anew: nothing is known of how the head moved before.
+  void restart_clock() noexcept { has_head_ = false; }
+
+ private:
+  void observe_speed(const HeadPose& head, const HeadNoise& noise);
+  void walk_on(const Pose& T_world_camera, double seconds, const HeadNoise& noise);
+  void define(const UncertainPose& T_world_body);
+  bool correct(const UncertainPose& T_world_body, AnchoredHead& out);
+  void take_over(const UncertainPose& T_world_body, AnchoredHead& out);
+
+  int sights_ = 0;   // that defined the body's place, up to k_anchor_frames
+  int refused_ = 0;  // in a row
+  int unseen_ = 0;   // frames in a row
+  int jumps_ = 0;
+  Pose T_world_body_;
+  Vector6 error_ = Vector6::Zero();  // of the head, about T_world_body_'s origin
+  Matrix6 covariance_ = Matrix6::Zero();
+  bool has_head_ = false;
+  StampedPose head_;  // as the headset gave it
+  double speed_m_s_ = 0, turn_rad_s_ = 0;
+};
+
+}  // namespace glint

@@ -1,0 +1,33 @@
+#include "nodes/anchor_head.hpp"
+
+#include "kernels/pose/lever_arm.hpp"
+
+namespace glint {
+
+void AnchorHead::operator()(const FrameVerdict& verdict, const HeadPose& head,
+                            const graph::Latest<ToolSet>& tools,
+                            const graph::Parts<FittedTools, k_tool_slices>& fitted,
+                            const graph::Previous<Anchor>& last, Anchor& anchor) noexcept {
+  counts_ = {{1}};
+  anchor = last.value();
+  anchor.now = AnchoredHead{};
+  if (!verdict.usable()) return;
+  if (verdict.resynchronised) anchor.state.restart_clock();
+  const bool declared = reference >= 0 && reference < tools_within(tools.value(), limits);
+  UncertainPose body;
+  const UncertainPose* seen = nullptr;
+  if (declared) {
+    const FittedTool& found = fitted[reference % k_tool_slices].tools[reference];
+    if (found.reason == Reason::none) {
+      body = middle_of(found, tools.value().items[reference], verdict.stamp.mid_exposure);
+      seen = &body;
+      ++counts_[1];
+    }
+  }
+  anchor.now = anchor.state.update(head, seen, noise);
+  if (!declared) return;
+  const Pose to_tool{Quaternion::Identity(), -tools.value().items[reference].middle_m()};
+  anchor.T_world_reference = anchor.state.T_world_body() * to_tool;
+}
+
+}  // namespace glint

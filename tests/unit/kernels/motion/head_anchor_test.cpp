@@ -1,0 +1,239 @@
+#include "kernels/motion/head_anchor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "kernels/motion/cholesky.hpp"
+#include "kernels/motion/motion_filter.hpp"
+#include "tests/unit/kernels/motion/motion_scene.hpp"
+
+namespace glint {
+namespace {
+
+constexpr double k_frame_s = 1.0 / 45;
+constexpr double k_body_shift_sigma = 0.0003, k_body_turn_sigma = 0.004;
+
+// A headset whose error walks as declared, about a pivot ahead of it, before a body.
+class Headset {
+ public:
+  Headset(const HeadNoise& noise, std::uint64_t seed) : noise_(noise), random_(seed) {
+    body_ = {random_.rotation(), Vector3(0.1, 0.05, 0.6)};
+    shift_ = noise_.rest_position_m * random_.vector(1);
+    turn_ = noise_.rest_angle_rad * random_.vector(1);
+  }
+  void step() {
+    ++frame_;
+    const double kept = std::exp(-k_frame_s / noise_.rest_correlation_s);
+    const double renewed = std::sqrt(1 - kept * kept);
+    shift_ = kept * shift_ + renewed * noise_.rest_position_m * random_.vector(1);
+    turn_ = kept * turn_ + renewed * noise_.rest_angle_rad * random_.vector(1);
+  }
+  [[nodiscard]] HeadPose given() const {
+    const Quaternion turn = from_rotation_vector(turn_);
+    const Vector3 pivot(0, 0, noise_.pivot_m);
+    HeadPose head;
+    head.time = Time{} + milliseconds(22) * frame_;
+    head.valid = true;
+    head.T_world_camera = {turn, pivot + shift_ + jump_ - turn * pivot};
+    return head;
+  }
+  [[nodiscard]] UncertainPose body() {
+    return test::measured_pose(body_, {}, k_body_shift_sigma, k_body_turn_sigma, random_);
+  }
+  void jump(const Vector3& by) { jump_ += by; }
+  [[nodiscard]] const Pose& body_truth() const { return body_; }
+
+ private:
+  HeadNoise noise_;
+  test::Random random_;
+  Pose body_;  // the camera rests at the world's origin
+  Vector3 shift_, turn_, jump_ = Vector3::Zero();
+  int frame_ = 0;
+};
+
+// How far the corrected head puts a point that is seen exactly from where it put it at the start.
+TEST(HeadAnchor, KeepsTheWorldToTheBodyWhereTheHeadsetWanders) {
+  HeadNoise noise;
+  noise.rest_position_m = 0.004;
+  noise.rest_angle_rad = 0.01;
+  noise.rest_correlation_s = 2;
+  double free = 0, held = 0;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Headset headset(noise, seed);
+    HeadAnchor anchor;
+    const Vector3 point(0.05, 0, 0.55);
+    Vector3 free_first = Vector3::Zero(), held_first = Vector3::Zero();
+    for (int frame = 0; frame < 400; ++frame) {
+      headset.step();
+      const UncertainPose body = headset.body();
+      const AnchoredHead out = anchor.update(headset.given(), &body, noise);
+      const Vector3 by_head = headset.given().T_world_camera * point;
+      const Vector3 by_body = out.head.T_world_camera * point;
+      if (frame == 90) free_first = by_head, held_first = by_body;
+      if (frame < 90) continue;
+      free += (by_head - free_first).squaredNorm();
+      held += (by_body - held_first).squaredNorm();
+      ++count;
+    }
+  }
+  EXPECT_GT(std::sqrt(free / count), 0.005);
+  EXPECT_LT(std::sqrt(held / count), 0.0012);
+}
+
+// NEES of the corrected world, in view and half a second after it was hidden.
+TEST(HeadAnchor, KnowsHowSureItIs) {
+  const HeadNoise noise;
+  double seen = 0, hidden = 0;
+  const int runs = 300;
+  for (int run = 0; run < runs; ++run) {
+    Headset headset(noise, 100 + static_cast<std::uint64_t>(run));
+    HeadAnchor anchor;
+    const auto nees = [&](const AnchoredHead& out) {
+      // The body as it is, put into the world by the corrected head, against where it was defined.
+      const Pose placed = out.head.T_world_camera * headset.body_truth();
+      const Vector6 error = pose_difference(placed, anchor.T_world_body());
+      const Matrix6 covariance = out.fresh + out.lasting;
+      return Cholesky<6>(covariance).squared_length(error);
+    };
+    AnchoredHead out;
+    for (int frame = 0; frame < 225; ++frame) {
+      headset.step();
+      const UncertainPose body = headset.body();
+      out = anchor.update(headset.given(), &body, noise);
+    }
+    seen += nees(out) / runs;
+    for (int frame = 0; frame < 22; ++frame) {
+      headset.step();
+      out = anchor.update(headset.given(), nullptr, noise);
+    }
+    hidden += nees(out) / runs;
+  }
+  // What its first second of sights was off by moves the whole world, and is in no covariance.
+  EXPECT_GT(seen / 6, 0.7);
+  EXPECT_LT(seen / 6, 1.9);
+  EXPECT_GT(hidden / 6, 0.7);
+  EXPECT_LT(hidden / 6, 1.7);
+}
+
+TEST(HeadAnchor, WithoutABodySaysWhatTheHeadsetDeclares) {
+  HeadNoise noise;
+  HeadAnchor anchor;
+  HeadPose head;
+  head.valid = true;
+  head.T_world_camera.translation = {0.3, 0.2, 0.1};
+  const AnchoredHead out = anchor.update(head, nullptr, noise);
+  EXPECT_FALSE(out.corrected);
+  EXPECT_EQ(out.head.T_world_camera.translation, head.T_world_camera.translation);
+  EXPECT_TRUE(out.fresh.isZero());
+  const Vector3 pivot = head.T_world_camera * Vector3(0, 0, noise.pivot_m);
+  const Matrix6 there = out.lasting_at(pivot);
+  EXPECT_NEAR(there(0, 0), 1e-6, 1e-12);
+  EXPECT_NEAR(there(5, 5), 4e-6, 1e-12);
+  // 0.5 m beside it the angle's 2 mrad are another 1 mm.
+  const Matrix6 beside = out.lasting_at(pivot + Vector3(0.5, 0, 0));
+  EXPECT_NEAR(beside(1, 1), 2e-6, 1e-12);
+}
+
+TEST(HeadAnchor, IsLessSureWhileTheHeadMoves) {
+  const HeadNoise noise;
+  HeadAnchor anchor;
+  HeadPose head;
+  head.valid = true;
+  double before = 0;
+  for (int frame = 0; frame < 90; ++frame) {
+    head.time = Time{} + milliseconds(22) * frame;
+    if (frame >= 45) head.T_world_camera.translation.x() += 0.5 * 0.022;
+    const AnchoredHead out = anchor.update(head, nullptr, noise);
+    if (frame == 44) before = out.lasting(0, 0);
+    if (frame < 89) continue;
+    EXPECT_GT(out.lasting(0, 0), 20 * before);
+  }
+}
+
+TEST(HeadAnchor, MovesWhatIsKnownAlongWhenTheBodyComesBack) {
+  HeadNoise noise;
+  noise.rest_position_m = 0.01;
+  Headset headset(noise, 7);
+  HeadAnchor anchor;
+  AnchoredHead out;
+  for (int frame = 0; frame < 200; ++frame) {
+    headset.step();
+    const UncertainPose body = headset.body();
+    const bool hidden = frame >= 100 && frame < 190;
+    if (frame == 150) headset.jump({0.004, 0, 0});
+    const Pose before = anchor.corrected(headset.given().T_world_camera);
+    out = anchor.update(headset.given(), hidden ? nullptr : &body, noise);
+    EXPECT_EQ(out.moved_along, frame == 190) << frame;
+    if (frame != 190) continue;
+    const Vector3 point(0.05, 0, 0.55);
+    const Vector3 was = before * point, is = out.head.T_world_camera * point;
+    EXPECT_GT((is - was).norm(), 0.002);
+    EXPECT_LT((out.moved * was - is).norm(), 0.0005) << "a pose from before lies where it is now";
+  }
+}
+
+TEST(HeadAnchor, IgnoresAWrongSightButBelievesTheBodyWhenTheHeadsetHasJumped) {
+  const HeadNoise noise;
+  Headset headset(noise, 8);
+  HeadAnchor anchor;
+  for (int frame = 0; frame < 100; ++frame) {
+    headset.step();
+    UncertainPose body = headset.body();
+    if (frame == 80) body.pose.translation.x() += 0.1;
+    const AnchoredHead out = anchor.update(headset.given(), &body, noise);
+    EXPECT_EQ(out.corrected, frame != 80) << frame;
+  }
+  EXPECT_EQ(anchor.jumps(), 0);
+  headset.jump({0.05, 0, 0});
+  AnchoredHead out;
+  for (int frame = 0; frame < k_anchor_refused_max; ++frame) {
+    EXPECT_FALSE(out.corrected && frame > 0);
+    headset.step();
+    const UncertainPose body = headset.body();
+    out = anchor.update(headset.given(), &body, noise);
+  }
+  EXPECT_TRUE(out.corrected && out.moved_along);
+  EXPECT_EQ(anchor.jumps(), 1);
+  const Pose placed = out.head.T_world_camera * headset.body_truth();
+  EXPECT_LT((placed.translation - anchor.T_world_body().translation).norm(), 0.002);
+}
+
+TEST(HeadAnchor, StaysFiniteForStampsAndCovariancesThatAreNone) {
+  const HeadNoise noise;
+  Headset headset(noise, 9);
+  HeadAnchor anchor;
+  for (int frame = 0; frame < 200; ++frame) {
+    HeadPose head = headset.given();
+    head.time = Time{} - milliseconds(frame);  // backwards
+    UncertainPose body = headset.body();
+    body.covariance.setZero();
+    const AnchoredHead out = anchor.update(head, &body, noise);
+    ASSERT_TRUE(std::isfinite(out.head.T_world_camera.translation.sum()));
+    ASSERT_TRUE(std::isfinite(out.lasting.sum() + out.fresh.sum()));
+  }
+}
+
+TEST(HeadAnchor, GivesTheSameBitsEverywhere) {
+  const HeadNoise noise;
+  test::Random random(10);
+  const Pose body_truth{random.rotation(), Vector3(0.1, 0.05, 0.6)};
+  HeadAnchor anchor;
+  test::BitHash hash;
+  HeadPose head;
+  head.valid = true;
+  for (int frame = 0; frame < 300; ++frame) {
+    head.time = Time{} + milliseconds(22) * frame;
+    head.T_world_camera.translation += random.vector(0.0005);
+    const UncertainPose body =
+        test::measured_pose(body_truth, {}, k_body_shift_sigma, k_body_turn_sigma, random);
+    const AnchoredHead out = anchor.update(head, frame % 50 < 40 ? &body : nullptr, noise);
+    hash.add(out.head.T_world_camera);
+    for (int i = 0; i < 6; ++i) hash.add(out.lasting(i, 5 - i) + out.fresh(i, i));
+  }
+  EXPECT_EQ(hash.value(), 13444808633157344800u);
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,169 @@
+#include "nodes/follow_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "nodes/anchor_head.hpp"
+#include "nodes/track_tools.hpp"
+#include "tests/unit/kernels/motion/motion_scene.hpp"
+
+namespace glint {
+namespace {
+
+constexpr double k_shift_sigma = 0.0005, k_turn_sigma = 0.004;
+
+class FollowMotion : public testing::Test {
+ protected:
+  using Followed = graph::Parts<FollowedTools, k_tool_slices>;
+
+  FollowMotion() {
+    Tool& tool = set_->items[0];
+    tool.marker_count = 3;
+    tool.markers_m = {Vector3(0, 0, 0.1), Vector3(0.06, 0, 0.1), Vector3(0, 0.06, 0.16)};
+    set_->count = 1;
+    tools_.set(*set_, 1, 0);
+    anchor_.now.head.valid = true;
+    anchor_.now.head.T_world_camera = {random_.rotation(), Vector3(1, 2, 3)};
+    T_camera_tool_ = {random_.rotation(), Vector3(0, 0, 0.5)};
+  }
+  // Gives the frame to the node; what it then knows becomes what it knew.
+  void frame(bool found = true) {
+    *followed_ = tried(found);
+    (*last_)[0] = *followed_;
+    ++number_;
+  }
+  FollowedTools tried(bool found = true, const Vector3& aside = Vector3::Zero()) {
+    FrameVerdict verdict;
+    verdict.reason = refused_ ? Reason::frame_late : Reason::none;
+    verdict.stamp.mid_exposure = Time{} + milliseconds(22) * number_;
+    FittedTool& tool = (*fitted_)[0].tools[0];
+    tool.reason = found ? Reason::none : Reason::no_labeling;
+    const UncertainPose seen =
+        test::measured_pose(T_camera_tool_, {}, k_shift_sigma, k_turn_sigma, random_);
+    tool.T_camera_tool = {seen.pose.rotation, seen.pose.translation + aside};
+    tool.covariance = seen.covariance;
+    FollowedTools out;
+    node_(verdict, anchor_, tools_, *fitted_, graph::Previous<Followed>(*last_), {0, k_tool_slices},
+          out);
+    return out;
+  }
+  const FollowedTool& tool() { return followed_->items[0]; }
+
+  test::Random random_{1};
+  std::unique_ptr<ToolSet> set_ = std::make_unique<ToolSet>();
+  graph::Latest<ToolSet> tools_;
+  Anchor anchor_;
+  Pose T_camera_tool_;
+  bool refused_ = false;
+  int number_ = 1;
+  std::unique_ptr<graph::Parts<FittedTools, k_tool_slices>> fitted_ =
+      std::make_unique<graph::Parts<FittedTools, k_tool_slices>>();
+  std::unique_ptr<Followed> last_ = std::make_unique<Followed>();
+  std::unique_ptr<FollowedTools> followed_ = std::make_unique<FollowedTools>();
+  glint::FollowMotion node_;
+};
+
+TEST_F(FollowMotion, KnowsARestingToolsMiddleInTheWorldBetterThanOneFrameCan) {
+  for (int i = 0; i < 90; ++i) frame();
+  const Pose T_world_tool = anchor_.now.head.T_world_camera * T_camera_tool_;
+  const Vector3 middle = T_world_tool * set_->items[0].middle_m();
+  EXPECT_TRUE(tool().motion.rests());
+  EXPECT_LT((tool().estimate.pose.translation - middle).norm(), 0.0003);
+  EXPECT_LT(test::angle_between(tool().estimate.pose.rotation, T_world_tool.rotation), 0.002);
+  EXPECT_LT(tool().estimate.covariance(0, 0), 0.1 * k_shift_sigma * k_shift_sigma);
+}
+
+TEST_F(FollowMotion, FollowsAToolThatMoves) {
+  for (int i = 0; i < 60; ++i) {
+    T_camera_tool_.translation.x() = -0.2 + 0.3 * 0.022 * i;
+    frame();
+  }
+  const Vector3 velocity = anchor_.now.head.T_world_camera.rotation * Vector3(0.3, 0, 0);
+  EXPECT_LT((tool().estimate.velocity_m_s - velocity).norm(), 0.1);
+}
+
+TEST_F(FollowMotion, IsAsIfAnAbandonedFrameHadNeverBeen) {
+  for (int i = 0; i < 200; ++i) {
+    const Vector3 aside = i % 2 == 0 ? Vector3(0.5, 0, 0) : Vector3(0, 0.004, 0);
+    if (number_ > 1) (void)tried(true, aside);
+    frame();
+  }
+  EXPECT_TRUE(tool().motion.rests()) << "the steps aside ended no rest";
+  const Pose T_world_tool = anchor_.now.head.T_world_camera * T_camera_tool_;
+  const Vector3 middle = T_world_tool * set_->items[0].middle_m();
+  EXPECT_LT((tool().estimate.pose.translation - middle).norm(), 0.0003);
+}
+
+TEST_F(FollowMotion, LeavesWhatItKnowsWhereAFrameIsRefusedOrShowsNothing) {
+  for (int i = 0; i < 20; ++i) frame();
+  const MotionState before = tool().estimate;
+  refused_ = true;
+  frame();
+  EXPECT_EQ(tool().reason, Reason::frame_late);
+  EXPECT_EQ(tool().estimate.pose.translation, before.pose.translation);
+  refused_ = false;
+  frame(false);
+  EXPECT_EQ(tool().reason, Reason::no_labeling);
+  EXPECT_EQ(tool().estimate.time, before.time);
+  frame();
+  EXPECT_EQ(tool().reason, Reason::none);
+  EXPECT_GT(tool().estimate.time, before.time);
+}
+
+TEST_F(FollowMotion, BeginsAnewInTheCamerasFrameWhenTheHeadsPoseGoesMissing) {
+  for (int i = 0; i < 60; ++i) frame();
+  anchor_.now.head.valid = false;
+  frame();
+  EXPECT_EQ(tool().base, ReferenceFrame::camera);
+  EXPECT_FALSE(tool().motion.rests());
+  EXPECT_LT((tool().estimate.pose.translation - T_camera_tool_ * set_->items[0].middle_m()).norm(),
+            0.005);
+}
+
+TEST_F(FollowMotion, GoesOnRestingWhenTheWorldIsFoundToLieElsewhere) {
+  for (int i = 0; i < 60; ++i) frame();
+  AnchoredHead& now = anchor_.now;
+  now.moved = {from_rotation_vector(Vector3(0, 0, 0.01)), Vector3(0.02, 0, 0)};
+  now.moved_along = true;
+  now.head.T_world_camera = now.moved * now.head.T_world_camera;
+  frame();
+  now.moved_along = false;
+  EXPECT_TRUE(tool().motion.rests());
+  const Vector3 middle = now.head.T_world_camera * T_camera_tool_ * set_->items[0].middle_m();
+  EXPECT_LT((tool().estimate.pose.translation - middle).norm(), 0.0005);
+}
+
+TEST_F(FollowMotion, CountsTheHeadsFreshErrorAmongTheNoise) {
+  for (int i = 0; i < 4; ++i) frame();
+  const double sure = tool().estimate.covariance(0, 0);
+  *last_ = {};
+  anchor_.now.fresh = Matrix6::Identity() * 4e-6;
+  for (int i = 0; i < 4; ++i) frame();
+  EXPECT_GT(tool().estimate.covariance(0, 0), 2 * sure);
+}
+
+TEST(TrackTools, GivesWhatTheHeadsetItselfIsOffByBesideTheMotionsCovariance) {
+  ToolSet set;
+  set.count = 1;
+  set.items[0].marker_count = 3;
+  graph::Latest<ToolSet> tools;
+  tools.set(set, 1, 0);
+  const auto fitted = std::make_unique<graph::Parts<FittedTools, k_tool_slices>>();
+  const auto followed = std::make_unique<graph::Parts<FollowedTools, k_tool_slices>>();
+  (*followed)[0].items[0].reason = Reason::none;
+  (*followed)[0].items[0].estimate.pose.translation = {1, 0, 0};
+  Anchor anchor;
+  anchor.now.head.valid = true;
+  anchor.now.lasting.diagonal() << Vector3::Constant(1e-6), Vector3::Constant(4e-6);
+  const auto last = std::make_unique<Estimates>(), out = std::make_unique<Estimates>();
+  glint::TrackTools node;
+  node({}, anchor, tools, *fitted, *followed, graph::Previous<Estimates>(*last), *out);
+  EXPECT_NEAR(out->tracks[0].head_covariance(1, 1), 5e-6, 1e-12);
+  anchor.now.head.valid = false;
+  node({}, anchor, tools, *fitted, *followed, graph::Previous<Estimates>(*last), *out);
+  EXPECT_TRUE(out->tracks[0].head_covariance.isZero()) << "in the camera's frame it is none";
+}
+
+}  // namespace
+}  // namespace glint
