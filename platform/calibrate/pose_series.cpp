@@ -11,7 +11,10 @@
 namespace glint {
 namespace {
 
-Tool named_tool(const std::string& name) { return name == "pen" ? default_pen() : load_tool(name); }
+Tool named_tool(const std::string& name) {
+  const std::optional<Tool> built_in = built_in_tool(name);
+  return built_in ? *built_in : load_tool(name);
+}
 
 void check(const PoseSource& source) {
   if (source.poses.empty() == source.points.empty()) {

@@ -326,8 +326,9 @@ void CellParser::read_tools(TomlReader& root) {
     return;
   }
   for (const std::string& name : cell.tool_files) {
+    const std::optional<Tool> built_in = built_in_tool(name);
     cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] =
-        name == "pen" ? default_pen() : load_tool(resolved(name, "tools"));
+        built_in ? *built_in : load_tool(resolved(name, "tools"));
   }
   // Topics, frames and columns are named after the tool.
   for (int t = 1; t < cell.tools.count; ++t) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "glint_default_pen.hpp"
+#include "glint_built_in_tools.hpp"
 #include "platform/cells/toml_reader.hpp"
 #include "platform/cells/tool_formats.hpp"
 #include "platform/input_error.hpp"
@@ -25,7 +25,15 @@ Tool load_tool(const std::string& path) {
   return tool_from_toml_text(content, path);
 }
 
-Tool default_pen() { return tool_from_toml_text(k_default_pen, "built-in pen"); }
+Tool default_pen() { return tool_from_toml_text(k_pen, "built-in pen"); }
+
+Tool reference_board() { return tool_from_toml_text(k_board, "built-in board"); }
+
+std::optional<Tool> built_in_tool(std::string_view name) {
+  if (name == "pen") return default_pen();
+  if (name == "board") return reference_board();
+  return std::nullopt;
+}
 
 std::string stem_of(const std::string& path) { return std::filesystem::path(path).stem().string(); }
 

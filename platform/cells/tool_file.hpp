@@ -1,6 +1,7 @@
 // Tools as users write them down, and as other makers' software does.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -18,5 +19,11 @@ namespace glint {
 
 // The pen of platform/cells/tools/pen.toml, built in.
 [[nodiscard]] Tool default_pen();
+
+// The board of platform/cells/tools/board.toml, built in: a reference that does not move.
+[[nodiscard]] Tool reference_board();
+
+// "pen" or "board" as they are built in; nothing for any other name.
+[[nodiscard]] std::optional<Tool> built_in_tool(std::string_view name);
 
 }  // namespace glint

@@ -98,8 +98,9 @@ int inspect_frame(const InspectArguments& arguments) {
     if (cell.tools.count == k_tools_max) {
       throw InputError("--tool " + file + ": expected at most " + std::to_string(k_tools_max));
     }
+    const std::optional<Tool> built_in = built_in_tool(file);
     cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] =
-        file == "pen" ? default_pen() : load_tool(file);
+        built_in ? *built_in : load_tool(file);
   }
 
   auto tracker = std::make_unique<Tracker>();

@@ -6,8 +6,9 @@
 // method by its own poses. Then
 //   static:  headset and pen still, an arm's length apart, k_static_frames samples;
 //   dynamic: both moving, k_dynamic_runs times k_dynamic_frames samples, each run aligned anew.
-// Both methods get the very same frames and head poses. A sample is a frame in which the method
-// measured the tool.
+// Both methods get the very same frames and head poses; Glint in a second row those of the same
+// scenario, noise and drift with a board on the table, to which it holds the headset's world. A
+// sample is a frame in which the method measured the tool.
 //
 // Figures: an error's position and rotation vector have three signed components along the
 // reference's axes; all of them are pooled into one column of 3 x samples. mean_abs is the mean of
@@ -54,8 +55,10 @@ struct MethodFigures {
   ErrorColumn position_mm;
   ErrorColumn angle_deg;
   double frames_per_s = 0;  // 1 / mean processing time of a frame here, one thread
-  int samples = 0;          // frames with a pose
-  int frames = 0;           // frames given, without the aligning ones
+  // Of the samples, those whose tip lies inside the 95 % ellipsoid that the method states.
+  std::optional<double> covered;
+  int samples = 0;  // frames with a pose
+  int frames = 0;   // frames given, without the aligning ones
 };
 
 // What the publication states.
@@ -78,13 +81,21 @@ struct ExperimentResult {
   ExperimentKind kind = ExperimentKind::still;
   bool quick = false;
   MethodFigures seed, glint;
-  ExperimentPath path;      // of the last run
-  std::string declared;     // every declared parameter, as text
-  std::string config_hash;  // FNV-1a of `declared`, 16 hexadecimal digits
+  MethodFigures glint_held;  // with the built-in board in view, as the reference that does not move
+  ExperimentPath path;       // of the last run
+  std::string declared;      // every declared parameter, as text
+  std::string config_hash;   // FNV-1a of `declared`, 16 hexadecimal digits
 };
 
 [[nodiscard]] ExperimentResult run_static(const ExperimentOptions& options);
 [[nodiscard]] ExperimentResult run_dynamic(const ExperimentOptions& options);
+
+// What Glint has to reach with a reference in view: mean absolute values.
+struct ExperimentBars {
+  double position_mm = 0, angle_deg = 0;
+};
+[[nodiscard]] ExperimentBars bars_of(ExperimentKind kind);
+[[nodiscard]] int missed_bars(const ExperimentResult& result);
 
 // The same on scenarios of one's own: of each, `aligning` frames align and all after them are
 // judged; the first `skipped` are not even rendered.

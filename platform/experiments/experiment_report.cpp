@@ -50,19 +50,31 @@ Json json_of(const MethodFigures& figures) {
           {"position_median_mm", figures.position_mm.summary.median},
           {"angle_median_deg", figures.angle_deg.summary.median},
           {"frames_per_s", figures.frames_per_s},
+          {"covered", or_null(figures.covered)},
           {"samples", figures.samples},
           {"frames", figures.frames},
           {"position_mm", spread_json(figures.position_mm)},
           {"angle_deg", spread_json(figures.angle_deg)}};
 }
 
-std::string row(const char* name, const std::optional<double>& published, double seed, double glint,
-                int decimals) {
-  char cell[32] = "-", line[128];
-  if (published) std::snprintf(cell, sizeof cell, "%.*f", decimals, *published);
-  std::snprintf(line, sizeof line, "  %-34s %12s %12.*f %12.*f\n", name, cell, decimals, seed,
-                decimals, glint);
-  return line;
+// The figures of one row; nothing where a column has none.
+struct Row {
+  std::optional<double> published, seed, glint, held;
+};
+
+std::string row(const char* name, const Row& figures, int decimals) {
+  char line[64];
+  std::snprintf(line, sizeof line, "  %-34s", name);
+  std::string text = line;
+  for (const auto& figure : {figures.published, figures.seed, figures.glint, figures.held}) {
+    if (figure) {
+      std::snprintf(line, sizeof line, " %12.*f", decimals, *figure);
+    } else {
+      std::snprintf(line, sizeof line, " %12s", "-");
+    }
+    text += line;
+  }
+  return text + '\n';
 }
 
 HistogramSeries series_of(const std::string& name, const ErrorColumn& column) {
@@ -89,41 +101,63 @@ std::string experiment_json(const ExperimentResult& result) {
   json["published"] = json_of(published_figures(result.kind));
   json["seed"] = json_of(result.seed);
   json["glint"] = json_of(result.glint);
+  json["glint_held"] = json_of(result.glint_held);
+  const ExperimentBars bars = bars_of(result.kind);
+  json["bars"] = {{"position_mean_abs_mm", bars.position_mm},
+                  {"angle_mean_abs_deg", bars.angle_deg},
+                  {"missed", missed_bars(result)}};
   json["declared"] = Json::parse(result.declared);
   return json.dump(2) + '\n';
 }
 
 std::string experiment_table(const ExperimentResult& result) {
   const PublishedFigures published = published_figures(result.kind);
-  const MethodFigures &seed = result.seed, &glint = result.glint;
+  const MethodFigures &seed = result.seed, &glint = result.glint, &held = result.glint_held;
   const auto fit_sd = [](const ErrorColumn& column) {
     return column.fit.valid ? column.fit.sd : 0;
   };
   std::string text = "Experiment " + name_of(result.kind) + (result.quick ? " (quick)" : "") +
                      ", parameters " + result.config_hash + '\n';
   char heading[128];
-  std::snprintf(heading, sizeof heading, "  %-34s %12s %12s %12s\n", "", "published", "seed here",
-                "Glint here");
+  std::snprintf(heading, sizeof heading, "  %-34s %12s %12s %12s %12s\n", "", "published",
+                "seed here", "Glint here", "with board");
   text += heading;
-  const auto block = [&](const char* unit, const ErrorColumn& s, const ErrorColumn& g,
-                         double mean_abs, const std::optional<double>& sd,
-                         const std::optional<double>& median) {
+  const auto block = [&](const char* unit, ErrorColumn MethodFigures::*column, double mean_abs,
+                         const std::optional<double>& sd, const std::optional<double>& median) {
+    const ErrorColumn &s = seed.*column, &g = glint.*column, &h = held.*column;
     const std::string of = std::string(" [") + unit + "]";
     const std::string what = unit == std::string("mm") ? "position " : "angle ";
-    text += row((what + "mean absolute" + of).c_str(), mean_abs, s.summary.mean_abs,
-                g.summary.mean_abs, 2);
-    text += row((what + "standard deviation" + of).c_str(), sd, s.summary.sd, g.summary.sd, 2);
-    text += row((what + "median" + of).c_str(), median, s.summary.median, g.summary.median, 2);
-    text += row((what + "Gaussian fit, sd" + of).c_str(), std::nullopt, fit_sd(s), fit_sd(g), 2);
-    text += row((what + "mean length" + of).c_str(), std::nullopt, s.norm_mean, g.norm_mean, 2);
+    text += row((what + "mean absolute" + of).c_str(),
+                {mean_abs, s.summary.mean_abs, g.summary.mean_abs, h.summary.mean_abs}, 2);
+    text += row((what + "standard deviation" + of).c_str(),
+                {sd, s.summary.sd, g.summary.sd, h.summary.sd}, 2);
+    text += row((what + "median" + of).c_str(),
+                {median, s.summary.median, g.summary.median, h.summary.median}, 2);
+    text += row((what + "Gaussian fit, sd" + of).c_str(),
+                {std::nullopt, fit_sd(s), fit_sd(g), fit_sd(h)}, 2);
+    text += row((what + "mean length" + of).c_str(),
+                {std::nullopt, s.norm_mean, g.norm_mean, h.norm_mean}, 2);
   };
-  block("mm", seed.position_mm, glint.position_mm, published.position_mean_abs_mm,
-        published.position_sd_mm, published.position_median_mm);
-  block("deg", seed.angle_deg, glint.angle_deg, published.angle_mean_abs_deg,
-        published.angle_sd_deg, published.angle_median_deg);
-  text += row("frames a second", published.frames_per_s, seed.frames_per_s, glint.frames_per_s, 0);
-  text += row("samples", published.samples, seed.samples, glint.samples, 0);
-  text += row("frames", std::nullopt, seed.frames, glint.frames, 0);
+  block("mm", &MethodFigures::position_mm, published.position_mean_abs_mm, published.position_sd_mm,
+        published.position_median_mm);
+  block("deg", &MethodFigures::angle_deg, published.angle_mean_abs_deg, published.angle_sd_deg,
+        published.angle_median_deg);
+  text += row("inside the 95 % ellipsoid",
+              {std::nullopt, seed.covered, glint.covered, held.covered}, 3);
+  text +=
+      row("frames a second",
+          {published.frames_per_s, seed.frames_per_s, glint.frames_per_s, held.frames_per_s}, 0);
+  const auto count = [](int n) { return std::optional<double>(n); };
+  text +=
+      row("samples",
+          {published.samples, count(seed.samples), count(glint.samples), count(held.samples)}, 0);
+  text +=
+      row("frames", {std::nullopt, count(seed.frames), count(glint.frames), count(held.frames)}, 0);
+  const ExperimentBars bars = bars_of(result.kind);
+  char bar[128];
+  std::snprintf(bar, sizeof bar, "  bars with the board: %.1f mm, %.1f deg mean absolute: %s\n",
+                bars.position_mm, bars.angle_deg, missed_bars(result) == 0 ? "met" : "MISSED");
+  text += bar;
   text +=
       "  Errors of the tip in the headset's world against the reference tracker: x, y and z "
       "pooled;\n"

@@ -6,6 +6,7 @@
 namespace glint {
 namespace {
 
+constexpr double k_inside = 7.815;  // chi square of 3 degrees of freedom, 95 %
 constexpr double k_mm = 1000;
 constexpr double k_degrees = 180 / 3.14159265358979323846;
 
@@ -20,9 +21,8 @@ void MethodRecord::begin_run() {
   aligned_ = false;
 }
 
-PosePair MethodRecord::pair_of(const sim::SimFrame& frame, const Pose& T_camera_tool) const {
-  return {frame.reference.front() * T_tool_tip_,
-          frame.head.T_world_camera * T_camera_tool * T_tool_tip_};
+PosePair MethodRecord::pair_of(const sim::SimFrame& frame, const Pose& T_world_tip) const {
+  return {frame.reference.front() * T_tool_tip_, T_world_tip};
 }
 
 void MethodRecord::take_time(double seconds) {
@@ -30,13 +30,13 @@ void MethodRecord::take_time(double seconds) {
   ++timed_;
 }
 
-void MethodRecord::take_aligning(const sim::SimFrame& frame, const Result<Pose>& answer,
+void MethodRecord::take_aligning(const sim::SimFrame& frame, const Result<UncertainPose>& answer,
                                  double seconds) {
   take_time(seconds);
-  if (answer && frame.head.valid) aligning_.push_back(pair_of(frame, answer.value));
+  if (answer && frame.head.valid) aligning_.push_back(pair_of(frame, answer.value.pose));
 }
 
-void MethodRecord::take_judged(const sim::SimFrame& frame, const Result<Pose>& answer,
+void MethodRecord::take_judged(const sim::SimFrame& frame, const Result<UncertainPose>& answer,
                                double seconds) {
   take_time(seconds);
   ++frames_;
@@ -49,8 +49,15 @@ void MethodRecord::take_judged(const sim::SimFrame& frame, const Result<Pose>& a
     aligned_ = true;
   }
   ++samples_;
-  const PosePair pair = pair_of(frame, answer.value);
+  const PosePair pair = pair_of(frame, answer.value.pose);
   const PoseError error = pose_error(T_reference_world_, pair);
+  if (answer.value.covariance.trace() > 0) {
+    const Matrix3 turn = T_reference_world_.rotation.toRotationMatrix();
+    const Matrix3 covariance =
+        turn * answer.value.covariance.topLeftCorner<3, 3>() * turn.transpose();
+    ++stated_;
+    covered_ += error.position_m.dot(covariance.inverse() * error.position_m) <= k_inside ? 1 : 0;
+  }
   for (int axis = 0; axis < 3; ++axis) {
     position_mm_.push_back(error.position_m[axis] * k_mm);
     angle_deg_.push_back(error.rotation_rad[axis] * k_degrees);
@@ -66,6 +73,7 @@ MethodFigures MethodRecord::figures() const {
   figures.position_mm = make_error_column(position_mm_, position_norm_mm_);
   figures.angle_deg = make_error_column(angle_deg_, angle_norm_deg_);
   figures.frames_per_s = seconds_ > 0 ? timed_ / seconds_ : 0;
+  if (stated_ > 0) figures.covered = static_cast<double>(covered_) / stated_;
   figures.samples = samples_;
   figures.frames = frames_;
   return figures;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "kernels/motion/motion_state.hpp"
 #include "kernels/result.hpp"
 #include "platform/experiments/alignment.hpp"
 #include "platform/experiments/experiment.hpp"
@@ -17,9 +18,11 @@ class MethodRecord {
 
   // A new run: aligned anew.
   void begin_run();
-  // One frame's answer (T_camera_tool or a reason), while both rest or afterwards.
-  void take_aligning(const sim::SimFrame& frame, const Result<Pose>& answer, double seconds);
-  void take_judged(const sim::SimFrame& frame, const Result<Pose>& answer, double seconds);
+  // One frame's answer, while both rest or afterwards: T_world_tip, with its covariance or zero
+  // where the method states none, or a reason.
+  void take_aligning(const sim::SimFrame& frame, const Result<UncertainPose>& answer,
+                     double seconds);
+  void take_judged(const sim::SimFrame& frame, const Result<UncertainPose>& answer, double seconds);
 
   [[nodiscard]] MethodFigures figures() const;
   // The tip in the reference's frame, for each judged frame of the run at hand; not finite where
@@ -27,7 +30,7 @@ class MethodRecord {
   [[nodiscard]] const std::vector<Vector3>& path_m() const { return path_m_; }
 
  private:
-  [[nodiscard]] PosePair pair_of(const sim::SimFrame& frame, const Pose& T_camera_tool) const;
+  [[nodiscard]] PosePair pair_of(const sim::SimFrame& frame, const Pose& T_world_tip) const;
   void take_time(double seconds);
 
   std::string name_;
@@ -38,7 +41,7 @@ class MethodRecord {
   std::vector<double> position_mm_, position_norm_mm_, angle_deg_, angle_norm_deg_;
   std::vector<Vector3> path_m_;
   double seconds_ = 0;
-  int timed_ = 0, frames_ = 0, samples_ = 0;
+  int timed_ = 0, frames_ = 0, samples_ = 0, stated_ = 0, covered_ = 0;
 };
 
 }  // namespace glint

@@ -26,6 +26,7 @@ sim::Scenario scenario_of(const Cell& cell) {
     scenario.signal = sensor.signal;
     scenario.localisation = sensor.localisation;
   }
+  if (cell.reference >= 0) sim::lay_on_table(scenario, static_cast<std::size_t>(cell.reference));
   if (!settings.background.empty()) {
     const FrameBuffer frame =
         load_frame(settings.background, frame_file_layout_of(settings.background_layout));

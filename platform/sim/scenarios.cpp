@@ -11,6 +11,7 @@ namespace {
 // An arm's length ahead and below the eyes; world: x ahead, y left, z up, origin at the camera.
 const Vector3 k_camera_m{0, 0, 0};
 const Vector3 k_workplace_m{0.44, 0, -0.2};
+const Vector3 k_table_m{0.52, 0.16, -0.34};
 constexpr double k_tool_gap_m = 0.3;  // between several tools, side by side
 
 Vector3 place_of(int tool) {
@@ -78,6 +79,18 @@ Scenario still_run(const Camera& camera, const std::vector<Tool>& tools) {
   scenario.room = furnished_room();
   hold_still(scenario, tools_or_pen(tools));
   return scenario;
+}
+
+void lay_on_table(Scenario& scenario, std::size_t tool) {
+  ToolBody& body = scenario.tools.at(tool);
+  Matrix3 axes;  // the tool's, in the world: z off the table, 30 degrees towards the camera
+  axes.col(2) = Vector3(-0.5, 0, 0.8660254037844386);
+  axes.col(0) = -Vector3::UnitY();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  const Quaternion rotation = Quaternion(axes).normalized();
+  body.motion = fixed_motion({rotation, k_table_m - rotation * middle_of(body.tool)});
+  body.disc_normal = Vector3::UnitZ();
+  body.parts.clear();
 }
 
 Scenario default_run(const std::vector<Tool>& tools) {

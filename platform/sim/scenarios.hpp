@@ -21,6 +21,10 @@ inline constexpr int k_dynamic_runs = 5;
 // The same place without events, clutter or motion.
 [[nodiscard]] Scenario still_run(const Camera& camera, const std::vector<Tool>& tools = {});
 
+// Puts one of the scenario's tools on the table beside the workplace, free of any hand, where it
+// stays: a reference.
+void lay_on_table(Scenario& scenario, std::size_t tool);
+
 // Recorded motion: the head's as recorded, the first tool's in the camera's frame, at arm's length,
 // scaled. Other tools rest in the world.
 [[nodiscard]] Scenario trajectory_run(const Camera& camera, const std::vector<Tool>& tools,

@@ -20,8 +20,14 @@ sim::SimFrame frame_with(const Pose& T_reference_tool) {
   return frame;
 }
 
-Result<Pose> shifted(const Pose& pose, const Vector3& by) {
-  return {{pose.rotation, pose.translation + by}};
+// The tip's pose, as a method that states no covariance has it.
+Result<UncertainPose> answered(const Pose& T_world_tool, Reason reason = Reason::none) {
+  const Pose T_tool_tip{Quaternion::Identity(), small_tool().tip_m};
+  return {{{}, T_world_tool * T_tool_tip, Matrix6::Zero()}, reason};
+}
+
+Result<UncertainPose> shifted(const Pose& pose, const Vector3& by) {
+  return answered({pose.rotation, pose.translation + by});
 }
 
 const Pose k_pose = turned(0.1, 0.2, 0.3, {0.1, 0.2, 0.5});
@@ -46,12 +52,12 @@ TEST(MethodRecord, JudgesAgainstWhatTheRestAligned) {
 TEST(MethodRecord, CountsAFrameWithoutAPoseAsNoSample) {
   MethodRecord record("any", small_tool());
   record.begin_run();
-  record.take_aligning(frame_with(k_pose), {k_pose}, 1);
-  record.take_judged(frame_with(k_pose), {k_pose, Reason::no_labeling}, 1);
+  record.take_aligning(frame_with(k_pose), answered(k_pose), 1);
+  record.take_judged(frame_with(k_pose), answered(k_pose, Reason::no_labeling), 1);
   sim::SimFrame no_head = frame_with(k_pose);
   no_head.head.valid = false;
-  record.take_judged(no_head, {k_pose}, 1);
-  record.take_judged(frame_with(k_pose), {k_pose}, 1);
+  record.take_judged(no_head, answered(k_pose), 1);
+  record.take_judged(frame_with(k_pose), answered(k_pose), 1);
   EXPECT_EQ(record.figures().frames, 3);
   EXPECT_EQ(record.figures().samples, 1);
   ASSERT_EQ(record.path_m().size(), 3u);  // a gap for each frame without
@@ -59,11 +65,25 @@ TEST(MethodRecord, CountsAFrameWithoutAPoseAsNoSample) {
   EXPECT_TRUE(record.path_m()[2].allFinite());
 }
 
+TEST(MethodRecord, CountsHowOftenTheStatedEllipsoidHoldsTheTip) {
+  MethodRecord record("any", small_tool());
+  record.begin_run();
+  for (int i = 0; i < 5; ++i) record.take_aligning(frame_with(k_pose), answered(k_pose), 1);
+  Result<UncertainPose> answer = shifted(k_pose, {0, 0.001, 0});
+  record.take_judged(frame_with(k_pose), answer, 1);
+  EXPECT_FALSE(record.figures().covered.has_value()) << "it stated none";
+  answer.value.covariance = Matrix6::Identity() * 1e-6;
+  record.take_judged(frame_with(k_pose), answer, 1);
+  answer.value.covariance *= 0.1;
+  record.take_judged(frame_with(k_pose), answer, 1);
+  EXPECT_EQ(record.figures().covered, 0.5);
+}
+
 TEST(MethodRecord, AlignsEachRunAnew) {
   MethodRecord record("any", small_tool());
   for (const double offset : {0.01, -0.02}) {
     record.begin_run();
-    const Result<Pose> answer = shifted(k_pose, Vector3(offset, 0, 0));
+    const Result<UncertainPose> answer = shifted(k_pose, Vector3(offset, 0, 0));
     for (int i = 0; i < 5; ++i) record.take_aligning(frame_with(k_pose), answer, 1);
     for (int i = 0; i < 5; ++i) record.take_judged(frame_with(k_pose), answer, 1);
   }
@@ -89,7 +109,8 @@ TEST(Experiment, GivesBothMethodsTheSameFramesAndTheSameFiguresAgain) {
   const ExperimentResult a = run_experiment(ExperimentKind::moving, {short_run()}, options);
   const ExperimentResult b = run_experiment(ExperimentKind::moving, {short_run()}, {});
   EXPECT_EQ(progress.back(), 24);
-  for (const auto& [first, second] : {std::pair(&a.seed, &b.seed), std::pair(&a.glint, &b.glint)}) {
+  for (const auto& [first, second] : {std::pair(&a.seed, &b.seed), std::pair(&a.glint, &b.glint),
+                                      std::pair(&a.glint_held, &b.glint_held)}) {
     EXPECT_EQ(first->frames, 12);
     EXPECT_GE(first->samples, 10);
     EXPECT_LT(first->position_mm.norm_mean, 100);  // it measured the tool, whatever drifted
@@ -128,7 +149,8 @@ TEST(Experiment, WritesPublishedSeedAndGlintSideBySide) {
   EXPECT_EQ(json["seed"]["position_mm"]["norm_mean"], 4.0);
   result.kind = ExperimentKind::moving;
   const std::string table = experiment_table(result);
-  for (const char* words : {"22.10", "30.70", "5.39", "-0.10", "0.22", "seed here", "Glint here"})
+  for (const char* words :
+       {"22.10", "30.70", "5.39", "-0.10", "0.22", "seed here", "Glint here", "with board"})
     EXPECT_NE(table.find(words), std::string::npos) << words;
 }
 
