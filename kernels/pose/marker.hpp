@@ -22,7 +22,7 @@ enum MarkerFlag : std::uint8_t {
 // The marker's surface point is ray * surface_range_m. A sphere's centre lies its radius further
 // along the ray, a disc's at the surface: which of the two is the tool's affair.
 struct Marker {
-  Vector3 ray = Vector3::UnitZ();         // unit, camera frame
+  Vector3 ray = Vector3::UnitZ();  // unit, camera frame
   // How the ray turns where the centroid moves by a pixel, at right angles to it. Zero: not known,
   // as of a point without an image.
   Vector3 along_x = Vector3::Zero(), along_y = Vector3::Zero();

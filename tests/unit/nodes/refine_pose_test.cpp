@@ -121,7 +121,7 @@ TEST_F(RefinePose, BeatsTheRigidFitOnNoisyMarkersAndSaysHowSureItIs) {
   std::printf("  tip: %.2f mm rms, %.2f of the rigid fit's; NEES/6 %.3f\n",
               1e3 * std::sqrt(squares / k_trials), part, nees);
   EXPECT_LT(part, 0.7);
-  EXPECT_LE(left_out, 3);  // 0.3 by chi-square's tail
+  EXPECT_LE(left_out, 3);      // 0.3 by chi-square's tail
   EXPECT_NEAR(nees, 1, 0.05);  // 3,000 means of six squares: 0.01, 1 sigma
 }
 

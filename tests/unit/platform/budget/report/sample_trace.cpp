@@ -24,7 +24,7 @@ constexpr SampleNode k_frame_nodes[] = {
     {"FindBlobs", 0, 81.5, 6.2, 58},       {"BackProject", 0, 139.5, 4.4, 33},
     {"Correspond#0", 0, 172.5, 5.1, 71},   {"Correspond#1", 1, 172.5, 4.6, 71},
     {"AssignMarkers", 0, 243.5, 1.2, 8.5}, {"RefinePose#0", 0, 252, 3.9, 27},
-    {"RefinePose#1", 1, 252, 3.4, 27},       {"TrackTools", 0, 279, 2.3, 14}};
+    {"RefinePose#1", 1, 252, 3.4, 27},     {"TrackTools", 0, 279, 2.3, 14}};
 constexpr SampleNode k_tick_nodes[] = {{"PredictTools", 0, 0, 2.1, 12}, {"PackCan", 0, 12, 1.4, 6}};
 
 std::int64_t ns(double us) { return std::llround(us * 1e3); }
