@@ -18,7 +18,6 @@
 namespace glint {
 namespace {
 
-constexpr double k_radians_per_degree = 3.14159265358979323846 / 180.0;
 
 // ${NAME} becomes the environment's NAME; a relative path starts at the cell file's folder.
 std::string opened_path(const std::string& path, const std::string& key, const std::string& cell) {

@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "kernels/geometry.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {

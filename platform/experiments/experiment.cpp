@@ -117,7 +117,9 @@ ExperimentResult run_experiment(ExperimentKind kind, const std::vector<Experimen
   for (const ExperimentRun& run : runs) total += run.aligning + run.judged;
 
   const Tool tool = runs.front().scenario.tools.front().tool;
-  MethodRecord seed("seed", tool), glint("glint", tool), held("glint, held to a board", tool);
+  const sim::ReferenceSettings& judge = runs.front().scenario.reference;
+  MethodRecord seed("seed", tool, judge), glint("glint", tool, judge),
+      held("glint, held to a board", tool, judge);
   sim::SimFrame frame, with_board;
   for (const ExperimentRun& run : runs) {
     const sim::Simulator simulator(run.scenario), board_simulator(with_reference(run.scenario));
@@ -136,8 +138,9 @@ ExperimentResult run_experiment(ExperimentKind kind, const std::vector<Experimen
       const auto seed_answer = timed([&]() -> Result<UncertainPose> {
         const SeedResult answer = seed_tracker.process(frame.view(), frame.head);
         const Pose T_tool_tip{Quaternion::Identity(), tool.tip_m};
-        return {{{}, frame.head.T_world_camera * answer.T_camera_tool * T_tool_tip, {}},
-                answer.reason};
+        return {
+            {{}, frame.head.T_world_camera * answer.T_camera_tool * T_tool_tip, Matrix6::Zero()},
+            answer.reason};
       });
       const auto followed = [](GlintChain& chain, const sim::SimFrame& seen) {
         return timed([&] {

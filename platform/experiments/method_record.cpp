@@ -12,8 +12,13 @@ constexpr double k_degrees = 180 / 3.14159265358979323846;
 
 }  // namespace
 
-MethodRecord::MethodRecord(std::string name, const Tool& tool)
-    : name_(std::move(name)), T_tool_tip_{Quaternion::Identity(), tool.tip_m} {}
+MethodRecord::MethodRecord(std::string name, const Tool& tool,
+                           const sim::ReferenceSettings& reference)
+    : name_(std::move(name)), T_tool_tip_{Quaternion::Identity(), tool.tip_m} {
+  const double by_angle = reference.angle_sigma_rad * tool.tip_m.norm();
+  reference_variance_m2_ =
+      reference.position_sigma_m * reference.position_sigma_m + by_angle * by_angle;
+}
 
 void MethodRecord::begin_run() {
   aligning_.clear();
@@ -54,7 +59,8 @@ void MethodRecord::take_judged(const sim::SimFrame& frame, const Result<Uncertai
   if (answer.value.covariance.trace() > 0) {
     const Matrix3 turn = T_reference_world_.rotation.toRotationMatrix();
     const Matrix3 covariance =
-        turn * answer.value.covariance.topLeftCorner<3, 3>() * turn.transpose();
+        turn * answer.value.covariance.topLeftCorner<3, 3>() * turn.transpose() +
+        reference_variance_m2_ * Matrix3::Identity();
     ++stated_;
     covered_ += error.position_m.dot(covariance.inverse() * error.position_m) <= k_inside ? 1 : 0;
   }

@@ -13,8 +13,8 @@ namespace glint {
 
 class MethodRecord {
  public:
-  // The tool's tip is what is judged.
-  MethodRecord(std::string name, const Tool& tool);
+  // The tool's tip is what is judged, by a reference tracker with noise of its own.
+  MethodRecord(std::string name, const Tool& tool, const sim::ReferenceSettings& reference);
 
   // A new run: aligned anew.
   void begin_run();
@@ -35,6 +35,7 @@ class MethodRecord {
 
   std::string name_;
   Pose T_tool_tip_;
+  double reference_variance_m2_ = 0;  // of the tip, an axis
   std::vector<PosePair> aligning_;
   bool aligned_ = false;
   Pose T_reference_world_;

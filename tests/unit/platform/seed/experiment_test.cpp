@@ -33,7 +33,7 @@ Result<UncertainPose> shifted(const Pose& pose, const Vector3& by) {
 const Pose k_pose = turned(0.1, 0.2, 0.3, {0.1, 0.2, 0.5});
 
 TEST(MethodRecord, JudgesAgainstWhatTheRestAligned) {
-  MethodRecord record("any", small_tool());
+  MethodRecord record("any", small_tool(), {0, 0, {}});
   record.begin_run();
   const Vector3 offset(0.01, 0, 0);  // the worlds' own difference: no error
   for (int i = 0; i < 20; ++i)
@@ -50,7 +50,7 @@ TEST(MethodRecord, JudgesAgainstWhatTheRestAligned) {
 }
 
 TEST(MethodRecord, CountsAFrameWithoutAPoseAsNoSample) {
-  MethodRecord record("any", small_tool());
+  MethodRecord record("any", small_tool(), {0, 0, {}});
   record.begin_run();
   record.take_aligning(frame_with(k_pose), answered(k_pose), 1);
   record.take_judged(frame_with(k_pose), answered(k_pose, Reason::no_labeling), 1);
@@ -66,7 +66,7 @@ TEST(MethodRecord, CountsAFrameWithoutAPoseAsNoSample) {
 }
 
 TEST(MethodRecord, CountsHowOftenTheStatedEllipsoidHoldsTheTip) {
-  MethodRecord record("any", small_tool());
+  MethodRecord record("any", small_tool(), {0, 0, {}});
   record.begin_run();
   for (int i = 0; i < 5; ++i) record.take_aligning(frame_with(k_pose), answered(k_pose), 1);
   Result<UncertainPose> answer = shifted(k_pose, {0, 0.001, 0});
@@ -80,7 +80,7 @@ TEST(MethodRecord, CountsHowOftenTheStatedEllipsoidHoldsTheTip) {
 }
 
 TEST(MethodRecord, AlignsEachRunAnew) {
-  MethodRecord record("any", small_tool());
+  MethodRecord record("any", small_tool(), {0, 0, {}});
   for (const double offset : {0.01, -0.02}) {
     record.begin_run();
     const Result<UncertainPose> answer = shifted(k_pose, Vector3(offset, 0, 0));
