@@ -5,6 +5,7 @@
 #include "platform/experiments/bound_experiment.hpp"
 #include "platform/experiments/centroid_experiment.hpp"
 #include "platform/experiments/cis_pivot.hpp"
+#include "platform/experiments/clutter_experiment.hpp"
 #include "platform/experiments/f2554.hpp"
 #include "platform/experiments/marker_mocap.hpp"
 #include "platform/experiments/motion_experiments.hpp"
@@ -33,6 +34,8 @@ std::span<const CaseExperiment> case_experiments() {
        run_bound},
       {"noise", "how often a tool is found, and wrongly, as the range noise grows", false,
        run_noise},
+      {"clutter", "five tools among up to 200 strays, and two tools that look alike", false,
+       run_clutter},
   };
   return k_experiments;
 }
