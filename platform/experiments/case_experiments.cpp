@@ -30,6 +30,8 @@ std::span<const CaseExperiment> case_experiments() {
        run_prediction},
       {"occlusion", "recorded motion with all markers but one or two hidden for 0.2 s", true,
        run_occlusion},
+      {"rates", "frames at 45, 5 and 45 Hz, dropped, doubled, late and stamped backwards", false,
+       run_rates},
       {"bound", "the pose of one frame beside the best that any estimator could do", false,
        run_bound},
       {"noise", "how often a tool is found, and wrongly, as the range noise grows", false,

@@ -21,4 +21,11 @@ namespace glint {
 // foretold?
 [[nodiscard]] CaseList run_occlusion(const CaseOptions& options);
 
+// A hand followed while the camera falls from 45 to 5 Hz and comes back, and while frames are
+// dropped, doubled, late and stamped backwards. Tracked through: at every tick the state is the one
+// that the newest frame with a true stamp gives, and the first frame after a gap makes the tool
+// measured again. Age honest: it is that frame's, to the nanosecond. Sigma honest: errors at ticks
+// are as large as foretold, to the tolerances of `occlusion`. A refused frame changes no bit.
+[[nodiscard]] CaseList run_rates(const CaseOptions& options);
+
 }  // namespace glint
