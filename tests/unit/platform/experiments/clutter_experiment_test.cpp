@@ -1,0 +1,121 @@
+#include "platform/experiments/clutter_experiment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+#include "platform/cells/tool_distinction.hpp"
+#include "platform/cells/tool_notices.hpp"
+#include "platform/experiments/clutter_scene.hpp"
+#include "platform/experiments/clutter_tally.hpp"
+
+namespace glint {
+namespace {
+
+const Duration k_lost_after = milliseconds(250);
+
+double value_of(const std::vector<Figure>& figures, const std::string& name) {
+  for (const Figure& figure : figures)
+    if (figure.name == name) return figure.value;
+  ADD_FAILURE() << "no figure " << name;
+  return -1;
+}
+
+// Two of the five tools, both whole and seen as they are.
+struct TwoSeen {
+  ToolSet tools = five_tools(1);
+  sim::SimTruth truth;
+  FrameOutcome outcome;
+
+  TwoSeen() {
+    tools.count = 2;
+    truth.T_world_tool = {{Quaternion::Identity(), Vector3(0, 0, 0.5)},
+                          {Quaternion::Identity(), Vector3(0.3, 0, 0.5)}};
+    truth.visible_mask = {0b11111, 0b1111};
+    for (std::size_t t = 0; t < 2; ++t)
+      outcome.tools[t] = {true, Reason::none, truth.visible_mask[t], truth.T_world_tool[t]};
+  }
+};
+
+TEST(ClutterTally, CountsToolsAsTheyAreAsTracked) {
+  const TwoSeen seen;
+  ClutterTally tally(seen.tools, k_lost_after);
+  tally.add(seen.outcome, seen.truth);
+  EXPECT_EQ(tally.visible(), 2);
+  EXPECT_EQ(tally.tracked(), 2);
+  EXPECT_EQ(tally.gross(), 0);
+  EXPECT_EQ(tally.swapped(), 0);
+}
+
+TEST(ClutterTally, CountsThreeMarkersAsVisibleOnlyWhereATrackIsYoung) {
+  TwoSeen seen;
+  seen.tools.count = 1;
+  ClutterTally tally(seen.tools, k_lost_after);
+  seen.truth.visible_mask[0] = 0b111;
+  seen.outcome.tools[0].seen = false;
+  seen.outcome.tools[0].reason = Reason::no_labeling;
+  tally.add(seen.outcome, seen.truth);
+  EXPECT_EQ(tally.visible(), 0);
+  tally.add(TwoSeen().outcome, seen.truth);  // tracked, at time 0
+  EXPECT_EQ(tally.visible(), 0);
+  seen.truth.mid_exposure = Time{} + k_lost_after;
+  tally.add(seen.outcome, seen.truth);
+  EXPECT_EQ(tally.visible(), 1);
+  EXPECT_EQ(value_of(tally.figures({}, {}), "missed_no_labeling"), 1);
+  seen.truth.mid_exposure = seen.truth.mid_exposure + Duration{1};
+  tally.add(seen.outcome, seen.truth);
+  EXPECT_EQ(tally.visible(), 1);
+}
+
+TEST(ClutterTally, CallsAPoseGrossThatIsFarOffOrTurned) {
+  TwoSeen seen;
+  ClutterTally tally(seen.tools, k_lost_after);
+  seen.outcome.tools[0].T_camera_tool.translation.z() += 0.021;
+  seen.outcome.tools[1].T_camera_tool.translation.z() += 0.019;
+  tally.add(seen.outcome, seen.truth);
+  EXPECT_EQ(tally.gross(), 1);
+  EXPECT_EQ(tally.swapped(), 0);
+}
+
+TEST(ClutterTally, CallsSwappedOnlyWhatLiesOnAnotherTool) {
+  TwoSeen seen;
+  seen.tools.items[0] = seen.tools.items[1];
+  ClutterTally tally(seen.tools, k_lost_after);
+  seen.outcome.tools[0].marker_mask = 0b1111;
+  seen.outcome.tools[0].T_camera_tool = seen.truth.T_world_tool[1];
+  seen.outcome.tools[1].T_camera_tool.translation.y() += 0.2;  // on none
+  tally.add(seen.outcome, seen.truth);
+  EXPECT_EQ(tally.gross(), 2);
+  EXPECT_EQ(tally.swapped(), 1);
+}
+
+TEST(ClutterScene, HasFiveToolsThatTheCellReaderTellsApart) {
+  for (const Likeness& likeness : distinguish(five_tools(1), {}).likenesses)
+    EXPECT_EQ(likeness.seen, likeness.other) << likeness.distance_sigmas;
+}
+
+TEST(ClutterScene, MakesToolsThatAreJustFarEnoughApart) {
+  for (const double sigmas : {k_refused_sigmas, k_distinct_sigmas}) {
+    double nearest = 1e9;
+    for (const Likeness& likeness : distinguish(nearly_equal_tools(sigmas), {0.0015, 9}).likenesses)
+      if (likeness.seen != likeness.other) nearest = std::min(nearest, likeness.distance_sigmas);
+    EXPECT_GT(nearest, sigmas);
+    EXPECT_LT(nearest, sigmas + 0.1);
+  }
+}
+
+TEST(ClutterScene, KeepsTheFirstStraysWhenThereAreMore) {
+  const ToolSet tools = five_tools(1);
+  const sim::Scenario few = cluttered_run(tools, 20, 10, 1), many = cluttered_run(tools, 50, 10, 1);
+  ASSERT_EQ(many.clutter.size(), 50u);
+  EXPECT_EQ(few.clutter[19].position_m, many.clutter[19].position_m);
+}
+
+TEST(ClutterExperiment, MeetsItsBarsInAQuickRun) {
+  const CaseList list = run_clutter({true, 1, ".", "", {}});
+  EXPECT_EQ(missed_bars(list), 0) << case_table(list);
+}
+
+}  // namespace
+}  // namespace glint
