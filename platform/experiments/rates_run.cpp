@@ -119,7 +119,7 @@ class GraphWay {
     configure(cell, *tracker_);
     configure(cell, *output_);
     tracker_->latest<ToolSet>().set(cell.tools, 1, 0);
-    tracker_->input<HeadPose>() = {true, {}};
+    tracker_->input<HeadPose>().valid = true;
     output_->latest<RobotFrame>().set({RegistrationState::given, {}, 0}, 1, 0);
   }
 
