@@ -32,6 +32,7 @@ void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
     }
     const Prediction& prediction = predictions.tools[i];
     gated.prior_gate_m = settings.prior_gate_m + prediction.reach_m;
+    gated.few_gate_m = prediction.reach_m + 3 * settings.range_sigma_m;
     gated.search_steps_max += limits.search_steps;
     const CorrespondWork work = propose_labelings(
         markers, tool, gated, prediction.has_prior ? &prediction.T_camera_tool : nullptr, scratch_,

@@ -8,7 +8,7 @@
 // Cost:     at most k_rest_levels tests of one 6x6 factor each, 0.4 us: 5 us.
 // Worst:    a full window that passes all tests.
 // Accuracy: the mean is exact for small rotations: a pose further than k_anchor_rad from the anchor
-//           begins a new window.
+//           begins a new window. Its covariance is the mean's and a hand's tremor.
 // Source:   two samples' means against each other by chi square, 6 degrees of freedom: Foerstner
 //           and Wrobel 2016, Photogrammetric Computer Vision, section 3.2.
 #pragma once

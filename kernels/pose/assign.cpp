@@ -32,7 +32,8 @@ int seek_free(const Labelings& labelings, const MarkerSet& taken, int& at) {
 
 bool is_better(const Labeling& a, const Labeling& b) {
   if (a.count != b.count) return a.count > b.count;
-  return a.rms_m < b.rms_m;
+  return a.count * a.rms_m * a.rms_m - a.predicted_worth_m2 <
+         b.count * b.rms_m * b.rms_m - b.predicted_worth_m2;
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 // Which tool gets which markers, when several tools claim the same ones.
 //
 // What:     in every round the best free labeling of all tools without one is taken: more markers
-//           before fewer, then the smaller rms, then the lower tool index. A labeling is free while
-//           none of its markers is taken.
+//           before fewer, then the smaller sum of squares less what a prediction that it agrees
+//           with is worth, then the lower tool index. A labeling is free while none of its markers
+//           is taken. So of two tools that are nearly equal the one that was there keeps its
+//           markers, also while the other is hidden and fits them too.
 // Cost:     a test of k_markers_per_tool_max markers for each labeling looked at. What is taken
 // stays
 //           taken, so a labeling found taken is never looked at again: each round looks once more

@@ -26,13 +26,17 @@ bool area_fits(const Marker& marker, double range_m, const Tool& tool,
   return area <= expected * settings.area_factor + k_area_slack_px;
 }
 
-// By tool marker: is `point` within the gate of where it is predicted?
-unsigned near_mask(const std::array<Vector3, k_markers_per_tool_max>& places, int count,
-                   const Vector3& point, double gate_m) {
-  unsigned mask = 0;
+// By tool marker: is `point` within each of the two gates of where it is predicted?
+struct NearMask {
+  unsigned near = 0, nearest = 0;
+};
+NearMask near_mask(const std::array<Vector3, k_markers_per_tool_max>& places, int count,
+                   const Vector3& point, double gate_m, double few_gate_m) {
+  NearMask mask;
   for (int j = 0; j < count; ++j) {
     const double square = (point - places[static_cast<std::size_t>(j)]).squaredNorm();
-    mask |= static_cast<unsigned>(square <= gate_m * gate_m) << j;
+    mask.near |= static_cast<unsigned>(square <= gate_m * gate_m) << j;
+    mask.nearest |= static_cast<unsigned>(square <= few_gate_m * few_gate_m) << j;
   }
   return mask;
 }
@@ -55,7 +59,8 @@ int select_candidates(const Markers& markers, const Tool& tool, const Correspond
     const auto slot = static_cast<std::size_t>(j);
     places[slot] = *prior_T_camera_tool * tool.markers_m[slot];
   }
-  std::array<std::uint8_t, k_blobs_max> near{};
+  std::array<std::uint8_t, k_blobs_max> near{}, nearest{};
+  const double few_gate_m = std::min(settings.few_gate_m, settings.prior_gate_m);
   std::size_t first_far = 0;  // candidates before it lie near the prediction
   const int count = std::clamp(markers.count, 0, settings.markers_max);
   for (int m = 0; m < count; ++m) {
@@ -73,19 +78,25 @@ int select_candidates(const Markers& markers, const Tool& tool, const Correspond
     candidates.ray[slot] = marker.ray;
     candidates.across_variance_m2[slot] = across * across;
     candidates.marker[slot] = static_cast<std::int16_t>(m);
-    const unsigned mask = near_mask(places, predicted, point, settings.prior_gate_m);
-    near[slot] = static_cast<std::uint8_t>(mask);
-    if (mask == 0) continue;
+    const NearMask mask = near_mask(places, predicted, point, settings.prior_gate_m, few_gate_m);
+    near[slot] = static_cast<std::uint8_t>(mask.near);
+    nearest[slot] = static_cast<std::uint8_t>(mask.nearest);
+    if (mask.near == 0) continue;
     swap_candidates(candidates, slot, first_far);
     std::swap(near[slot], near[first_far]);
+    std::swap(nearest[slot], nearest[first_far]);
     ++first_far;
   }
   candidates.words = (candidates.count + 63) / 64;
   candidates.near = {};
+  candidates.nearest = {};
   for (std::size_t a = 0; a < first_far; ++a) {
     for (int j = 0; j < predicted; ++j) {
-      const std::uint64_t bit = static_cast<std::uint64_t>((near[a] >> j) & 1) << (a % 64);
-      candidates.near[static_cast<std::size_t>(j)].word[a / 64] |= bit;
+      const auto slot = static_cast<std::size_t>(j);
+      candidates.near[slot].word[a / 64] |= static_cast<std::uint64_t>((near[a] >> j) & 1)
+                                            << (a % 64);
+      candidates.nearest[slot].word[a / 64] |= static_cast<std::uint64_t>((nearest[a] >> j) & 1)
+                                               << (a % 64);
     }
   }
   return count;

@@ -39,7 +39,8 @@ struct Candidates {
   std::array<std::int16_t, k_blobs_max> marker;        // index into Markers
   int count = 0;
   int words = 0;       // of a CandidateSet that are in use
-  CandidateSets near;  // of each tool marker: those within the gate of its predicted place
+  CandidateSets near;     // of each tool marker: those within the gate of its predicted place
+  CandidateSets nearest;  // likewise, within the gate of labelings that only a prediction allows
 };
 
 // The prior may be null. Returns the number of markers looked at.

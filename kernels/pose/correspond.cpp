@@ -38,13 +38,18 @@ bool agrees(const Labeling& labeling, const Tool& tool, const Pose& prior, doubl
 void prefer_predicted(Labelings& found, const Tool& tool, const CorrespondSettings& settings,
                       const Pose& prior) {
   if (found.count == 0) return;
+  const double worth_m2 = 9 * settings.range_sigma_m * settings.range_sigma_m;
+  for (int k = 0; k < found.count; ++k) {
+    Labeling& labeling = found.items[static_cast<std::size_t>(k)];
+    if (agrees(labeling, tool, prior, settings.prior_gate_m)) labeling.predicted_worth_m2 = worth_m2;
+  }
   const Labeling best = found.items[0];
-  const double slack = 9 * settings.range_sigma_m * settings.range_sigma_m / best.count;
+  const double slack = worth_m2 / best.count;
   for (int k = 0; k < found.count; ++k) {
     const Labeling candidate = found.items[static_cast<std::size_t>(k)];
     if (candidate.count != best.count) return;
     if (!(candidate.rms_m * candidate.rms_m - best.rms_m * best.rms_m <= slack)) return;
-    if (!agrees(candidate, tool, prior, settings.prior_gate_m)) continue;
+    if (candidate.predicted_worth_m2 == 0) continue;
     for (int m = k; m > 0; --m) {
       found.items[static_cast<std::size_t>(m)] = found.items[static_cast<std::size_t>(m - 1)];
     }
@@ -82,7 +87,9 @@ CorrespondWork propose_labelings(const Markers& markers, const Tool& tool,
   work.pairs = match_pairs(candidates, tool, settings, scratch.matches);
   LabelingSearch search(tool, settings, candidates, scratch.matches, labelings);
   if (predicted) {
-    run_levels(search, candidates.near, settings, most, least_predicted, labelings);
+    run_levels(search, candidates.near, settings, most, least_alone, labelings);
+    run_levels(search, candidates.nearest, settings, std::min(most, least_alone - 1),
+               least_predicted, labelings);
   }
   run_levels(search, all_of(candidates), settings, most, least_alone, labelings);
   if (predicted) prefer_predicted(labelings, tool, settings, *prior_T_camera_tool);

@@ -15,6 +15,9 @@ struct Labeling {
   std::array<std::int16_t, k_markers_per_tool_max> marker{};
   int count = 0;       // how many are seen, 3 at least
   double rms_m = 0;    // of the rigid fit over them
+  // What it is worth that every marker lies where it was predicted, within the gate; else 0. Tools
+  // that claim the same markers are compared by count rms^2 less this.
+  double predicted_worth_m2 = 0;
   Pose T_camera_tool;  // that fit
 };
 

@@ -18,6 +18,7 @@ Json correspond_json(const CorrespondSettings& settings) {
           {"delta_min_m", settings.delta_min_m},
           {"max_rms_m", settings.max_rms_m},
           {"prior_gate_m", settings.prior_gate_m},
+          {"few_gate_m", settings.few_gate_m},
           {"min_markers_without_prior", settings.min_markers_without_prior},
           {"min_markers_with_prior", settings.min_markers_with_prior},
           {"fewer_kept", settings.fewer_kept},

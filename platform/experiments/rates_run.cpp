@@ -22,6 +22,7 @@ namespace glint {
 namespace {
 
 constexpr Duration k_tick = milliseconds(4);
+constexpr Time k_never{INT64_MIN / 2};
 constexpr double k_tilt_rad = 0.5;
 constexpr std::uint64_t k_view_case = 3000;  // of the random numbers
 
@@ -143,7 +144,7 @@ class GraphWay {
     if (estimates.verdict.usable() && fresh(age, camera_.period)) ++frames_unmeasured_;
   }
 
-  // newest: the last exposure whose frame has arrived with a true stamp; before Time{}: none yet.
+  // newest: the last exposure whose frame has arrived with a true stamp, or k_never.
   void tick(Time time, Time newest, const Pose& truth, GraphTally& graph, RatesTally& tally) {
     const PoseSample now = sample(time);
     ++graph.ticks;
@@ -167,7 +168,7 @@ class GraphWay {
 
   // The states' contract, from the schedule alone.
   static TrackState right_state(Time time, Time newest, Duration period) {
-    if (newest < Time{}) return TrackState::none;
+    if (newest == k_never) return TrackState::none;
     if (fresh(time - newest, period)) return TrackState::measured;
     return time - newest <= Cell{}.lost_after ? TrackState::predicted : TrackState::lost;
   }
@@ -199,7 +200,7 @@ void follow_rates(const RatesRun& run, RatesTally& tally) {
       rates_schedule(camera, run.mishaps, run.seed * 1000 + run.run);
   MotionWay motion(run, tool);
   GraphWay graph(run, tool);
-  Time newest{-1};
+  Time newest = k_never;
   std::size_t next = 0;
   for (Time time; time < Time{} + k_rates_length; time = time + k_tick) {
     for (; next < frames.size() && frames[next].arrival <= time; ++next) {

@@ -31,6 +31,7 @@ std::vector<sim::FrameTiming> rates_schedule(const Camera& camera, const Mishaps
   const sim::RandomKey place{seed, sim::Stream::transport, 2};
   for (const sim::FrameTiming& frame :
        sim::frame_timings(camera, settings, k_rates_length, seed)) {
+    if (frame.sequence == 0) continue;  // nothing could tell that the first stamp is wrong
     const double share = sim::uniform(chance, frame.sequence);
     if (const auto fault = mishap(mishaps, share, frame.exposed)) settings.faults.push_back(*fault);
   }

@@ -22,7 +22,7 @@ struct Mishaps {
   Duration transport_jitter = microseconds(400);
 };
 
-// In the order of arrival.
+// In the order of arrival. The first frame has no mishap.
 [[nodiscard]] std::vector<sim::FrameTiming> rates_schedule(const Camera& camera,
                                                            const Mishaps& mishaps,
                                                            std::uint64_t seed);
