@@ -66,6 +66,28 @@ TEST(RestWindow, KnowsItsMeansErrorOverManyRests) {
   EXPECT_LT(std::sqrt(squares / rests), 1.2 * best);
 }
 
+TEST(RestWindow, IsAsSureOfAHandThatTremblesAsItIsRight) {
+  test::Random random(4);
+  const auto window = std::make_unique<RestWindow>();
+  constexpr double k_tremor_hz = 8.3, k_rms_m = 0.00005;
+  double squares = 0;
+  int n = 0;
+  for (int frame = 0; frame < 2000; ++frame) {
+    const double phase = 2 * 3.14159265358979323846 * k_tremor_hz * frame / 45.0;
+    const Vector3 off = k_rms_m * std::sqrt(2.0) *
+                        Vector3(std::sin(phase), std::sin(1.1 * phase), std::sin(0.9 * phase));
+    window->add(test::measured_pose({Quaternion::Identity(), off}, test::frame_time(frame), 0.0001,
+                                    0.001, random));
+    if (window->frames() < 60) continue;
+    const Rest rest = window->rest();
+    const Vector3 error = rest.pose.pose.translation - off;
+    squares += error.dot(rest.pose.covariance.topLeftCorner<3, 3>().inverse() * error) / 3;
+    ++n;
+  }
+  ASSERT_GT(n, 1000);
+  EXPECT_NEAR(squares / n, 1.0, 0.3);
+}
+
 TEST(RestWindow, EndsWithTheFirstFrameOfAMove) {
   test::Random random(3);
   const Pose truth{random.rotation(), random.vector(0.3)};

@@ -57,6 +57,20 @@ TEST(Assign, PrefersMoreMarkersToASmallerResidualAndThatToTheFirstTool) {
   EXPECT_EQ(outcome_of({fewer, fewer}).reasons[1], Reason::taken_by_other);
 }
 
+TEST(Assign, LetsTheToolThatWasPredictedThereKeepWhatNoiseAloneWouldGiveAway) {
+  const auto stranger = labelings_of({labeling_of({0, 1, 2, 3}, 0.001)});
+  const auto owner = [](double rms_m) {
+    Labeling labeling = labeling_of({0, 1, 2, 3}, rms_m);
+    labeling.predicted_worth_m2 = 2e-5;
+    return labelings_of({labeling});
+  };
+  // 4 rms^2 may be 2e-5 more than the stranger's 4e-6.
+  EXPECT_EQ(outcome_of({stranger, owner(0.0024)}).chosen, (std::vector<int>{-1, 0}));
+  EXPECT_EQ(outcome_of({stranger, owner(0.0025)}).chosen, (std::vector<int>{0, -1}));
+  const auto more = labelings_of({labeling_of({0, 1, 2, 3, 4}, 0.004)});
+  EXPECT_EQ(outcome_of({more, owner(0.001)}).chosen, (std::vector<int>{0, -1}));
+}
+
 TEST(Assign, TakesTheNextLabelingOfAToolWhoseMarkerIsTaken) {
   const auto first = labelings_of({labeling_of({0, 1, 2, 3, 4}, 0.001)});
   const auto second =

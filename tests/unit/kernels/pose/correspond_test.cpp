@@ -123,6 +123,40 @@ TEST(Correspond, FindsThreeMarkersWhereTheyArePredictedAndOnlyThere) {
   EXPECT_LE(alone.found, 2);
 }
 
+TEST(Correspond, BelievesThreeMarkersOnlyWhereTheToolCanHaveGot) {
+  const Tool pen = test::five_marker_pen();
+  const Pose truth{Quaternion::Identity(), Vector3(0, 0, 0.4)};
+  const auto find = [&](int seen, double off_m, double few_gate_m) {
+    std::vector<Vector3> points;
+    for (int i = 0; i < seen; ++i) points.push_back(truth * pen.markers_m[std::size_t(i)]);
+    const Pose prior{truth.rotation, truth.translation + Vector3(off_m, 0, 0)};
+    CorrespondSettings settings = ahat();
+    settings.few_gate_m = few_gate_m;
+    return labelings_of(centres(pen, points), pen, settings, &prior).count;
+  };
+  EXPECT_EQ(find(3, 0.019, 0.02), 1);
+  EXPECT_EQ(find(3, 0.021, 0.02), 0);
+  EXPECT_GE(find(4, 0.021, 0.02), 1);  // four agree by chance far less often
+  EXPECT_EQ(find(3, 0.049, 1.0), 1);
+  EXPECT_EQ(find(3, 0.051, 1.0), 0);  // never further than where any are looked for first
+}
+
+TEST(Correspond, SaysWhatAPredictionIsWorthOnlyWhereItIsMet) {
+  const Tool pen = test::five_marker_pen();
+  const Pose truth{Quaternion::Identity(), Vector3(0, 0, 0.4)};
+  std::vector<Vector3> points;
+  for (int i = 0; i < pen.marker_count; ++i) points.push_back(truth * pen.markers_m[std::size_t(i)]);
+  const Markers markers = centres(pen, points);
+  const auto worth = [&](const Pose* prior) {
+    return labelings_of(markers, pen, ahat(), prior).items[0].predicted_worth_m2;
+  };
+  const Pose far{truth.rotation, truth.translation + Vector3(0.06, 0, 0)};
+  const double sigma = ahat().range_sigma_m;
+  EXPECT_EQ(worth(&truth), 9 * sigma * sigma);
+  EXPECT_EQ(worth(&far), 0);
+  EXPECT_EQ(worth(nullptr), 0);
+}
+
 TEST(Correspond, DoesNotCallStraysATool) {
   const auto pen = [](Random&) { return test::five_marker_pen(); };
   SceneSettings settings;
