@@ -38,7 +38,7 @@ struct Candidates {
   std::array<double, k_blobs_max> across_variance_m2;  // of the centre, across its ray, an axis
   std::array<std::int16_t, k_blobs_max> marker;        // index into Markers
   int count = 0;
-  int words = 0;       // of a CandidateSet that are in use
+  int words = 0;          // of a CandidateSet that are in use
   CandidateSets near;     // of each tool marker: those within the gate of its predicted place
   CandidateSets nearest;  // likewise, within the gate of labelings that only a prediction allows
 };

@@ -41,7 +41,8 @@ void prefer_predicted(Labelings& found, const Tool& tool, const CorrespondSettin
   const double worth_m2 = 9 * settings.range_sigma_m * settings.range_sigma_m;
   for (int k = 0; k < found.count; ++k) {
     Labeling& labeling = found.items[static_cast<std::size_t>(k)];
-    if (agrees(labeling, tool, prior, settings.prior_gate_m)) labeling.predicted_worth_m2 = worth_m2;
+    if (agrees(labeling, tool, prior, settings.prior_gate_m))
+      labeling.predicted_worth_m2 = worth_m2;
   }
   const Labeling best = found.items[0];
   const double slack = worth_m2 / best.count;

@@ -13,8 +13,8 @@ namespace glint {
 struct Labeling {
   // marker[i] is the index into Markers of the tool's marker i, -1 where it was not seen.
   std::array<std::int16_t, k_markers_per_tool_max> marker{};
-  int count = 0;       // how many are seen, 3 at least
-  double rms_m = 0;    // of the rigid fit over them
+  int count = 0;     // how many are seen, 3 at least
+  double rms_m = 0;  // of the rigid fit over them
   // What it is worth that every marker lies where it was predicted, within the gate; else 0. Tools
   // that claim the same markers are compared by count rms^2 less this.
   double predicted_worth_m2 = 0;

@@ -126,8 +126,8 @@ std::vector<ClutterCase> cases_of(const CaseOptions& options) {
   const ToolSet close = nearly_equal_tools(k_refused_sigmas);
   const ToolSet distinct = nearly_equal_tools(k_distinct_sigmas);
   const auto passing = [&](const std::string& name, const ToolSet& tools, Passing way) {
-    cases.push_back({name, tools, passing_run(tools, way, frames, options.seed), Bar::none(),
-                     Bar::at_most(0)});
+    cases.push_back(
+        {name, tools, passing_run(tools, way, frames, options.seed), Bar::none(), Bar::at_most(0)});
   };
   passing("just accepted, side by side", close, Passing::beside);
   passing("just accepted, one hides the other", close, Passing::in_front);
@@ -154,8 +154,8 @@ CaseList run_clutter(const CaseOptions& options) {
       refusal("a flat tool and its mirror image", mirror_twins(five.items[1]), Bar::at_least(1)));
   list.cases.push_back(
       refusal("the pen and its mirror image", mirror_twins(five.items[0]), Bar::none()));
-  list.cases.push_back(refusal("just accepted", nearly_equal_tools(k_refused_sigmas),
-                               Bar::at_most(0)));
+  list.cases.push_back(
+      refusal("just accepted", nearly_equal_tools(k_refused_sigmas), Bar::at_most(0)));
   return list;
 }
 

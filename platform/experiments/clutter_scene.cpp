@@ -149,8 +149,8 @@ sim::Scenario cluttered_run(const ToolSet& tools, int strays, int frames, std::u
 sim::Scenario passing_run(const ToolSet& two_tools, Passing passing, int frames,
                           std::uint64_t seed) {
   sim::Scenario scenario = empty_run(frames, seed);
-  const Vector3 away = passing == Passing::beside ? Vector3(0, 0, 0.5 * k_apart_m)
-                                                  : Vector3(-0.5 * k_apart_m, 0, 0);
+  const Vector3 away =
+      passing == Passing::beside ? Vector3(0, 0, 0.5 * k_apart_m) : Vector3(-0.5 * k_apart_m, 0, 0);
   sim::HandSettings hand;
   hand.stroke_rms_m = 0.005;  // the swing moves it
   add_hand(two_tools.items[0], k_workplace_m + away, std::make_shared<Swing>(k_swing_m), hand,

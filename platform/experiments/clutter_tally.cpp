@@ -44,8 +44,10 @@ void ClutterTally::add(const FrameOutcome& outcome, const sim::SimTruth& truth) 
     ++judged_;
     if (markers >= 4 || (markers == 3 && recent)) {
       ++visible_;
-      if (found.seen) ++tracked_;
-      else ++missed_[static_cast<std::size_t>(found.reason)];
+      if (found.seen)
+        ++tracked_;
+      else
+        ++missed_[static_cast<std::size_t>(found.reason)];
     }
     if (!found.seen) continue;
     last_tracked_[i] = truth.mid_exposure;

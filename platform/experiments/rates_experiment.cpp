@@ -63,8 +63,7 @@ CaseList run_rates(const CaseOptions& options) {
       follow_rates({all[k].mishaps, options.seed, static_cast<std::uint64_t>(run)}, tally);
     for (const Rate rate : {Rate::fast, Rate::slow}) {
       const auto r = static_cast<std::size_t>(rate);
-      const std::string name =
-          std::string(rate == Rate::fast ? "45 Hz, " : "5 Hz, ") + all[k].name;
+      const std::string name = std::string(rate == Rate::fast ? "45 Hz, " : "5 Hz, ") + all[k].name;
       list.cases.push_back(graph_case(name, tally.graph[r]));
       list.cases.push_back({name, "motion filter", tally.motion[r].n,
                             consistency_figures(tally.motion[r], !options.quick)});

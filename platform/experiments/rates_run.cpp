@@ -82,8 +82,7 @@ class MotionWay {
   void tick(Time time, const Pose& truth, Consistency& consistency) {
     if (!motion_.known()) return;
     const MotionState state = motion_.estimate();
-    UncertainPose then =
-        predict_pose(state, time, motion_.settings.motion, motion_.noise_scale());
+    UncertainPose then = predict_pose(state, time, motion_.settings.motion, motion_.noise_scale());
     const Result<Pose> pose = integrator_.after(state, time - state.time);
     if (pose) then.pose = pose.value;
     consistency.add(then, truth);
@@ -100,8 +99,8 @@ class MotionWay {
 
 bool same(const Pose& a, const Pose& b) {
   return std::memcmp(a.translation.data(), b.translation.data(), 3 * sizeof(double)) == 0 &&
-         std::memcmp(a.rotation.coeffs().data(), b.rotation.coeffs().data(),
-                     4 * sizeof(double)) == 0;
+         std::memcmp(a.rotation.coeffs().data(), b.rotation.coeffs().data(), 4 * sizeof(double)) ==
+             0;
 }
 
 bool same(const PoseSample& a, const PoseSample& b) {
@@ -124,8 +123,7 @@ class GraphWay {
     output_->latest<RobotFrame>().set({RegistrationState::given, {}, 0}, 1, 0);
   }
 
-  void frame(const sim::FrameTiming& timing, const Pose& truth, Time next_tick,
-             RatesTally& tally) {
+  void frame(const sim::FrameTiming& timing, const Pose& truth, Time next_tick, RatesTally& tally) {
     SampleNumbers numbers(run_.seed, k_view_case + run_.run, timing.sequence);
     view_->clear();
     for (int i = 0; i < tool_.marker_count; ++i) {

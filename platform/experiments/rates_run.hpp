@@ -28,7 +28,7 @@ struct RatesTally {
   std::array<GraphTally, 2> graph;    // by Rate of the tick
   std::array<Consistency, 2> motion;  // of the middle of the markers
   std::int64_t accepted = 0, refused = 0;
-  std::int64_t refused_changed = 0;      // refused frames after which an estimate was another one
+  std::int64_t refused_changed = 0;  // refused frames after which an estimate was another one
   // Most frames, young enough to make it measured, that a tool not measured took to be so again.
   std::int64_t frames_to_measured = 0;
 };

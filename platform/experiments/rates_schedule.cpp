@@ -29,14 +29,12 @@ std::vector<sim::FrameTiming> rates_schedule(const Camera& camera, const Mishaps
   settings.transport_jitter = mishaps.transport_jitter;
   const sim::RandomKey chance{seed, sim::Stream::transport, 1};
   const sim::RandomKey place{seed, sim::Stream::transport, 2};
-  for (const sim::FrameTiming& frame :
-       sim::frame_timings(camera, settings, k_rates_length, seed)) {
+  for (const sim::FrameTiming& frame : sim::frame_timings(camera, settings, k_rates_length, seed)) {
     if (frame.sequence == 0) continue;  // nothing could tell that the first stamp is wrong
     const double share = sim::uniform(chance, frame.sequence);
     if (const auto fault = mishap(mishaps, share, frame.exposed)) settings.faults.push_back(*fault);
   }
-  std::vector<sim::FrameTiming> frames =
-      sim::frame_timings(camera, settings, k_rates_length, seed);
+  std::vector<sim::FrameTiming> frames = sim::frame_timings(camera, settings, k_rates_length, seed);
   for (sim::FrameTiming& frame : frames) {
     const double share = 2 * sim::uniform(place, frame.sequence) - 1;
     const Duration off{static_cast<std::int64_t>(
@@ -45,10 +43,9 @@ std::vector<sim::FrameTiming> rates_schedule(const Camera& camera, const Mishaps
     frame.mid_exposure = frame.mid_exposure + off;
     frame.arrival = frame.arrival + off;
   }
-  std::stable_sort(frames.begin(), frames.end(),
-                   [](const sim::FrameTiming& a, const sim::FrameTiming& b) {
-                     return a.arrival < b.arrival;
-                   });
+  std::stable_sort(
+      frames.begin(), frames.end(),
+      [](const sim::FrameTiming& a, const sim::FrameTiming& b) { return a.arrival < b.arrival; });
   return frames;
 }
 

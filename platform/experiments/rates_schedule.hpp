@@ -15,10 +15,10 @@ inline constexpr Duration k_rates_length = milliseconds(15'000);
 // Parts of the frames; a frame has one mishap at most.
 struct Mishaps {
   double dropped = 0;
-  double doubled = 0;          // delivered again 5 ms later
-  double backward = 0;         // stamped a second before its exposure, older than any frame kept
-  double late = 0;             // 60 ms later, at 45 Hz behind its successors
-  Duration exposure_jitter;    // each exposure off its place by up to this, its stamp with it
+  double doubled = 0;        // delivered again 5 ms later
+  double backward = 0;       // stamped a second before its exposure, older than any frame kept
+  double late = 0;           // 60 ms later, at 45 Hz behind its successors
+  Duration exposure_jitter;  // each exposure off its place by up to this, its stamp with it
   Duration transport_jitter = microseconds(400);
 };
 

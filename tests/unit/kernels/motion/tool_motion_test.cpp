@@ -167,7 +167,7 @@ TEST(ToolMotion, GivesTheSameBitsEverywhere) {
     }
     test::add_bits(hash, tool.motion->estimate());
   }
-  EXPECT_EQ(hash.value(), 8370787117484139330u);
+  EXPECT_EQ(hash.value(), 18167144630663379182u);
 }
 
 }  // namespace

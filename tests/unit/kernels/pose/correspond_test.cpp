@@ -145,7 +145,8 @@ TEST(Correspond, SaysWhatAPredictionIsWorthOnlyWhereItIsMet) {
   const Tool pen = test::five_marker_pen();
   const Pose truth{Quaternion::Identity(), Vector3(0, 0, 0.4)};
   std::vector<Vector3> points;
-  for (int i = 0; i < pen.marker_count; ++i) points.push_back(truth * pen.markers_m[std::size_t(i)]);
+  for (int i = 0; i < pen.marker_count; ++i)
+    points.push_back(truth * pen.markers_m[std::size_t(i)]);
   const Markers markers = centres(pen, points);
   const auto worth = [&](const Pose* prior) {
     return labelings_of(markers, pen, ahat(), prior).items[0].predicted_worth_m2;
