@@ -51,7 +51,6 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
   counts_[4] += pose.work.marker_steps;
   out.reason = pose.reason;
   if (out.reason != Reason::none) return;
-  out.T_camera_tool = pose.T_camera_tool;
   out.covariance = pose.covariance;
   double squares = 0;
   int kept = 0;
@@ -63,6 +62,7 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
     ++kept;
   }
   out.rms_m = std::sqrt(squares / kept);
+  out.T_camera_tool = correct_bias(correction, pose.T_camera_tool).T_camera_tool;
 }
 
 void RefinePose::operator()(const FrameVerdict& verdict, const Markers& markers,

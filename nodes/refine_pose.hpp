@@ -7,6 +7,7 @@
 
 #include "graph/graph.hpp"
 #include "kernels/nonblocking.hpp"
+#include "kernels/pose/bias_correction.hpp"
 #include "kernels/pose/marker.hpp"
 #include "kernels/pose/marker_sight.hpp"
 #include "kernels/pose/refine_pose.hpp"
@@ -34,6 +35,7 @@ struct RefinePose {
 
   RefineSettings settings;  // at most the default's steps are taken: worst() counts on these
   MarkerNoise noise;
+  BiasCorrection correction;  // of every tool, where it holds; none unless a cell names one
   Limits limits;
   void operator()(const FrameVerdict& verdict, const Markers& markers,
                   const graph::Latest<ToolSet>& tools, const Assignment& assignment,

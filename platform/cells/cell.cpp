@@ -18,7 +18,6 @@
 namespace glint {
 namespace {
 
-
 // ${NAME} becomes the environment's NAME; a relative path starts at the cell file's folder.
 std::string opened_path(const std::string& path, const std::string& key, const std::string& cell) {
   if (path.empty()) return path;

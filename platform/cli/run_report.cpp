@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "platform/cells/correction_text.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/report/plots.hpp"
 
@@ -144,6 +145,7 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
                        {"recording_bytes", result.recording.bytes},
                        {"output_sha256", result.output_sha256},
                        {"notices", cell.notices},
+                       {"corrected", correction_text(cell.correction)},
                        {"best_effort", best_effort(result)},
                        {"refused", result.refused},
                        {"budget", budget_of(plan, result)}};
@@ -215,6 +217,8 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
   for (const std::string& file : result.files) row("written", file);
   if (!result.recording.reason.empty()) row("recording", result.recording.reason);
   for (const auto& notice : summary.at("notices")) row("this cell", notice.get<std::string>());
+  if (const auto text = summary.at("corrected").get<std::string>(); !text.empty())
+    row("corrected by", text);
   for (const std::string& refused : result.refused) row("refused", refused);
   for (const std::string& line : result.machine.spoils) row("this machine", line);
 }

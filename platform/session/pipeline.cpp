@@ -86,11 +86,15 @@ void configure_common(const Cell& cell, AnyTracker& tracker) {
     node.limits = limits;
     node.noise = MarkerNoise{};
     node.noise.focal_px = cell.camera.model.fx;
+    node.correction = cell.correction;
   });
   tracker.template node<AnchorHead>().limits = limits;
   tracker.template node<AnchorHead>().reference = cell.reference;
   tracker.template node<AnchorHead>().noise = cell.head_noise;
-  tracker.template for_each<FollowMotion>([&](FollowMotion& node) { node.limits = limits; });
+  tracker.template for_each<FollowMotion>([&](FollowMotion& node) {
+    node.limits = limits;
+    node.settings.motion = cell.motion;
+  });
   tracker.template node<TrackTools>().settings = track_settings(cell);
   tracker.template node<TrackTools>().limits = limits;
 }
@@ -140,6 +144,7 @@ void configure(const Cell& cell, Output& output) {
   predict.settings.nominal_gap = cell.camera.period;
   predict.settings.lost_after = cell.lost_after;
   predict.settings.actuation_delay = cell.actuation_delay;
+  predict.settings.motion = cell.motion;
   predict.limits = limits_of(cell);
   PackCan& pack = output.node<PackCan>();
   pack.settings.format = cell.can.fd ? CanFormat::fd : CanFormat::classic;

@@ -81,6 +81,15 @@ class RefineKernel final : public NodeKernel<RefinePose> {
     start_.limits = limits;
     start_.noise = all ? k_surest : MarkerNoise{};
     start_.noise.focal_px = 253;
+    start_.correction = {};
+    if (all || numbers.one_in(2)) {
+      start_.correction = {CorrectionFrame::tool,
+                           numbers.in_box(0.002),
+                           numbers.in_box(0.01),
+                           {0, 2},
+                           {-1, 1},
+                           {-1, 1}};
+    }
     set_.count = all ? limits.tools : 1 + numbers.below(limits.tools);
     markers_.count = 0;
     for (int t = 0; t < set_.count; ++t) {

@@ -279,5 +279,19 @@ TEST_F(RefinePose, CountsTheMarkersOfItsFitsAndTheirSteps) {
   EXPECT_EQ(node_.counts()[4], 4 * node_.counts()[3]);
 }
 
+TEST_F(RefinePose, TakesAMeasuredMeanErrorOffWhereItHolds) {
+  Random random(12);
+  const Tool tool = test::five_marker_pen();
+  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
+  add_tool(0, tool, truth, 0, random);
+  const Pose plain = run_one().T_camera_tool;
+  node_.correction = {
+      CorrectionFrame::camera, Vector3(0.002, 0, 0), Vector3::Zero(), {0, 2}, {-1, 1}, {-1, 1}};
+  const Pose corrected = run_one().T_camera_tool;
+  EXPECT_TRUE((corrected.translation - plain.translation).isApprox(Vector3(-0.002, 0, 0), 1e-9));
+  node_.correction.range_m = {1, 2};
+  EXPECT_EQ(run_one().T_camera_tool.translation, plain.translation);
+}
+
 }  // namespace
 }  // namespace glint

@@ -68,7 +68,7 @@ TEST(RestWindow, KnowsItsMeansErrorOverManyRests) {
 
 TEST(RestWindow, IsAsSureOfAHandThatTremblesAsItIsRight) {
   test::Random random(4);
-  const auto window = std::make_unique<RestWindow>();
+  const auto window = std::make_unique<Window>();
   constexpr double k_tremor_hz = 8.3, k_rms_m = 0.00005;
   double squares = 0;
   int n = 0;
