@@ -83,8 +83,8 @@ class MotionWay {
     if (!motion_.known()) return;
     const MotionState state = motion_.estimate();
     UncertainPose then = predict_pose(state, time, motion_.settings.motion, motion_.noise_scale());
-    const Result<Pose> pose = integrator_.after(state, time - state.time);
-    if (pose) then.pose = pose.value;
+    const Result<MovingPose> later = integrator_.after(state, time - state.time);
+    if (later) then.pose = later.value.pose;
     consistency.add(then, truth);
   }
 
