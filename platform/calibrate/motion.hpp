@@ -25,7 +25,7 @@ struct MotionCalibrationSettings {
   double rate_hz = 45;          // samples that come faster are left out
   double gap_max_s = 0.5;       // after a longer gap the filter starts anew
   MotionSettings start;         // of the search, and what the result is held against
-  double log_sigma_max = 0.5;   // of each unknown: more, and the motion left it open
+  double log_sigma_max = 1.5;   // of each unknown: more, and the motion left it open
   double motion_gain_min = 20;  // of the log-likelihood, over a tool that hardly moves
   std::uint64_t seed = 1;
   std::function<void(int evaluations)> progress;  // may be empty

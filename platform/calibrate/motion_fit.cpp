@@ -9,13 +9,17 @@ namespace glint {
 namespace {
 
 constexpr int k_iterations_max = 60;
-constexpr double k_log_most = 9.2;          // of either unknown from the start: a factor of 10^4
-constexpr double k_difference = 0.05;       // of a logarithm, for the likelihood's curvature
+constexpr double k_log_most = 9.2;     // of either unknown from the start: a factor of 10^4
+constexpr double k_difference = 0.05;  // of a logarithm, for the likelihood's curvature
+// What is known beforehand of the damping, 1 sigma of its logarithm around the start: where motion
+// is quicker to fade than the samples come, noise and damping cannot be told apart.
+constexpr double k_log_damping_sigma = 1.0;
+constexpr double k_log_damping_information = 1 / (k_log_damping_sigma * k_log_damping_sigma);
 constexpr std::size_t k_block_scores = 25;  // so many scores in a row may hang together
 
 MotionUnknowns unknowns_at(const double* logs) { return {std::exp(logs[0]), std::exp(logs[1])}; }
 
-// - log-likelihood by measurement, on the logarithms; Ceres owns it.
+// - log-likelihood, and what is known beforehand, by measurement, on the logarithms; Ceres owns it.
 class Cost final : public ceres::FirstOrderFunction {
  public:
   Cost(const MotionSeries& series, MotionPart part, const MotionUnknowns& start,
@@ -32,9 +36,11 @@ class Cost final : public ceres::FirstOrderFunction {
     if (evaluated_) evaluated_();
     if (!found.integrated || !std::isfinite(found.log_likelihood)) return false;
     const double n = std::max(1, found.innovations);
-    *cost = -found.log_likelihood / n;
-    if (gradient != nullptr)
-      for (int i = 0; i < k_motion_unknowns; ++i) gradient[i] = -found.gradient[i] / n;
+    const double off = logs[1] - std::log(start_.damping);
+    *cost = (0.5 * k_log_damping_information * off * off - found.log_likelihood) / n;
+    if (gradient == nullptr) return true;
+    gradient[0] = -found.gradient[0] / n;
+    gradient[1] = (k_log_damping_information * off - found.gradient[1]) / n;
     return true;
   }
 
@@ -61,11 +67,13 @@ void judge(const MotionSeries& series, MotionPart part, const LikelihoodSettings
                        (2 * k_difference);
   }
   curvature = (0.5 * (curvature + curvature.transpose())).eval();
+  curvature(1, 1) += k_log_damping_information;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(curvature);
-  fit.determined = solver.eigenvalues()[0] > 1;  // a sigma of one is a factor of e
+  fit.determined = solver.eigenvalues()[0] > 0;
   if (!fit.determined) return;
   const Likelihood found = likelihood_of(series, part, fit.unknowns, settings);
   Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  spread(1, 1) = k_log_damping_information;
   Vector2 sum = Vector2::Zero();
   for (std::size_t i = 0; i < found.scores.size(); ++i) {
     sum += found.scores[i];
@@ -109,8 +117,6 @@ MotionFit most_likely(const MotionSeries& series, MotionPart part, const MotionU
   MotionFit fit;
   if (!summary.IsSolutionUsable()) return fit;
   fit.unknowns = unknowns_at(logs);
-  fit.log_likelihood =
-      -summary.final_cost * likelihood_of(series, part, fit.unknowns, settings).innovations;
   judge(series, part, settings, logs, fit);
   return fit;
 }

@@ -1,4 +1,6 @@
-// The most likely noise and damping of one part of a hand's motion, and how sure they are.
+// The most likely noise and damping of one part of a hand's motion, and how sure they are. The
+// damping is taken to be within a factor of e of the start, 1 sigma: a minute of motion outweighs
+// that wherever it shows the damping at all.
 #pragma once
 
 #include <functional>
