@@ -15,6 +15,9 @@ constexpr double k_range_sigma_m = 0.003;  // likewise
 constexpr double k_range_sigma_min_m = 1e-6;
 constexpr double k_low = 0.05, k_high = 0.95;  // of what was seen
 constexpr int k_rounds = 4;
+// A bias has a range of distances to stay in and none of brightness: a tool may be as dim as 2000
+// counts whatever was seen.
+constexpr double k_dim_span_least = 0.5;
 
 double quantile(std::vector<double> values, double part) {
   const auto at = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
@@ -131,7 +134,7 @@ void check_certainty(const DepthCalibration& result, bool determined, double dim
   const double most = settings.part_sigma_max_m;
   const auto sigma = [&](int i) { return std::sqrt(std::max(0.0, result.covariance(i, i))); };
   const double slope_m = sigma(1) * (result.range_to_m - result.range_from_m);
-  const double dim_m = sigma(2) * dim_span;
+  const double dim_m = sigma(2) * std::max(dim_span, k_dim_span_least);
   const auto open = [&](const char* part, double value, const std::string& how) {
     throw InputError(what + ": " + part + " stays open: " +
                      (determined ? "its part of a range is known to " + say_mm(value) + ", 1 sigma"
