@@ -1,5 +1,7 @@
 #include "kernels/motion/motion_filter.hpp"
 
+#include <array>
+
 #include "kernels/motion/cholesky.hpp"
 #include "kernels/motion/interpolate.hpp"
 #include "kernels/motion/singer.hpp"
@@ -61,6 +63,31 @@ Correction correct(MotionState& state, const Gain<M>& ph, const Eigen::Matrix<do
   apply(state, w.transpose().lazyProduct(whitened));
   state.covariance -= w.transpose().lazyProduct(w);
   return correction;
+}
+
+// What the second order of a turn of covariance `turn` adds to where a lever ends: dtheta x
+// (dtheta x lever) / 2, each axis a quadratic form of dtheta.
+struct SecondOrder {
+  Vector3 mean;
+  Matrix3 covariance;
+};
+
+SecondOrder second_order(const Vector3& lever, const Matrix3& turn) {
+  std::array<Matrix3, 3> forms;  // times the covariance
+  SecondOrder out;
+  for (int i = 0; i < 3; ++i) {
+    Matrix3 form = -lever(i) * Matrix3::Identity();
+    form.row(i) += 0.5 * lever.transpose();
+    form.col(i) += 0.5 * lever;
+    forms[static_cast<std::size_t>(i)] = form.lazyProduct(turn);
+    out.mean(i) = 0.5 * forms[static_cast<std::size_t>(i)].trace();
+  }
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      out.covariance(i, j) = 0.5 * Matrix3(forms[static_cast<std::size_t>(i)].lazyProduct(
+                                               forms[static_cast<std::size_t>(j)]))
+                                       .trace();
+  return out;
 }
 
 }  // namespace
@@ -135,12 +162,14 @@ Correction correct_by_pose(MotionState& state, const UncertainPose& measured) no
 
 Correction correct_by_point(MotionState& state, const MeasuredPoint& measured) noexcept {
   const Vector3 lever = state.pose.rotation * measured.model_m;
+  const SecondOrder beyond =
+      second_order(lever, state.covariance.block<3, 3>(k_rotation, k_rotation));
   const Matrix3 cross = cross_matrix(lever);  // dR lever = dtheta x lever = -[lever]x dtheta
   const Gain<3> ph = state.covariance.middleCols<3>(k_position) +
                      state.covariance.middleCols<3>(k_rotation).lazyProduct(cross);
   const Matrix3 s = ph.middleRows<3>(k_position) - cross.lazyProduct(ph.middleRows<3>(k_rotation)) +
-                    measured.covariance_m2;
-  const Vector3 innovation = measured.measured_m - (state.pose.translation + lever);
+                    measured.covariance_m2 + beyond.covariance;
+  const Vector3 innovation = measured.measured_m - (state.pose.translation + lever + beyond.mean);
   Correction correction = correct<3>(state, ph, s, innovation);
   correction.linear_chi_square = correction.chi_square;
   return correction;

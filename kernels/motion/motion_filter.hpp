@@ -5,11 +5,12 @@
 // Cost:     propagate 2.5 us, correct by a pose 2.4 us, by a point less; no input-dependent loop.
 // Worst:    nothing depends on the input. A covariance that is not positive leaves the state as it
 //           was, with Reason::degenerate.
-// Accuracy: first order in the errors; rotation over a step exact for a constant axis.
+// Accuracy: first order in the errors, a single marker's place second: a tool that one marker holds
+//           may turn far. Rotation over a step exact for a constant axis.
 // Source:   Singer 1970 (the damped acceleration); Bar-Shalom, Li and Kirubarajan 2001, section
-//           5.2 (the filter's equations, as P - W'W with W = L^-1 H P, S = L L'); error of rotation
-//           about fixed axes: Sola, Deray and Atchuthan 2018, A micro Lie theory for state
-//           estimation in robotics.
+//           5.2 (the filter's equations, as P - W'W with W = L^-1 H P, S = L L') and 10.3.2 (second
+//           order); error of rotation about fixed axes: Sola, Deray and Atchuthan 2018, A micro Lie
+//           theory for state estimation in robotics.
 #pragma once
 
 #include "kernels/motion/motion_state.hpp"

@@ -165,5 +165,25 @@ TEST(MotionFilter, GivesTheSameBitsEverywhere) {
   EXPECT_EQ(hash.value(), 6279413464016914550u);
 }
 
+// To first order a marker turns about its middle on a straight line; its arc is of second order.
+TEST(MotionFilter, ExpectsOneMarkerWhereALooselyHeldToolCanHaveTurnedIt) {
+  test::Random random(11);
+  constexpr double k_turn_sigma = 0.15, k_marker_sigma_m = 0.0002;
+  const int n = 4000;
+  double squares = 0;
+  for (int i = 0; i < n; ++i) {
+    MotionState state = start_motion({Time{}, {}, 1e-8 * Matrix6::Identity()}, {});
+    state.covariance.block<3, 3>(k_rotation, k_rotation) =
+        k_turn_sigma * k_turn_sigma * Matrix3::Identity();
+    MeasuredPoint point;
+    point.model_m = Vector3(0, 0, 0.05);
+    point.measured_m = from_rotation_vector(random.vector(k_turn_sigma)) * point.model_m +
+                       random.vector(k_marker_sigma_m);
+    point.covariance_m2 = k_marker_sigma_m * k_marker_sigma_m * Matrix3::Identity();
+    squares += correct_by_point(state, point).chi_square / 3;
+  }
+  EXPECT_NEAR(squares / n, 1, 0.1);
+}
+
 }  // namespace
 }  // namespace glint
