@@ -1,0 +1,23 @@
+// The parts of a cell file that say when things are done, and how large the problem may be that is
+// done then.
+#pragma once
+
+#include <cstdint>
+
+#include "platform/cells/cell.hpp"
+#include "platform/cells/toml_reader.hpp"
+
+namespace glint {
+
+[[nodiscard]] inline Duration from_ms(double ms) {
+  return {static_cast<std::int64_t>(ms * 1e6 + 0.5)};
+}
+
+// Each may be null: then all is as built in. The camera and the tools were read before.
+void read_rates(const toml::table* table, Cell& cell);
+void read_deadlines(const toml::table* table, Cell& cell);  // after the rates
+void read_overrun(const toml::table* table, Cell& cell);
+void read_background(const toml::table* table, Cell& cell);
+void read_budget(const toml::table* table, Cell& cell);
+
+}  // namespace glint
