@@ -33,6 +33,12 @@ SeenMarkers weigh(const Tool& tool, int marker_count, const Markers& markers,
   return out;
 }
 
+// Markers that strays or a hand half hide are off by more than their noise, several at once, and
+// no fit without one of them helps. As long as four times the declared sigmas would do, the pose
+// counts with its covariance grown to what the residuals show (Birge 1932, The calculation of
+// errors by the method of least squares); a wrong name is off by far more.
+constexpr double k_noise_stretch_most = 16;
+
 }  // namespace
 
 void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& labeling,
@@ -41,17 +47,21 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
   out.reason = seen.reason;
   if (out.reason != Reason::none) return;
   constexpr RefineSettings k_most;
-  const RefineSettings within = {std::min(settings.steps_max, k_most.steps_max),
-                                 settings.left_out_max,
-                                 std::min(settings.left_out_steps_max, k_most.left_out_steps_max)};
+  const RefineSettings within = {
+      std::min(settings.steps_max, k_most.steps_max), settings.left_out_max,
+      std::min(settings.left_out_steps_max, k_most.left_out_steps_max),
+      labeling.predicted_worth_m2 > 0 ? k_predicted_left_least : k_most.markers_left_least};
   const RefinedPose pose =
       refine_pose({seen.items.data(), seen.count}, tool.tip_m, nullptr, within);
   counts_[2] += pose.work.fits;
   counts_[3] += pose.work.steps;
   counts_[4] += pose.work.marker_steps;
-  out.reason = pose.reason;
+  const bool stretched = pose.reason == Reason::bad_fit &&
+                         pose.chi_square <= k_noise_stretch_most * pose.degrees_of_freedom;
+  out.reason = stretched ? Reason::none : pose.reason;
   if (out.reason != Reason::none) return;
   out.covariance = pose.covariance;
+  if (stretched) out.covariance *= pose.chi_square / pose.degrees_of_freedom;
   double squares = 0;
   int kept = 0;
   for (std::size_t i = 0; i < seen.count; ++i) {

@@ -17,8 +17,12 @@
 
 namespace glint {
 
-// A pose that the noise does not explain, with any one marker left out or with all, is none: its
-// reason is bad_fit. The mask names the markers that count.
+// Of markers that lie where they were predicted three are enough.
+inline constexpr int k_predicted_left_least = 3;
+
+// A pose that the noise does not explain, with any one marker left out or with all, is given with a
+// covariance grown to what its residuals show, and where four times the noise would not do either
+// it is none: its reason is bad_fit. The mask names the markers that count.
 struct RefinePose {
   static constexpr std::array<std::string_view, 5> k_loops = {"call", "tools", "fits", "steps",
                                                               "marker_steps"};
@@ -28,7 +32,8 @@ struct RefinePose {
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits,
                                                          graph::Slice slice) noexcept {
     const std::int64_t tools = tools_of(limits, slice);
-    const RefineWork work = refine_work_max(limits.markers_per_tool, {});
+    const RefineWork work =
+        refine_work_max(limits.markers_per_tool, {.markers_left_least = k_predicted_left_least});
     return {{1, tools, tools * work.fits, tools * work.steps, tools * work.marker_steps}};
   }
   [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }

@@ -138,7 +138,8 @@ RefinedPose refine_pose(MarkerSpan markers, const Vector3& reference_m, const Po
   RefinedPose pose = refine_all(markers, task, settings.steps_max);
   if (is_explained(pose)) return pose;
   if (pose.reason == Reason::none) pose.reason = Reason::bad_fit;
-  if (settings.left_out_max < 1 || markers.size() <= k_markers_left_least) return pose;
+  const int count = static_cast<int>(markers.size());
+  if (settings.left_out_max < 1 || count <= settings.markers_left_least) return pose;
   return without_one(markers, task, pose);
 }
 

@@ -34,10 +34,11 @@ struct RefineSettings {
   // Of each fit without one marker: of these there may be many, and one that is to stand is near
   // its end by then.
   int left_out_steps_max = k_refine_steps_max / 2;
+  // So many markers are left when one was left out. Three agree too easily, unless all lie where
+  // they were predicted: then 3.
+  int markers_left_least = 4;
 };
 
-// So many markers are left when one was left out: three agree too easily.
-inline constexpr int k_markers_left_least = 4;
 // Two minima nearer to each other than this, in sigmas squared, are one.
 inline constexpr double k_minima_apart_least = 0.01;
 
@@ -48,7 +49,8 @@ struct RefineWork {
   int marker_steps = 0;  // steps times the markers in them
 };
 [[nodiscard]] constexpr RefineWork refine_work_max(int markers, const RefineSettings& settings) {
-  const int others = settings.left_out_max > 0 && markers > k_markers_left_least ? markers : 0;
+  const int others =
+      settings.left_out_max > 0 && markers > settings.markers_left_least ? markers : 0;
   const int all = 2 * settings.steps_max, each = 2 * settings.left_out_steps_max;
   return {2 * (1 + others), all + each * others, all * markers + each * others * (markers - 1)};
 }

@@ -61,7 +61,8 @@ Json motion_json(const ToolMotionSettings& settings) {
 Json refine_json(const RefineSettings& settings) {
   return {{"steps_max", settings.steps_max},
           {"left_out_max", settings.left_out_max},
-          {"left_out_steps_max", settings.left_out_steps_max}};
+          {"left_out_steps_max", settings.left_out_steps_max},
+          {"markers_left_least", settings.markers_left_least}};
 }
 
 }  // namespace

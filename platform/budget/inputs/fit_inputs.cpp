@@ -60,6 +60,9 @@ class AssignKernel final : public NodeKernel<AssignMarkers> {
   Assignment assignment_;
 };
 
+// As the node fits markers that lie where they were predicted.
+constexpr RefineSettings k_predicted = {.markers_left_least = k_predicted_left_least};
+
 // How much of its loops the fit of one tool runs.
 int marker_steps_of(const Tool& tool, const Marker* seen, const MarkerNoise& noise) {
   std::array<WeightedMarker, k_markers_per_tool_max> markers;
@@ -69,7 +72,7 @@ int marker_steps_of(const Tool& tool, const Marker* seen, const MarkerNoise& noi
     markers[m] = weigh_marker(tool.markers_m[m], sight.rays, range_m, sight.variance).value;
   }
   const std::size_t count = static_cast<std::size_t>(tool.marker_count);
-  return refine_pose({markers.data(), count}, tool.tip_m).work.marker_steps;
+  return refine_pose({markers.data(), count}, tool.tip_m, nullptr, k_predicted).work.marker_steps;
 }
 
 class RefineKernel final : public NodeKernel<RefinePose> {
@@ -106,6 +109,7 @@ class RefineKernel final : public NodeKernel<RefinePose> {
       labeling = {};
       labeling.marker.fill(-1);
       labeling.count = markers_.count - first;
+      labeling.predicted_worth_m2 = all || numbers.one_in(2) ? 1e-5 : 0;
       for (int m = 0; m < labeling.count; ++m) {
         labeling.marker[m] = static_cast<std::int16_t>(first + m);
       }
@@ -126,7 +130,7 @@ class RefineKernel final : public NodeKernel<RefinePose> {
   // ends before its last step: the hardest of some.
   Tool add_hardest(int count, Numbers& numbers) {
     const int first = markers_.count;
-    const int most = refine_work_max(count, {}).marker_steps;
+    const int most = refine_work_max(count, k_predicted).marker_steps;
     Tool hardest;
     std::array<Marker, k_markers_per_tool_max> seen;
     for (int reached = -1, tried = 0; reached < most && tried < k_tries; ++tried) {

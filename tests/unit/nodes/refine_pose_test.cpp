@@ -279,6 +279,36 @@ TEST_F(RefinePose, CountsTheMarkersOfItsFitsAndTheirSteps) {
   EXPECT_EQ(node_.counts()[4], 4 * node_.counts()[3]);
 }
 
+TEST_F(RefinePose, LeavesOneOfFourOutOnlyWhereAllLieWhereTheyWerePredicted) {
+  Random random(13);
+  Tool tool = test::five_marker_pen();
+  tool.marker_count = 4;
+  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
+  add_tool(0, tool, truth, 0, random);
+  marker_of(0, 2).surface_range_m += 0.03;
+  EXPECT_EQ(run_one().reason, Reason::bad_fit);
+  world_->assignment.labeling[0].predicted_worth_m2 = 1e-5;
+  EXPECT_EQ(run_one().reason, Reason::none);
+  EXPECT_EQ(run_one().marker_mask, 0b1011);
+  EXPECT_LT(error_of(run_one(), truth, tool.tip_m).head<3>().norm(), 0.0005);
+}
+
+TEST_F(RefinePose, IsLessSureOfMarkersThatAreOffByMoreThanTheirNoise) {
+  Random random(14);
+  const Tool tool = test::five_marker_pen();
+  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
+  add_tool(0, tool, truth, 0, random);
+  const Matrix6 sure = run_one().covariance;
+  const double off[] = {0.008, -0.007, 0.009, -0.008, 0.007};  // some five sigmas, all of them
+  for (int i = 0; i < tool.marker_count; ++i) marker_of(0, i).surface_range_m += off[i];
+  const FittedTool& found = run_one();
+  ASSERT_EQ(found.reason, Reason::none);
+  EXPECT_EQ(found.marker_mask, 31);
+  EXPECT_GT(found.covariance(2, 2), 4 * sure(2, 2));
+  const Vector6 error = error_of(found, truth, tool.tip_m);
+  EXPECT_LT(error.dot(pose_factor(found.covariance).value.solve(error)), 20);
+}
+
 TEST_F(RefinePose, TakesAMeasuredMeanErrorOffWhereItHolds) {
   Random random(12);
   const Tool tool = test::five_marker_pen();
@@ -288,7 +318,7 @@ TEST_F(RefinePose, TakesAMeasuredMeanErrorOffWhereItHolds) {
   node_.correction = {
       CorrectionFrame::camera, Vector3(0.002, 0, 0), Vector3::Zero(), {0, 2}, {-1, 1}, {-1, 1}};
   const Pose corrected = run_one().T_camera_tool;
-  EXPECT_TRUE((corrected.translation - plain.translation).isApprox(Vector3(-0.002, 0, 0), 1e-9));
+  EXPECT_TRUE((corrected.translation - plain.translation).isApprox(Vector3(0.002, 0, 0), 1e-9));
   node_.correction.range_m = {1, 2};
   EXPECT_EQ(run_one().T_camera_tool.translation, plain.translation);
 }

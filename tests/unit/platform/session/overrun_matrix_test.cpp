@@ -74,7 +74,7 @@ using Parameters = std::tuple<OverrunPolicy, bool, const char*>;
 class OverrunMatrix : public testing::TestWithParam<Parameters> {
  protected:
   OverrunMatrix() {
-    cell_ = short_cell(1.15, std::get<2>(GetParam()));
+    cell_ = short_cell(1.35, std::get<2>(GetParam()));
     cell_.overrun.frame = cell_.overrun.tick = policy_;
     frame_rows_ =
         rows<Tracker>(cell_.deadlines.frame, policy_, bounded_, k_first_frame, k_frame_step);
