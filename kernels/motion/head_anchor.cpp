@@ -32,10 +32,10 @@ double kept_over(double seconds, double correlation_s) {
 
 }  // namespace
 
-Matrix6 AnchoredHead::fresh_at(const Vector3& point_m) const {
+Matrix6 AnchoredHead::fresh_at(const Vector3& point_m) const noexcept {
   return moved_covariance(fresh, point_m - pivot_m);
 }
-Matrix6 AnchoredHead::lasting_at(const Vector3& point_m) const {
+Matrix6 AnchoredHead::lasting_at(const Vector3& point_m) const noexcept {
   return moved_covariance(lasting, point_m - pivot_m);
 }
 

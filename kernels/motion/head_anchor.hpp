@@ -51,8 +51,8 @@ struct AnchoredHead {
   bool moved_along = false;           // `moved` is not the identity
 
   // Of a pose at `point_m`, about the world's axes.
-  [[nodiscard]] Matrix6 fresh_at(const Vector3& point_m) const;
-  [[nodiscard]] Matrix6 lasting_at(const Vector3& point_m) const;
+  [[nodiscard]] Matrix6 fresh_at(const Vector3& point_m) const noexcept GLINT_NONBLOCKING;
+  [[nodiscard]] Matrix6 lasting_at(const Vector3& point_m) const noexcept GLINT_NONBLOCKING;
 };
 
 class HeadAnchor {

@@ -56,7 +56,7 @@ class MotionTrack {
   Reason update(Time time, std::span<const MeasuredPoint> points,
                 const ToolMotionSettings& settings,
                 const RestSums& sums) noexcept GLINT_NONBLOCKING;
-  void forget() noexcept;
+  void forget() noexcept GLINT_NONBLOCKING;
   // The frame that all is given in turned out to lie elsewhere, by little: every pose p becomes
   // `moved` p.
   void move(const Pose& moved) noexcept GLINT_NONBLOCKING;
