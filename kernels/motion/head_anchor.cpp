@@ -18,7 +18,7 @@ Pose motion_about(const Vector3& pivot, const Vector6& error) {
   return {turn, pivot + error.head<3>() - turn * pivot};
 }
 
-// Of an error with these deviations about the headset's pivot, about `at`.
+// Of an error with these deviations about the headset's pivot, at `lever` from there.
 Matrix6 spread(double position_m, double angle_rad, const Vector3& lever) {
   Matrix6 covariance = Matrix6::Zero();
   covariance.diagonal() << Vector3::Constant(position_m * position_m),

@@ -4,19 +4,12 @@
 #include <string>
 
 #include "platform/cells/cell.hpp"
-#include "platform/input_error.hpp"
+#include "tests/unit/platform/cells/complaint.hpp"
 
 namespace glint {
 namespace {
 
-std::string complaint_about(const std::string& text) {
-  try {
-    (void)cell_from_text(text, "cell.toml");
-    return "accepted";
-  } catch (const InputError& error) {
-    return error.what();
-  }
-}
+using test::complaint_about;
 
 TEST(CellReference, IsOneOfTheListedToolsByName) {
   const Cell cell = cell_from_text(
