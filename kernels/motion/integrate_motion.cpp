@@ -68,7 +68,24 @@ struct MotionIntegrator::Workspace {
   N_Vector state = nullptr;
   void* memory = nullptr;
   Drive drive;
+
+  // All of the equal steps from `start`; false where SUNDIALS refuses. It allocates the first time,
+  // therefore prepare() calls it, and only what is prepared calls it from the real-time path.
+  bool integrate(const MotionState& start, Duration ahead) noexcept;
 };
+
+bool MotionIntegrator::Workspace::integrate(const MotionState& start, Duration ahead) noexcept {
+  fill(start, State::of(state));
+  drive.acceleration = start.acceleration_m_s2;
+  drive.angular_acceleration = start.angular_acceleration_rad_s2;
+  const double step = ahead.seconds() / k_integration_steps;
+  bool done = ERKStepReset(memory, 0, state) == ARK_SUCCESS &&
+              ERKStepSetFixedStep(memory, step) == ARK_SUCCESS;
+  double reached = 0;
+  for (int i = 0; i < k_integration_steps && done; ++i)
+    done = ERKStepEvolve(memory, ahead.seconds(), state, &reached, ARK_ONE_STEP) >= 0;
+  return done;
+}
 
 void MotionIntegrator::Free::operator()(Workspace* workspace) const noexcept {
   if (workspace->memory != nullptr) ERKStepFree(&workspace->memory);
@@ -97,7 +114,7 @@ Reason MotionIntegrator::prepare(const MotionSettings& settings) noexcept {
   made = made && ERKStepSetInterpolantType(w.memory, ARK_INTERP_LAGRANGE) == ARK_SUCCESS;
   made = made && ERKStepSetInterpolantDegree(w.memory, 1) == ARK_SUCCESS;
   made = made && set_method(w.memory);
-  made = made && after(MotionState{}, milliseconds(1));
+  made = made && w.integrate(MotionState{}, milliseconds(1));
   if (made) return Reason::none;
   workspace_.reset();
   return Reason::not_prepared;
@@ -116,18 +133,8 @@ Result<MovingPose> MotionIntegrator::after(const MotionState& state, Duration ah
   const MovingPose now{state.pose, state.velocity_m_s, state.angular_velocity_rad_s};
   if (!workspace_) return {now, Reason::not_prepared};
   if (ahead <= Duration{}) return {now, Reason::none};
-  Workspace& w = *workspace_;
-  fill(state, State::of(w.state));
-  w.drive.acceleration = state.acceleration_m_s2;
-  w.drive.angular_acceleration = state.angular_acceleration_rad_s2;
-  const double step = ahead.seconds() / k_integration_steps;
-  bool done = ERKStepReset(w.memory, 0, w.state) == ARK_SUCCESS &&
-              ERKStepSetFixedStep(w.memory, step) == ARK_SUCCESS;
-  double reached = 0;
-  for (int i = 0; i < k_integration_steps && done; ++i)
-    done = ERKStepEvolve(w.memory, ahead.seconds(), w.state, &reached, ARK_ONE_STEP) >= 0;
-  if (!done) return {now, Reason::not_prepared};
-  const Values& y = State::of(w.state);
+  if (!workspace_->integrate(state, ahead)) return {now, Reason::not_prepared};
+  const Values& y = State::of(workspace_->state);
   MovingPose later;
   later.pose = {Quaternion(y[9], y[6], y[7], y[8]).normalized(), Vector3(y[0], y[1], y[2])};
   later.velocity_m_s = {y[3], y[4], y[5]};
