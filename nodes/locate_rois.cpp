@@ -36,18 +36,6 @@ int add_disjoint(Roi box, Rois& rois) {
   return comparisons;
 }
 
-// Widens the box of what is predicted by one marker with the tool's reach about it.
-void include(const CameraModel& camera, const Tool& tool, const Vector3& point,
-             const Vector2& pixel, Prediction& prediction) {
-  const double radius_px =
-      camera.fx * (prediction.reach_m + 2 * tool.marker_radius_m) / std::max(point.z(), 0.05);
-  // Eigen's cwiseMin hands its packet's function on by a pointer, whose effects nobody can see.
-  for (int axis = 0; axis < 2; ++axis) {
-    prediction.low_px[axis] = std::min(prediction.low_px[axis], pixel[axis] - radius_px);
-    prediction.high_px[axis] = std::max(prediction.high_px[axis], pixel[axis] + radius_px);
-  }
-}
-
 // The part of the frame that holds the tool; false where there is none.
 bool box_of(const CameraModel& camera, const Prediction& prediction, Roi& box) {
   const Vector2 &low = prediction.low_px, &high = prediction.high_px;
@@ -59,67 +47,6 @@ bool box_of(const CameraModel& camera, const Prediction& prediction, Roi& box) {
 }
 
 }  // namespace
-
-void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head,
-                               const graph::Latest<ToolSet>& tools,
-                               const graph::Previous<Anchor>& anchor,
-                               const graph::Previous<Estimates>& last,
-                               Predictions& predictions) noexcept {
-  // As the frame before corrected it: this one's correction rests on what is yet to be found.
-  const Pose T_camera_world = anchor.value().state.corrected(head.T_world_camera).inverse();
-  predictions.marker_count = 0;
-  counts_ = {{1}};
-  int lens_steps = 0;
-  const ToolSet& set = tools.value();
-  const int count = tools_within(set, limits);
-  for (int t = 0; t < k_tools_max; ++t) {
-    Prediction& prediction = predictions.tools[t];
-    prediction = Prediction{};
-    if (t >= count || !verdict.usable() || verdict.resynchronised) continue;
-    const Track& track = last.value().tracks[t];
-    if (!track.alive) continue;
-    const Duration gap = verdict.stamp.mid_exposure - track.newest.time;
-    if (gap > settings.lost_after) continue;
-
-    ++counts_[1];
-    const bool in_world = track.base == ReferenceFrame::world && head.valid;
-    Pose predicted = track.newest.pose;
-    const bool moves = track.has_previous && gap <= settings.horizon &&
-                       (in_world || track.base == ReferenceFrame::camera);
-    if (moves) {
-      ++counts_[2];
-      predicted =
-          extrapolate(track.previous, track.newest, verdict.stamp.mid_exposure, settings.horizon);
-    }
-    if (in_world) {
-      predicted = T_camera_world * predicted;
-    } else if (track.base == ReferenceFrame::world) {
-      predicted = track.T_camera_tool;  // the head's pose went missing: hold what the camera saw
-    }
-    prediction.has_prior = true;
-    prediction.missed_last = !track.seen_now;
-    prediction.T_camera_tool = predicted;
-    const double seconds = gap.seconds();
-    // Without a velocity the tool may have moved at a hand's speed, 1 m/s, in any direction.
-    const double drift_m = moves ? 0.0 : 1.0 * seconds;
-    prediction.reach_m =
-        settings.margin_m + drift_m + 0.5 * settings.acceleration_max_m_s2 * seconds * seconds;
-    const int markers = markers_within(set.items[t], limits);
-    counts_[3] += markers;
-    prediction.in_view = true;
-    prediction.low_px = Vector2::Constant(1e9);
-    prediction.high_px = Vector2::Constant(-1e9);
-    for (int m = 0; m < markers; ++m) {
-      const Vector3 point = predicted * set.items[t].markers_m[m];
-      const Result<Vector2> pixel = project(camera, point, lens_steps);
-      prediction.in_view = prediction.in_view && pixel.reason == Reason::none;
-      if (!pixel) continue;
-      predictions.markers_px[predictions.marker_count++] = pixel.value;
-      include(camera, set.items[t], point, pixel.value, prediction);
-    }
-  }
-  counts_[4] = lens_steps;
-}
 
 void LocateRois::operator()(const FrameVerdict& verdict, const graph::Latest<ToolSet>& tools,
                             const Predictions& predictions, Rois& rois) noexcept {

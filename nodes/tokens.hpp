@@ -46,10 +46,20 @@ struct Prediction {
   bool has_prior = false;
   bool missed_last = false;  // the last frame did not show it: search the whole frame
   Pose T_camera_tool;
-  double reach_m = 0;  // how far the tool may be from there
+  double reach_m = 0;  // how far the tool's markers may be from there
+  // By its followed motion, so that the covariance holds: of the middle of its markers, about the
+  // camera's axes. Else the tool is held where the camera saw it.
+  bool follows_motion = false;
+  Matrix6 covariance = Matrix6::Zero();
   // The markers' box in the image with that reach about each; not where one has no pixel.
   bool in_view = false;
   Vector2 low_px = Vector2::Zero(), high_px = Vector2::Zero();
+
+  // Of the place of a marker this far from the middle, in the tool's axes.
+  [[nodiscard]] Matrix3 place_covariance(const Vector3& from_middle_m) const {
+    const Eigen::Matrix<double, 3, 6> j = point_by_pose(T_camera_tool.rotation * from_middle_m);
+    return j * covariance * j.transpose();
+  }
 };
 struct Predictions {
   std::array<Prediction, k_tools_max> tools;

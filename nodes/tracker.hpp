@@ -16,6 +16,7 @@
 #include "nodes/image_nodes.hpp"
 #include "nodes/locate_rois.hpp"
 #include "nodes/pose_nodes.hpp"
+#include "nodes/predict_tracks.hpp"
 #include "nodes/refine_pose.hpp"
 #include "nodes/track_tools.hpp"
 

@@ -55,11 +55,11 @@ CorrespondSettings correspond_settings(const Cell& cell) {
   return settings;
 }
 
-LocateSettings locate_settings(const Cell& cell) {
-  LocateSettings settings;
+ReachSettings reach_settings(const Cell& cell) {
+  ReachSettings settings;
   settings.lost_after = cell.lost_after;
-  // One frame missed is still predicted; a slower camera's gap is longer.
-  settings.horizon = std::max(settings.horizon, cell.camera.period * 2);
+  settings.motion = cell.motion;
+  settings.head_correlation_s = cell.head_noise.motion_correlation_s;
   return settings;
 }
 
@@ -74,7 +74,7 @@ TrackSettings track_settings(const Cell& cell) {
 template <class AnyTracker>
 void configure_common(const Cell& cell, AnyTracker& tracker) {
   const Limits limits = limits_of(cell);
-  tracker.template node<PredictTracks>().settings = locate_settings(cell);
+  tracker.template node<PredictTracks>().settings = reach_settings(cell);
   tracker.template node<PredictTracks>().camera = cell.camera.model;
   tracker.template node<PredictTracks>().limits = limits;
   tracker.template for_each<Correspond>([&](Correspond& node) {
@@ -116,7 +116,6 @@ void configure(const Cell& cell, Tracker& tracker) {
   stamp.height = camera.model.height;
   stamp.reflectivity_bits = camera.reflectivity_bits;
   LocateRois& locate = tracker.node<LocateRois>();
-  locate.settings = locate_settings(cell);
   locate.camera = camera.model;
   locate.limits = limits_of(cell);
   tracker.for_each<RoiThreshold>([&](RoiThreshold& node) {

@@ -3,6 +3,7 @@
 
 #include "nodes/check_frame.hpp"
 #include "nodes/locate_rois.hpp"
+#include "nodes/predict_tracks.hpp"
 #include "nodes/track_tools.hpp"
 #include "platform/budget/inputs/node_kernel.hpp"
 #include "platform/budget/inputs/pose_kernels.hpp"

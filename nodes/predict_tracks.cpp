@@ -1,0 +1,127 @@
+#include "nodes/predict_tracks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/elementary.hpp"
+#include "kernels/motion/predict_motion.hpp"
+#include "kernels/pose/lever_arm.hpp"
+
+namespace glint {
+namespace {
+
+// Widens the box of what is predicted by one marker with the tool's reach about it.
+void include(const CameraModel& camera, const Tool& tool, const Vector3& point,
+             const Vector2& pixel, Prediction& prediction) {
+  const double radius_px =
+      camera.fx * (prediction.reach_m + 2 * tool.marker_radius_m) / std::max(point.z(), 0.05);
+  // Eigen's cwiseMin hands its packet's function on by a pointer, whose effects nobody can see.
+  for (int axis = 0; axis < 2; ++axis) {
+    prediction.low_px[axis] = std::min(prediction.low_px[axis], pixel[axis] - radius_px);
+    prediction.high_px[axis] = std::max(prediction.high_px[axis], pixel[axis] + radius_px);
+  }
+}
+
+double largest_variance(const Matrix3& covariance) {
+  double most = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double row =
+        std::abs(covariance(i, 0)) + std::abs(covariance(i, 1)) + std::abs(covariance(i, 2));
+    most = std::max(most, row);
+  }
+  return most;
+}
+
+// Of its variance, what a walk that returns with this correlation moves by.
+double moved_share(double seconds, double correlation_s) {
+  return correlation_s > 0 ? 2 * (1 - exponential(-seconds / correlation_s)) : 2.0;
+}
+
+}  // namespace
+
+// T_camera_world: null where the head's pose is not known.
+void PredictTracks::foretell(const Track& track, const Tool& tool, Time time,
+                             const Pose* T_camera_world, Prediction& prediction) noexcept {
+  const bool in_world = track.base == ReferenceFrame::world;
+  prediction.has_prior = true;
+  prediction.missed_last = !track.seen_now;
+  prediction.follows_motion = !in_world || T_camera_world != nullptr;
+  if (!prediction.follows_motion) {
+    prediction.T_camera_tool = track.T_camera_tool;  // held where the camera saw it
+    return;
+  }
+  ++counts_[2];
+  const UncertainPose later = predict_pose(track.motion, time, settings.motion, track.noise);
+  Pose middle = later.pose;
+  prediction.covariance = later.covariance;
+  if (in_world) {
+    const double since_s = (time - track.newest.time).seconds();
+    prediction.covariance +=
+        moved_share(since_s, settings.head_correlation_s) * track.head_covariance;
+    prediction.covariance = turned_covariance(prediction.covariance, T_camera_world->rotation);
+    middle = *T_camera_world * middle;
+  }
+  prediction.T_camera_tool = {middle.rotation, middle * (-tool.middle_m())};
+}
+
+double PredictTracks::reach_of(const Prediction& prediction, const Tool& tool, int markers,
+                               double seconds) const noexcept {
+  const double half_jerk = 0.5 * settings.acceleration_max_m_s2;
+  const double widest =
+      settings.margin_m + settings.speed_max_m_s * seconds + half_jerk * seconds * seconds;
+  if (!prediction.follows_motion) return widest;
+  double variance = 0;
+  const Vector3 middle = tool.middle_m();
+  for (int m = 0; m < markers; ++m) {
+    const Vector3 lever = tool.markers_m[static_cast<std::size_t>(m)] - middle;
+    variance = std::max(variance, largest_variance(prediction.place_covariance(lever)));
+  }
+  const double start_s = std::min(seconds, settings.start_max.seconds());
+  const double least = settings.floor_m + half_jerk * start_s * start_s;
+  return std::clamp(settings.gate_sigmas * std::sqrt(variance), least, widest);
+}
+
+void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head,
+                               const graph::Latest<ToolSet>& tools,
+                               const graph::Previous<Anchor>& anchor,
+                               const graph::Previous<Estimates>& last,
+                               Predictions& predictions) noexcept {
+  // As the frame before corrected it: this one's correction rests on what is yet to be found.
+  const Pose T_camera_world = anchor.value().state.corrected(head.T_world_camera).inverse();
+  predictions.marker_count = 0;
+  counts_ = {{1}};
+  int lens_steps = 0;
+  const ToolSet& set = tools.value();
+  const int count = tools_within(set, limits);
+  for (int t = 0; t < k_tools_max; ++t) {
+    Prediction& prediction = predictions.tools[t];
+    prediction = Prediction{};
+    if (t >= count || !verdict.usable() || verdict.resynchronised) continue;
+    const Track& track = last.value().tracks[t];
+    if (!track.alive) continue;
+    const Time now = verdict.stamp.mid_exposure;
+    const Duration gap = now - track.newest.time;
+    if (gap > settings.lost_after) continue;
+
+    ++counts_[1];
+    const Tool& tool = set.items[t];
+    foretell(track, tool, now, head.valid ? &T_camera_world : nullptr, prediction);
+    const int markers = markers_within(tool, limits);
+    prediction.reach_m = reach_of(prediction, tool, markers, gap.seconds());
+    counts_[3] += markers;
+    prediction.in_view = true;
+    prediction.low_px = Vector2::Constant(1e9);
+    prediction.high_px = Vector2::Constant(-1e9);
+    for (int m = 0; m < markers; ++m) {
+      const Vector3 point = prediction.T_camera_tool * tool.markers_m[m];
+      const Result<Vector2> pixel = project(camera, point, lens_steps);
+      prediction.in_view = prediction.in_view && pixel.reason == Reason::none;
+      if (!pixel) continue;
+      predictions.markers_px[predictions.marker_count++] = pixel.value;
+      include(camera, tool, point, pixel.value, prediction);
+    }
+  }
+  counts_[4] = lens_steps;
+}
+
+}  // namespace glint
