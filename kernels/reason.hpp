@@ -32,8 +32,9 @@ enum class Reason : std::uint8_t {
   overrun_held = 20,       // what left last leaves again
   overrun_predicted = 21,  // the last known motion goes on
   overrun_stopped = 22,    // everything is declared lost
+  tool_changed = 23,       // another tool, or none, is in its place since
 };
-inline constexpr Reason k_last_reason = Reason::overrun_stopped;
+inline constexpr Reason k_last_reason = Reason::tool_changed;
 
 // Whether it stands for a measurement that was not in time.
 [[nodiscard]] constexpr bool is_overrun(Reason reason) {
@@ -47,7 +48,8 @@ inline constexpr Reason k_last_reason = Reason::overrun_stopped;
       "degenerate",    "collinear",         "bad_fit",         "frame_late",   "frame_doubled",
       "frame_invalid", "head_pose_missing", "too_old",         "runs_full",    "blobs_full",
       "search_full",   "not_prepared",      "out_of_range",    "no_reference", "overrun_skipped",
-      "overrun_held",  "overrun_predicted", "overrun_stopped"};
+      "overrun_held",  "overrun_predicted", "overrun_stopped",
+      "tool_changed"};
   const auto i = static_cast<std::size_t>(reason);
   return i < sizeof names / sizeof names[0] ? names[i] : "unknown";
 }

@@ -14,11 +14,55 @@ UncertainPose in_base(const UncertainPose& T_camera_middle, const AnchoredHead& 
               anchored.fresh_at(T_world_middle.translation)};
 }
 
+MeasuredPoint in_base(const NamedMarker& marker, const Tool& tool, const AnchoredHead& anchored) {
+  const Pose T_base_camera = anchored.head.valid ? anchored.head.T_world_camera : Pose{};
+  const Matrix3 turn = T_base_camera.rotation.toRotationMatrix();
+  MeasuredPoint point;
+  point.model_m = tool.markers_m[static_cast<std::size_t>(marker.of_tool)] - tool.middle_m();
+  point.measured_m = T_base_camera * marker.centre_m;
+  point.covariance_m2 = turn * marker.covariance_m2 * turn.transpose();
+  if (anchored.head.valid)
+    point.covariance_m2 += anchored.fresh_at(point.measured_m).topLeftCorner<3, 3>();
+  return point;
+}
+
+bool within(const Matrix3& covariance, double sigma) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(covariance(axis, axis) <= sigma * sigma)) return false;
+  }
+  return true;
+}
+
 }  // namespace
+
+// Leaves the reason, which says why there is no pose.
+void FollowMotion::follow_few(const FewMarkers& few, const Tool& shape,
+                              const AnchoredHead& anchored, Time time, int place,
+                              FollowedTool& tool) noexcept {
+  const ReferenceFrame base = anchored.head.valid ? ReferenceFrame::world : ReferenceFrame::camera;
+  if (few.count == 0 || tool.base != base) return;
+  std::array<MeasuredPoint, k_points_max> points;
+  std::uint8_t mask = 0;
+  for (int i = 0; i < few.count; ++i) {
+    const NamedMarker& marker = few.items[static_cast<std::size_t>(i)];
+    points[static_cast<std::size_t>(i)] = in_base(marker, shape, anchored);
+    mask = static_cast<std::uint8_t>(mask | (1u << marker.of_tool));
+  }
+  const auto count = static_cast<std::size_t>(few.count);
+  if (tool.motion.update(time, {points.data(), count}, settings, sums_[place]) != Reason::none)
+    return;
+  ++counts_[2];
+  tool.few_mask = mask;
+  tool.estimate = tool.motion.estimate(sums_[place]);
+  tool.noise = tool.motion.partial_noise_scale(settings);
+  const MotionCovariance& covariance = tool.estimate.covariance;
+  tool.stands = within(covariance.block<3, 3>(k_position, k_position), sure.position_m) &&
+                within(covariance.block<3, 3>(k_rotation, k_rotation), sure.rotation_rad);
+}
 
 void FollowMotion::operator()(
     const FrameVerdict& verdict, const Anchor& anchor, const graph::Latest<ToolSet>& tools,
-    const graph::Parts<FittedTools, k_tool_slices>& fitted,
+    const graph::Parts<FittedTools, k_tool_slices>& fitted, const SeenFew& few,
     const graph::Previous<graph::Parts<FollowedTools, k_tool_slices>>& last, graph::Slice slice,
     FollowedTools& followed) noexcept {
   const ToolSet& set = tools.value();
@@ -30,6 +74,12 @@ void FollowMotion::operator()(
     FollowedTool& tool = followed.items[place];
     tool = last.value()[slice.index].items[place];
     tool.reason = verdict.reason;
+    tool.few_mask = 0;
+    tool.stands = false;
+    if (tool.identity != set.items[t].identity) {
+      tool.motion.forget();
+      tool.identity = set.items[t].identity;
+    }
     if (!verdict.usable()) continue;  // a refused frame changes nothing that is known of a tool
     if (verdict.resynchronised) tool.motion.forget();
     const AnchoredHead& anchored = anchor.now;
@@ -37,7 +87,10 @@ void FollowMotion::operator()(
       tool.motion.move(anchored.moved);
     const FittedTool& found = fitted[slice.index].tools[t];
     tool.reason = found.reason;
-    if (found.reason != Reason::none) continue;
+    if (found.reason != Reason::none) {
+      follow_few(few.tools[t], set.items[t], anchored, verdict.stamp.mid_exposure, place, tool);
+      continue;
+    }
     const ReferenceFrame base =
         anchored.head.valid ? ReferenceFrame::world : ReferenceFrame::camera;
     if (tool.base != base) tool.motion.forget();

@@ -57,6 +57,7 @@ void LocateRois::operator()(const FrameVerdict& verdict, const graph::Latest<Too
   bool whole_frame = false;
   const int count = tools_within(set, limits);
   for (int t = 0; t < count && !whole_frame; ++t) {
+    if (!set.items[t].present()) continue;
     const Prediction& prediction = predictions.tools[t];
     ++counts_[1];
     Roi box;

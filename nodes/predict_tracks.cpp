@@ -52,8 +52,10 @@ void PredictTracks::foretell(const Track& track, const Tool& tool, Time time,
   }
   ++counts_[2];
   const UncertainPose later = predict_pose(track.motion, time, settings.motion, track.noise);
-  Pose middle = later.pose;
-  prediction.covariance = later.covariance;
+  const bool goes_on = time - track.motion.time <= settings.horizon;
+  Pose middle = goes_on ? later.pose : track.motion.pose;
+  prediction.covariance = track.surprise * later.covariance;
+  prediction.reach_m = goes_on ? 0 : (later.pose.translation - middle.translation).norm();
   if (in_world) {
     const double since_s = (time - track.newest.time).seconds();
     prediction.covariance +=
@@ -78,7 +80,7 @@ double PredictTracks::reach_of(const Prediction& prediction, const Tool& tool, i
   }
   const double start_s = std::min(seconds, settings.start_max.seconds());
   const double least = settings.floor_m + half_jerk * start_s * start_s;
-  return std::clamp(settings.gate_sigmas * std::sqrt(variance), least, widest);
+  return std::clamp(prediction.reach_m + settings.gate_sigmas * std::sqrt(variance), least, widest);
 }
 
 void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head,
@@ -98,7 +100,7 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
     prediction = Prediction{};
     if (t >= count || !verdict.usable() || verdict.resynchronised) continue;
     const Track& track = last.value().tracks[t];
-    if (!track.alive) continue;
+    if (!track.alive || track.identity != set.items[t].identity) continue;
     const Time now = verdict.stamp.mid_exposure;
     const Duration gap = now - track.newest.time;
     if (gap > settings.lost_after) continue;

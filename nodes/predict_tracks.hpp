@@ -28,6 +28,8 @@ namespace glint {
 
 struct ReachSettings {
   Duration lost_after = milliseconds(250);
+  // Beyond it speeds and accelerations say less than the last place: the tool is held there.
+  Duration horizon = milliseconds(60);
   MotionSettings motion;              // as those that the tracks were followed with
   double head_correlation_s = 0.4;    // of the headset's own error while it moves
   // The gate only limits cost, the residual decides: wide enough that noise never reaches it.

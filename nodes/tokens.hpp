@@ -9,6 +9,7 @@
 #include "kernels/motion/head_anchor.hpp"
 #include "kernels/motion/interpolate.hpp"
 #include "kernels/motion/motion_track.hpp"
+#include "kernels/pose/few_markers.hpp"
 #include "kernels/pose/labeling.hpp"
 #include "kernels/pose/lever_arm.hpp"
 #include "kernels/pose/tool.hpp"
@@ -77,6 +78,11 @@ struct Assignment {
   std::array<Reason, k_tools_max> reason{};  // none: labeling holds
 };
 
+// Of each tool without a labeling, the one or two markers that can only be its own.
+struct SeenFew {
+  std::array<FewMarkers, k_tools_max> tools;
+};
+
 // The pose of each tool in this frame.
 struct FittedTool {
   Reason reason = Reason::no_frame_yet;
@@ -101,6 +107,7 @@ struct FittedTools {
 
 // The head's pose in this frame as the reference body corrects it, and what is known for the next.
 struct Anchor {
+  std::uint32_t body = 0;  // the reference tool's identity
   HeadAnchor state;
   AnchoredHead now;
   Pose T_world_reference;  // of the reference tool's own frame, once state.known()
@@ -113,6 +120,11 @@ struct FollowedTool {
   MotionState estimate;  // motion's, once it is known
   NoiseScale noise;      // motion's
   ReferenceFrame base = ReferenceFrame::camera;
+  std::uint32_t identity = 0;  // of the tool that it is of
+  // One or two markers moved it on in place of a pose: which; 0: none. It stands if its pose is
+  // still sure enough to be called measured.
+  std::uint8_t few_mask = 0;
+  bool stands = false;
 };
 // Of one slice: tool t is number t / k_tool_slices.
 struct FollowedTools {
@@ -121,19 +133,23 @@ struct FollowedTools {
 
 // What is known of a tool after a frame: its newest pose and the one before, from which velocity
 // follows. `base` is the frame both are in: the world, or the camera where no head pose was valid.
+// A pose that rests on one or two markers is the newest like any other, as long as it is sure enough
+// (FollowMotion); its mask has no more, and the reason says why there are no more.
 struct Track {
   bool alive = false;                    // a pose younger than lost_after exists
-  bool seen_now = false;                 // this frame gave it
+  bool seen_now = false;                 // this frame gave it, by three markers or more
   bool has_previous = false;             // `previous` is in the same base and recent enough
   Reason reason = Reason::no_frame_yet;  // why this frame gave none
   ReferenceFrame base = ReferenceFrame::camera;
   std::uint8_t marker_mask = 0;
   std::uint32_t frame_sequence = 0;
-  double rms_m = 0;
+  std::uint32_t identity = 0;  // of the tool that it is of
+  double rms_m = 0;            // of the newest that three markers or more gave
   StampedPose newest, previous;  // T_base_tool
   Pose T_camera_tool;            // the newest, as the camera saw it
-  MotionState motion;  // T_base_middle (of its markers) and how it changes, at newest.time
+  MotionState motion;  // T_base_middle (of its markers) and how it changes, not before newest.time
   NoiseScale noise;    // of what the hand does next, as motion's filter has it
+  double surprise = 1;  // variance of the newest measurement beside what was foretold; 1: no more
   // What the headset's own error adds to motion's covariance, about the same point and axes.
   Matrix6 head_covariance = Matrix6::Zero();
 };

@@ -1,7 +1,14 @@
 #include "nodes/track_tools.hpp"
 
+#include <algorithm>
+
 namespace glint {
 namespace {
+
+// More than the filter foretold of the newest measurement, of so many numbers.
+double surprise_of(const FollowedTool& followed, double numbers) {
+  return std::max(1.0, followed.motion.last_correction().chi_square / numbers);
+}
 
 void accept(const FittedTool& found, const FollowedTool& followed, const FrameStamp& stamp,
             const AnchoredHead& anchored, Duration velocity_gap_max, Track& track) {
@@ -22,8 +29,28 @@ void accept(const FittedTool& found, const FollowedTool& followed, const FrameSt
   track.T_camera_tool = found.T_camera_tool;
   track.motion = followed.estimate;
   track.noise = followed.noise;
+  track.surprise = surprise_of(followed, 6);
   track.head_covariance = Matrix6::Zero();
   if (head.valid) track.head_covariance = anchored.lasting_at(track.motion.pose.translation);
+}
+
+// One or two markers moved it on. The pose that stands is the filter's, for they give none.
+void accept_few(const FollowedTool& followed, const Tool& tool, const FrameStamp& stamp,
+                const AnchoredHead& anchored, Track& track) {
+  track.motion = followed.estimate;
+  track.noise = followed.noise;
+  track.surprise = surprise_of(followed, 3);
+  if (!followed.stands) return;
+  const HeadPose& head = anchored.head;
+  const Pose& middle = track.motion.pose;
+  const Pose pose{middle.rotation, middle * (-tool.middle_m())};
+  track.has_previous = false;
+  track.newest = {stamp.mid_exposure, pose};
+  track.marker_mask = followed.few_mask;
+  track.frame_sequence = stamp.sequence;
+  track.T_camera_tool = head.valid ? head.T_world_camera.inverse() * pose : pose;
+  track.head_covariance = Matrix6::Zero();
+  if (head.valid) track.head_covariance = anchored.lasting_at(middle.translation);
 }
 
 // The world turned out to lie elsewhere: what is known of the tool moves along.
@@ -31,6 +58,18 @@ void move(const AnchoredHead& anchored, Track& track) {
   track.newest.pose = anchored.moved * track.newest.pose;
   track.previous.pose = anchored.moved * track.previous.pose;
   track.motion = moved_state(track.motion, anchored.moved);
+}
+
+void restart(const Tool& tool, Track& track) {
+  track = Track{};
+  track.identity = tool.identity;
+}
+
+// Of a slot that was empty from the start nothing has changed.
+void exchange(const Tool& tool, Track& track) {
+  const bool first = track.identity == 0 && track.reason == Reason::no_frame_yet;
+  restart(tool, track);
+  if (!first) track.reason = Reason::tool_changed;
 }
 
 }  // namespace
@@ -54,10 +93,13 @@ void TrackTools::operator()(const FrameVerdict& verdict, const Anchor& anchor,
       estimates.arm_m[t] = Vector3::Zero();
       continue;
     }
-    estimates.arm_m[t] = set.items[t].tip_m - set.items[t].middle_m();
+    const Tool& shape = set.items[t];
+    estimates.arm_m[t] = shape.tip_m - shape.middle_m();
     track = last.value().tracks[t];
+    if (track.identity != shape.identity) exchange(shape, track);
+    if (!shape.present()) continue;
     if (!verdict.usable()) continue;  // a refused frame changes nothing that is known of a tool
-    if (verdict.resynchronised) track = Track{};
+    if (verdict.resynchronised) restart(shape, track);
     if (anchor.now.moved_along && track.base == ReferenceFrame::world) move(anchor.now, track);
 
     const FollowedTool& tool = followed[t % k_tool_slices].items[t / k_tool_slices];
@@ -69,9 +111,11 @@ void TrackTools::operator()(const FrameVerdict& verdict, const Anchor& anchor,
     }
     track.seen_now = false;
     track.reason = tool.reason;
+    if (tool.few_mask != 0 && track.alive)
+      accept_few(tool, shape, verdict.stamp, anchor.now, track);
     if (verdict.stamp.mid_exposure - track.newest.time > settings.lost_after) {
       const Reason why = track.reason;
-      track = Track{};
+      restart(shape, track);
       track.reason = why;
     }
   }

@@ -2,7 +2,7 @@
 //
 //   Frame ─► StampFrame ─► CheckFrame ─► PredictTracks ─► LocateRois ─► RoiThreshold x4 ─►
 //   FindBlobs
-//     ─► BackProject ─► Correspond x4 ─► AssignMarkers ─► RefinePose x4 ─►
+//     ─► BackProject ─► Correspond x4 ─► AssignMarkers ─► RefinePose x4, NameFew ─►
 //   AnchorHead ─► FollowMotion x4 ─► TrackTools ─► Estimates
 //                           ▲ PredictTracks and TrackTools read Previous<Estimates>
 //
@@ -15,6 +15,7 @@
 #include "nodes/follow_motion.hpp"
 #include "nodes/image_nodes.hpp"
 #include "nodes/locate_rois.hpp"
+#include "nodes/name_few.hpp"
 #include "nodes/pose_nodes.hpp"
 #include "nodes/predict_tracks.hpp"
 #include "nodes/refine_pose.hpp"
@@ -26,6 +27,7 @@ using Tracker = graph::Graph<graph::Inputs<Frame, HeadPose, graph::Latest<ToolSe
                              graph::Outputs<Estimates>, StampFrame, CheckFrame, PredictTracks,
                              LocateRois, graph::Split<RoiThreshold, k_row_bands>, FindBlobs,
                              BackProject, graph::Split<Correspond, k_tool_slices>, AssignMarkers,
+                             NameFew,
                              graph::Split<RefinePose, k_tool_slices>, AnchorHead,
                              graph::Split<FollowMotion, k_tool_slices>, TrackTools>;
 static_assert(graph::valid<Tracker>);
@@ -33,7 +35,7 @@ static_assert(graph::valid<Tracker>);
 using MarkerTracker =
     graph::Graph<graph::Inputs<FrameStamp, Markers, HeadPose, graph::Latest<ToolSet>>,
                  graph::Outputs<Estimates>, CheckFrame, PredictTracks,
-                 graph::Split<Correspond, k_tool_slices>, AssignMarkers,
+                 graph::Split<Correspond, k_tool_slices>, AssignMarkers, NameFew,
                  graph::Split<RefinePose, k_tool_slices>, AnchorHead,
                  graph::Split<FollowMotion, k_tool_slices>, TrackTools>;
 static_assert(graph::valid<MarkerTracker>);

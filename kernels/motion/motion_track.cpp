@@ -79,9 +79,7 @@ Reason MotionTrack::update(Time time, std::span<const MeasuredPoint> points,
     return Reason::too_few_markers;
   // Single markers are no poses to average: from a rest the filter goes on where the rest was.
   MotionState next = estimate(sums);
-  const NoiseScale scale{settings.partial_noise * briskest_.linear,
-                         settings.partial_noise * briskest_.angular};
-  propagate(next, time, settings.motion, scale);
+  propagate(next, time, settings.motion, partial_noise_scale(settings));
   const std::size_t count = std::min(points.size(), k_points_max);
   for (std::size_t i = 0; i < count; ++i) {
     correction_ = correct_by_point(next, points[i]);

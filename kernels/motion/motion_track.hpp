@@ -64,6 +64,10 @@ class MotionTrack {
   [[nodiscard]] bool known() const { return known_; }
   [[nodiscard]] bool rests() const { return rest_.rests(); }
   [[nodiscard]] const NoiseScale& noise_scale() const { return scale_; }
+  // What one or two markers are followed with: more, see partial_noise.
+  [[nodiscard]] NoiseScale partial_noise_scale(const ToolMotionSettings& settings) const {
+    return {settings.partial_noise * briskest_.linear, settings.partial_noise * briskest_.angular};
+  }
   // At the newest measurement's time.
   [[nodiscard]] MotionState estimate(const RestSums& sums) const noexcept GLINT_NONBLOCKING;
   [[nodiscard]] const Correction& last_correction() const { return correction_; }

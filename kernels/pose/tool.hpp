@@ -20,6 +20,12 @@ struct Tool {
   MarkerShape shape = MarkerShape::sphere;
   Vector3 tip_m = Vector3::Zero();  // tool frame
   std::array<char, 32> name{};      // zero-terminated
+  // Of its body, so that a slot of the set whose tool is exchanged is seen to be: from all fields
+  // above but the name, by prepare_tool(). 0: not prepared.
+  std::uint32_t identity = 0;
+
+  // A slot of the set may be empty.
+  [[nodiscard]] bool present() const { return marker_count > 0; }
 
   // The mean of its markers, in the tool's frame.
   [[nodiscard]] Vector3 middle_m() const {
@@ -43,7 +49,7 @@ struct ToolSet {
 // Two markers nearer to each other than this are one: no marker is that small.
 inline constexpr double k_marker_distance_min_m = 0.001;
 
-// Fills distance_m from markers_m. Reason: too_few_markers (< 3), out_of_range (more than
+// Fills distance_m from markers_m, and the identity. Reason: too_few_markers (< 3), out_of_range (more than
 // k_markers_per_tool_max, or a coordinate that is not finite), degenerate (two markers in one
 // place) or collinear. Such a tool must not be used.
 [[nodiscard]] Reason prepare_tool(Tool& tool) noexcept;

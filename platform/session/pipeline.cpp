@@ -82,6 +82,8 @@ void configure_common(const Cell& cell, AnyTracker& tracker) {
     node.limits = limits;
   });
   tracker.template node<AssignMarkers>().limits = limits;
+  tracker.template node<NameFew>().limits = limits;
+  tracker.template node<NameFew>().noise.focal_px = cell.camera.model.fx;
   tracker.template for_each<RefinePose>([&](RefinePose& node) {
     node.limits = limits;
     node.noise = MarkerNoise{};

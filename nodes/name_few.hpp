@@ -1,0 +1,40 @@
+// The one or two markers of a tool that no labeling found, where they can be no other's: what a
+// hand leaves in view holds the tool until it lets go. Nothing is done in a frame in which every
+// predicted tool has a labeling.
+// Cost and worst input: kernels/pose/few_markers.hpp.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "graph/graph.hpp"
+#include "kernels/nonblocking.hpp"
+#include "kernels/pose/few_markers.hpp"
+#include "nodes/node_limits.hpp"
+#include "nodes/tokens.hpp"
+
+namespace glint {
+
+struct NameFew {
+  static constexpr std::array<std::string_view, 4> k_loops = {"call", "tools", "gates", "tests"};
+  [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
+    const std::int64_t gates = std::int64_t{limits.tools} * limits.markers_per_tool;
+    return {{1, limits.tools, gates, gates * limits.blobs}};
+  }
+  [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
+
+  MarkerNoise noise;
+  Limits limits;
+  void operator()(const FrameVerdict& verdict, const Markers& markers,
+                  const graph::Latest<ToolSet>& tools, const Predictions& predictions,
+                  const Assignment& assignment, SeenFew& seen) noexcept GLINT_NONBLOCKING;
+
+ private:
+  std::array<ExpectedTool, k_tools_max> expected_;
+  FewScratch scratch_;
+  graph::LoopCounts counts_;
+};
+
+static_assert(graph::Budgeted<NameFew, Limits>);
+
+}  // namespace glint
