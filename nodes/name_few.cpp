@@ -12,7 +12,7 @@ void NameFew::operator()(const FrameVerdict& verdict, const Markers& markers,
   if (!verdict.usable()) return;
   const ToolSet& set = tools.value();
   const auto count = static_cast<std::size_t>(tools_within(set, limits));
-  MarkerSet taken;
+  TakenMarkers taken;
   bool any_wanted = false;
   for (std::size_t t = 0; t < count; ++t) {
     const Prediction& prediction = predictions.tools[t];

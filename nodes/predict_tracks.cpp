@@ -22,16 +22,6 @@ void include(const CameraModel& camera, const Tool& tool, const Vector3& point,
   }
 }
 
-double largest_variance(const Matrix3& covariance) {
-  double most = 0;
-  for (int i = 0; i < 3; ++i) {
-    const double row =
-        std::abs(covariance(i, 0)) + std::abs(covariance(i, 1)) + std::abs(covariance(i, 2));
-    most = std::max(most, row);
-  }
-  return most;
-}
-
 // Of its variance, what a walk that returns with this correlation moves by.
 double moved_share(double seconds, double correlation_s) {
   return correlation_s > 0 ? 2 * (1 - exponential(-seconds / correlation_s)) : 2.0;

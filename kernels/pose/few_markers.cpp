@@ -24,11 +24,6 @@ Matrix3 centre_covariance(const MarkerSight& sight, double range_m) {
   return (range_m * range_m) * across + v.range_m2 * (rays.ray * rays.ray.transpose());
 }
 
-// Half as long as the gate's longest axis, or more: the trace holds all three.
-double radius_of(const Matrix3& covariance) {
-  return std::sqrt(chi_square_limit(3) * covariance.trace());
-}
-
 void open_gate(const ExpectedTool& expected, int marker, const MarkerNoise& noise, Gate& gate,
                double& radius_m) {
   const Tool& tool = *expected.tool;
@@ -49,7 +44,7 @@ void open_gate(const ExpectedTool& expected, int marker, const MarkerNoise& nois
   if (!factor.positive) return;
   for (int axis = 0; axis < 3; ++axis)
     gate.whiten.col(axis) = factor.forward(Vector3::Unit(axis));
-  radius_m = radius_of(covariance);
+  radius_m = std::sqrt(chi_square_limit(3) * largest_variance(covariance));
 }
 
 void open_gates(const ExpectedTool& expected, const MarkerNoise& noise,
@@ -109,7 +104,7 @@ void name(const ExpectedTool& expected, const Markers& markers, const FewScratch
 }  // namespace
 
 FewWork name_few(std::span<const ExpectedTool> tools, const Markers& markers, int markers_max,
-                 const MarkerSet& taken, const MarkerNoise& noise, FewScratch& scratch,
+                 const TakenMarkers& taken, const MarkerNoise& noise, FewScratch& scratch,
                  std::span<FewMarkers> named) noexcept {
   FewWork work;
   const std::size_t tool_count =

@@ -50,15 +50,15 @@ struct ExpectedTool {
   bool wanted = false;     // it has no labeling: its markers are to be named
 };
 
-using MarkerSet = std::bitset<k_blobs_max>;
+using TakenMarkers = std::bitset<k_blobs_max>;
 
 struct FewScratch {
   struct Gate {
-    Vector3 place_m;
-    Matrix3 whiten;       // a residual's squared length by it is its chi square
-    bool apart = false;   // meets no other gate of the same tool
-    int held = 0;         // markers in it that no labeling has taken
-    int marker = -1;      // the last of them
+    Vector3 place_m = Vector3::Zero();
+    Matrix3 whiten = Matrix3::Zero();  // a residual's squared length by it is its chi square
+    bool apart = false;  // meets no other gate of the same tool
+    int held = 0;        // markers in it that no labeling has taken
+    int marker = -1;     // the last of them
   };
   std::array<std::array<Gate, k_markers_per_tool_max>, k_tools_max> gates;
   std::array<std::uint8_t, k_blobs_max> claims{};  // gates that hold the marker
@@ -72,7 +72,7 @@ struct FewWork {
 // taken: markers that a labeling holds. markers_max of the markers are looked at. One element of
 // `named` for each tool.
 FewWork name_few(std::span<const ExpectedTool> tools, const Markers& markers, int markers_max,
-                 const MarkerSet& taken, const MarkerNoise& noise, FewScratch& scratch,
+                 const TakenMarkers& taken, const MarkerNoise& noise, FewScratch& scratch,
                  std::span<FewMarkers> named) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

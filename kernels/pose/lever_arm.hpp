@@ -2,6 +2,9 @@
 // points of one tool.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "kernels/geometry.hpp"
 
 namespace glint {
@@ -36,6 +39,17 @@ namespace glint {
   turn.topLeftCorner<3, 3>() = rotation.toRotationMatrix();
   turn.bottomRightCorner<3, 3>() = turn.topLeftCorner<3, 3>();
   return turn * covariance * turn.transpose();
+}
+
+// No direction's variance is larger: no eigenvalue exceeds the largest row sum (Gershgorin 1931).
+[[nodiscard]] inline double largest_variance(const Matrix3& covariance) {
+  double most = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double row =
+        std::abs(covariance(i, 0)) + std::abs(covariance(i, 1)) + std::abs(covariance(i, 2));
+    most = std::max(most, row);
+  }
+  return most;
 }
 
 }  // namespace glint

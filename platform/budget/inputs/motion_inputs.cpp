@@ -90,6 +90,7 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
       FittedTool& tool = fitted_[0].tools[t];
       const bool found = missed == 0 || !numbers.one_in(missed);
       tool.reason = found ? Reason::none : Reason::no_labeling;
+      show_few(t, found ? 0 : numbers.below(k_few_max + 1));
       const Vector3 noise = 1.7 * k_shift_sigma_m * numbers.in_box(2);
       const Vector3 turn = 1.7 * k_turn_sigma_rad * numbers.in_box(2);
       tool.T_camera_tool.rotation = (from_rotation_vector(turn) * rest_[t].rotation).normalized();
@@ -101,13 +102,21 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
       tool.covariance = moved_covariance(tool.covariance, tool.T_camera_tool.rotation * arm);
     }
   }
+  // Where the tool rests, by as many of its markers.
+  void show_few(int t, int count) {
+    FewMarkers& few = few_.tools[t];
+    few.count = count;
+    for (int m = 0; m < count; ++m) {
+      few.items[m] = {m, rest_[t] * set_.items[t].markers_m[m], Matrix3::Identity() * 1e-6};
+    }
+  }
   void follow(Numbers& numbers, const Vector3& velocity) {
     see(numbers, velocity, 0);
     call(start_, followed_);
     last_[0] = followed_;
   }
   void call(FollowMotion& node, FollowedTools& followed) noexcept {
-    node(verdict_, anchor_, tools_, fitted_, graph::Previous<Followed>(last_),
+    node(verdict_, anchor_, tools_, fitted_, few_, graph::Previous<Followed>(last_),
          graph::Slice{0, k_tool_slices}, followed);
   }
 
@@ -119,6 +128,7 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
   ToolSet set_;
   graph::Latest<ToolSet> tools_;
   graph::Parts<FittedTools, k_tool_slices> fitted_;
+  SeenFew few_;
   Followed last_;
   FollowedTools followed_;
 };

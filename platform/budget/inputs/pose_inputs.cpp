@@ -9,6 +9,7 @@ void add_pose_kernels(std::vector<std::unique_ptr<MeasuredKernel>>& kernels) {
   kernels.push_back(inputs::locate_rois_kernel());
   kernels.push_back(inputs::correspond_kernel());
   kernels.push_back(inputs::assign_markers_kernel());
+  kernels.push_back(inputs::name_few_kernel());
   kernels.push_back(inputs::refine_pose_kernel());
   kernels.push_back(inputs::anchor_head_kernel());
   kernels.push_back(inputs::follow_motion_kernel());

@@ -13,6 +13,7 @@ namespace glint::inputs {
 [[nodiscard]] std::unique_ptr<MeasuredKernel> locate_rois_kernel();
 [[nodiscard]] std::unique_ptr<MeasuredKernel> correspond_kernel();
 [[nodiscard]] std::unique_ptr<MeasuredKernel> assign_markers_kernel();
+[[nodiscard]] std::unique_ptr<MeasuredKernel> name_few_kernel();
 [[nodiscard]] std::unique_ptr<MeasuredKernel> refine_pose_kernel();
 [[nodiscard]] std::unique_ptr<MeasuredKernel> anchor_head_kernel();
 [[nodiscard]] std::unique_ptr<MeasuredKernel> follow_motion_kernel();

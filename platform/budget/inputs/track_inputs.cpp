@@ -104,8 +104,22 @@ struct Tracked {
       track.previous = {Time{} + milliseconds(22), base * before};
       track.T_camera_tool = seen;
       track.marker_mask = 31;
+      track.identity = set.items[t].identity;
+      follow(base * seen, numbers, set.items[t], track);
+      track.head_covariance = Matrix6::Identity() * 1e-6;
     }
     tools.set(set, 1, 0);
+  }
+
+  // As a filter leaves it.
+  static void follow(const Pose& T_base_tool, Numbers& numbers, const Tool& tool, Track& track) {
+    MotionState& motion = track.motion;
+    motion.time = track.newest.time;
+    motion.pose = {T_base_tool.rotation, T_base_tool * tool.middle_m()};
+    motion.velocity_m_s = numbers.in_box(1);
+    motion.acceleration_m_s2 = numbers.in_box(1);
+    motion.angular_velocity_rad_s = numbers.in_box(2);
+    motion.covariance = MotionCovariance::Identity() * 1e-5;
   }
 };
 
@@ -154,7 +168,7 @@ class PredictTracksKernel final : public NodeKernel<PredictTracks> {
       Track& track = tracked_.last.tracks[t];
       const Pose base = tracked_.head.valid ? tracked_.head.T_world_camera : Pose{};
       track.newest.pose = base * aside;
-      track.previous.pose = base * aside;
+      track.motion.pose = base * aside;
       track.T_camera_tool = aside;
     }
   }
@@ -174,6 +188,7 @@ class LocateRoisKernel final : public NodeKernel<LocateRois> {
     start_.camera.height = limits.height;
     set_.count = at_its_worst(kind) ? limits.tools : 1 + numbers.below(limits.tools);
     for (int t = 0; t < set_.count; ++t) {
+      set_.items[t].marker_count = limits.markers_per_tool;
       Prediction& prediction = predictions_.tools[t];
       prediction = {};
       prediction.has_prior = at_its_worst(kind) || !numbers.one_in(20);

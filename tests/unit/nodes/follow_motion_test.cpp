@@ -44,8 +44,8 @@ class FollowMotion : public testing::Test {
     tool.T_camera_tool = {seen.pose.rotation, seen.pose.translation + aside};
     tool.covariance = seen.covariance;
     FollowedTools out;
-    node_(verdict, anchor_, tools_, *fitted_, graph::Previous<Followed>(*last_), {0, k_tool_slices},
-          out);
+    node_(verdict, anchor_, tools_, *fitted_, few_, graph::Previous<Followed>(*last_),
+          {0, k_tool_slices}, out);
     return out;
   }
   const FollowedTool& tool() { return followed_->items[0]; }
@@ -59,6 +59,7 @@ class FollowMotion : public testing::Test {
   int number_ = 1;
   std::unique_ptr<graph::Parts<FittedTools, k_tool_slices>> fitted_ =
       std::make_unique<graph::Parts<FittedTools, k_tool_slices>>();
+  SeenFew few_;
   std::unique_ptr<Followed> last_ = std::make_unique<Followed>();
   std::unique_ptr<FollowedTools> followed_ = std::make_unique<FollowedTools>();
   glint::FollowMotion node_;
@@ -141,6 +142,171 @@ TEST_F(FollowMotion, CountsTheHeadsFreshErrorAmongTheNoise) {
   anchor_.now.fresh = Matrix6::Identity() * 4e-6;
   for (int i = 0; i < 4; ++i) frame();
   EXPECT_GT(tool().estimate.covariance(0, 0), 2 * sure);
+}
+
+// The tool's first `count` markers, where they are.
+void show_few(const Tool& tool, const Pose& T_camera_tool, int count, SeenFew& few) {
+  few.tools[0].count = count;
+  for (int m = 0; m < count; ++m) {
+    const auto i = static_cast<std::size_t>(m);
+    few.tools[0].items[i] = {m, T_camera_tool * tool.markers_m[i], Matrix3::Identity() * 1e-7};
+  }
+}
+
+TEST_F(FollowMotion, GoesOnByOneOrTwoMarkersAndSaysWhich) {
+  for (int i = 0; i < 60; ++i) frame();
+  for (int i = 0; i < 9; ++i) {
+    T_camera_tool_.translation.x() += 0.002;
+    show_few(set_->items[0], T_camera_tool_, 2, few_);
+    frame(false);
+    EXPECT_EQ(tool().reason, Reason::no_labeling);
+    EXPECT_EQ(tool().few_mask, 0b011);
+    EXPECT_EQ(tool().estimate.time, Time{} + milliseconds(22) * (number_ - 1));
+  }
+  const Vector3 marker =
+      anchor_.now.head.T_world_camera * T_camera_tool_ * set_->items[0].markers_m[0];
+  const Pose& middle = tool().estimate.pose;
+  const Vector3 foretold = middle * (set_->items[0].markers_m[0] - set_->items[0].middle_m());
+  EXPECT_LT((foretold - marker).norm(), 0.001);
+  few_ = {};
+  frame();
+  EXPECT_EQ(tool().few_mask, 0);
+}
+
+TEST_F(FollowMotion, LetsAPoseByOneMarkerStandOnlyWhileItIsSure) {
+  for (int i = 0; i < 60; ++i) frame();
+  show_few(set_->items[0], T_camera_tool_, 1, few_);
+  frame(false);
+  EXPECT_TRUE(tool().stands);
+  int standing = 1;
+  for (int i = 0; i < 40; ++i) {
+    frame(false);
+    standing += tool().stands ? 1 : 0;
+    const MotionCovariance& p = tool().estimate.covariance;
+    double most_m = 0, most_rad = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      most_m = std::max(most_m, std::sqrt(p(axis, axis)));
+      most_rad = std::max(most_rad, std::sqrt(p(k_rotation + axis, k_rotation + axis)));
+    }
+    EXPECT_EQ(tool().stands, most_m <= 0.005 && most_rad <= 0.065) << most_m << ' ' << most_rad;
+  }
+  EXPECT_LT(standing, 30) << "what turns about the marker shows nowhere";
+  EXPECT_NE(tool().few_mask, 0) << "it is followed all the same";
+}
+
+TEST_F(FollowMotion, TakesNoMarkerForAToolThatItDoesNotKnow) {
+  show_few(set_->items[0], T_camera_tool_, 2, few_);
+  frame(false);
+  EXPECT_EQ(tool().few_mask, 0);
+  for (int i = 0; i < 9; ++i) frame();
+  anchor_.now.head.valid = false;
+  frame(false);
+  EXPECT_EQ(tool().few_mask, 0) << "in another frame than it was followed in";
+}
+
+TEST_F(FollowMotion, BeginsAnewWhereAnotherToolTookThePlace) {
+  for (int i = 0; i < 60; ++i) frame();
+  ASSERT_TRUE(tool().motion.rests());
+  set_->items[0].identity = 7;
+  tools_.set(*set_, 2, 0);
+  refused_ = true;
+  frame();
+  EXPECT_FALSE(tool().motion.known()) << "also in a frame that is refused";
+  refused_ = false;
+  T_camera_tool_.translation.x() += 0.1;
+  frame();
+  const Vector3 middle =
+      anchor_.now.head.T_world_camera * T_camera_tool_ * set_->items[0].middle_m();
+  EXPECT_LT((tool().estimate.pose.translation - middle).norm(), 0.005) << "not drawn to the old";
+}
+
+class TrackToolsInTime : public testing::Test {
+ protected:
+  TrackToolsInTime() {
+    set_->count = 1;
+    Tool& tool = set_->items[0];
+    tool.marker_count = 3;
+    tool.markers_m = {Vector3(0, 0, 0), Vector3(0.06, 0, 0), Vector3(0, 0.06, 0)};
+    tool.identity = 5;
+  }
+  FollowedTool& followed() { return (*followed_)[0].items[0]; }
+  const Track& frame() {
+    graph::Latest<ToolSet> tools;
+    tools.set(*set_, 1, 0);
+    FrameVerdict verdict;
+    verdict.reason = refused_ ? Reason::frame_late : Reason::none;
+    verdict.stamp.mid_exposure = followed().estimate.time = Time{} + milliseconds(22) * ++number_;
+    verdict.stamp.sequence = static_cast<std::uint32_t>(number_);
+    *last_ = *out_;
+    node_(verdict, Anchor{}, tools, *fitted_, *followed_, graph::Previous<Estimates>(*last_), *out_);
+    return out_->tracks[0];
+  }
+  const Track& found() {
+    followed().reason = Reason::none;
+    (*fitted_)[0].tools[0].marker_mask = 7;
+    return frame();
+  }
+  const Track& few(bool stands) {
+    followed().reason = Reason::too_few_markers;
+    followed().few_mask = 3;
+    followed().stands = stands;
+    return frame();
+  }
+  bool refused_ = false;
+  int number_ = 0;
+  std::unique_ptr<ToolSet> set_ = std::make_unique<ToolSet>();
+  std::unique_ptr<graph::Parts<FittedTools, k_tool_slices>> fitted_ =
+      std::make_unique<graph::Parts<FittedTools, k_tool_slices>>();
+  std::unique_ptr<graph::Parts<FollowedTools, k_tool_slices>> followed_ =
+      std::make_unique<graph::Parts<FollowedTools, k_tool_slices>>();
+  std::unique_ptr<Estimates> last_ = std::make_unique<Estimates>(),
+                             out_ = std::make_unique<Estimates>();
+  TrackTools node_;
+};
+
+TEST_F(TrackToolsInTime, MakesAPoseByFewMarkersTheNewestAndKeepsWhyThereAreNoMore) {
+  (void)found();
+  followed().estimate.pose.translation = {0.1, 0, 0.5};
+  const Track& track = few(true);
+  EXPECT_EQ(track.newest.time, Time{} + milliseconds(44));
+  EXPECT_EQ(track.marker_mask, 3);
+  EXPECT_EQ(track.reason, Reason::too_few_markers);
+  EXPECT_FALSE(track.seen_now) << "the whole frame is searched for the others";
+  const Vector3 middle = track.newest.pose * set_->items[0].middle_m();
+  EXPECT_LT((middle - Vector3(0.1, 0, 0.5)).norm(), 1e-12);
+}
+
+TEST_F(TrackToolsInTime, LosesAToolWhosePoseByFewMarkersIsTooUnsure) {
+  (void)found();
+  for (int i = 0; i < 11; ++i) {
+    const Track& track = few(false);
+    ASSERT_TRUE(track.alive);
+    EXPECT_EQ(track.newest.time, Time{} + milliseconds(22));
+    EXPECT_EQ(track.motion.time, Time{} + milliseconds(22) * number_);
+    EXPECT_EQ(track.marker_mask, 7);
+  }
+  EXPECT_FALSE(few(false).alive) << "250 ms after the last that stood";
+}
+
+TEST_F(TrackToolsInTime, LosesAToolThatIsExchangedOrTakenAway) {
+  ASSERT_TRUE(found().alive);
+  set_->items[0].identity = 6;
+  refused_ = true;
+  const Track* track = &frame();
+  EXPECT_FALSE(track->alive);
+  EXPECT_EQ(track->reason, Reason::tool_changed);
+  refused_ = false;
+  ASSERT_TRUE(found().alive);
+  set_->items[0] = Tool{};
+  track = &frame();
+  EXPECT_FALSE(track->alive);
+  EXPECT_EQ(track->reason, Reason::tool_changed);
+  EXPECT_EQ(found().reason, Reason::tool_changed) << "an empty slot finds nothing";
+}
+
+TEST_F(TrackToolsInTime, SaysOfASlotThatWasNeverFilledThatThereWasNoFrameYet) {
+  refused_ = true;
+  EXPECT_EQ(frame().reason, Reason::no_frame_yet);
 }
 
 TEST(TrackTools, GivesWhatTheHeadsetItselfIsOffByBesideTheMotionsCovariance) {

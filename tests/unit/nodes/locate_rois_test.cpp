@@ -4,6 +4,8 @@
 
 #include <memory>
 
+#include "nodes/predict_tracks.hpp"
+
 namespace glint {
 namespace {
 
@@ -32,6 +34,9 @@ class LocateRois : public testing::Test {
     track.newest.time = Time{} + milliseconds(1000);
     track.newest.pose.translation = position;
     track.T_camera_tool = track.newest.pose;
+    track.motion.time = track.newest.time;
+    track.motion.pose.translation =
+        position + tools_->items[static_cast<std::size_t>(tool)].middle_m();
   }
 
   Rois locate(std::int64_t gap_ms = 22) {
@@ -51,7 +56,7 @@ class LocateRois : public testing::Test {
   Anchor anchor_;
   std::unique_ptr<Estimates> last_ = std::make_unique<Estimates>();
   std::unique_ptr<Predictions> predictions_ = std::make_unique<Predictions>();
-  PredictTracks predict_;
+  glint::PredictTracks predict_;
   glint::LocateRois locate_;
 };
 
@@ -93,11 +98,14 @@ TEST_F(LocateRois, WidensTheBoxWithTheGapBetweenFrames) {
   EXPECT_GT(later.items[0].y1 - later.items[0].y0, brief.items[0].y1 - brief.items[0].y0 + 20);
 }
 
-TEST_F(LocateRois, ForgetsAToolOlderThanLostAfter) {
-  track(0, Vector3(0, 0, 0.5));
-  track(1, Vector3(0.2, 0, 0.5));
-  (void)locate(251);
-  EXPECT_FALSE(predictions_->tools[0].has_prior);
+TEST_F(LocateRois, LooksForNoToolWhereTheSlotIsEmpty) {
+  track(0, Vector3(-0.2, 0, 0.5));
+  tools_->items[1].marker_count = 0;
+  const Rois rois = locate();
+  ASSERT_EQ(rois.count, 1);
+  EXPECT_LT(rois.items[0].x1, 250);
+  tools_->items[0].marker_count = 0;
+  EXPECT_EQ(locate().count, 0);
 }
 
 }  // namespace

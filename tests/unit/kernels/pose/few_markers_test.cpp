@@ -1,0 +1,176 @@
+#include "kernels/pose/few_markers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "kernels/pose/lever_arm.hpp"
+#include "tests/unit/kernels/pose/scene.hpp"
+
+namespace glint {
+namespace {
+
+constexpr double k_sigma_m = 0.001, k_turn_sigma = 0.01;
+
+// One tool or two, predicted half a metre away; markers are put in view one by one.
+class FewMarkersTest : public testing::Test {
+ protected:
+  FewMarkersTest() {
+    for (int t = 0; t < 2; ++t) {
+      Tool& tool = tools_[static_cast<std::size_t>(t)];
+      tool.marker_count = 4;
+      tool.markers_m = {Vector3(-0.05, 0, 0), Vector3(0.05, 0, 0.01), Vector3(0, 0.06, 0),
+                        Vector3(0.01, -0.04, 0.02)};
+      tool.marker_radius_m = 0.005;
+      EXPECT_EQ(prepare_tool(tool), Reason::none);
+      ExpectedTool& expected = expected_[static_cast<std::size_t>(t)];
+      expected.tool = &tool;
+      expected.T_camera_tool.translation = Vector3(0.3 * t, 0, 0.5);
+      expected.predicted = expected.wanted = t == 0;
+      expect_within(t, k_sigma_m, k_turn_sigma);
+    }
+    noise_.focal_px = 250;
+  }
+  void expect_within(int tool, double sigma_m, double turn) {
+    Matrix6& covariance = expected_[static_cast<std::size_t>(tool)].covariance;
+    covariance.setZero();
+    covariance.diagonal() << Vector3::Constant(sigma_m * sigma_m), Vector3::Constant(turn * turn);
+  }
+  [[nodiscard]] Vector3 place(int tool, int marker) const {
+    const auto t = static_cast<std::size_t>(tool);
+    return expected_[t].T_camera_tool * tools_[t].markers_m[static_cast<std::size_t>(marker)];
+  }
+  void show(const Vector3& centre, std::uint8_t flags = 0) {
+    Marker& marker = markers_->items[static_cast<std::size_t>(markers_->count++)];
+    marker = Marker{};
+    marker.ray = centre.normalized();
+    marker.surface_range_m = centre.norm() - tools_[0].marker_radius_m;
+    marker.flags = flags;
+  }
+  const FewMarkers& name() {
+    work_ = name_few(expected_, *markers_, k_blobs_max, taken_, noise_, *scratch_, named_);
+    return named_[0];
+  }
+
+  std::array<Tool, 2> tools_;
+  std::array<ExpectedTool, 2> expected_;
+  std::unique_ptr<Markers> markers_ = std::make_unique<Markers>();
+  TakenMarkers taken_;
+  MarkerNoise noise_;
+  std::unique_ptr<FewScratch> scratch_ = std::make_unique<FewScratch>();
+  std::array<FewMarkers, 2> named_;
+  FewWork work_;
+};
+
+TEST_F(FewMarkersTest, NamesOneAndTwoWhereTheyWerePredicted) {
+  show(place(0, 2) + Vector3(0.001, -0.001, 0.002));
+  show(Vector3(0.2, 0.2, 0.7));
+  const FewMarkers& one = name();
+  ASSERT_EQ(one.count, 1);
+  EXPECT_EQ(one.items[0].of_tool, 2);
+  EXPECT_LT((one.items[0].centre_m - place(0, 2)).norm(), 0.003);
+  show(place(0, 0));
+  const FewMarkers& two = name();
+  ASSERT_EQ(two.count, 2);
+  EXPECT_EQ(two.items[0].of_tool, 0);
+  EXPECT_EQ(two.items[1].of_tool, 2);
+}
+
+TEST_F(FewMarkersTest, StatesTheMeasurementsOwnCovarianceAlongAndAcrossTheRay) {
+  show(place(0, 2));
+  const NamedMarker& named = name().items[0];
+  const Vector3 ray = named.centre_m.normalized(), side = ray.unitOrthogonal();
+  EXPECT_NEAR(std::sqrt(ray.dot(named.covariance_m2 * ray)), 0.0015, 1e-6);
+  EXPECT_NEAR(std::sqrt(side.dot(named.covariance_m2 * side)), 0.1 / 250 * named.centre_m.norm(),
+              1e-6);
+}
+
+TEST_F(FewMarkersTest, NamesNoneOfThreeForOfThoseAPoseShouldHaveCome) {
+  for (int m = 0; m < 3; ++m) show(place(0, m));
+  EXPECT_EQ(name().count, 0);
+}
+
+TEST_F(FewMarkersTest, NamesNoneWhereTwoLieInOneGate) {
+  show(place(0, 2));
+  show(place(0, 2) + Vector3(0.002, 0, 0));
+  EXPECT_EQ(name().count, 0);
+  show(place(0, 0));
+  ASSERT_EQ(name().count, 1) << "another gate's marker is as sure as before";
+  EXPECT_EQ(named_[0].items[0].of_tool, 0);
+}
+
+TEST_F(FewMarkersTest, NamesNoneThatAnotherToolMayClaimWhetherItIsFoundOrNot) {
+  expected_[1].T_camera_tool.translation = place(0, 2) - tools_[1].markers_m[1];
+  expected_[1].predicted = true;
+  show(place(0, 2));
+  for (const bool wanted : {false, true}) {
+    expected_[1].wanted = wanted;
+    EXPECT_EQ(name().count, 0);
+    EXPECT_EQ(named_[1].count, 0);
+  }
+  expected_[1].T_camera_tool.translation.x() += 0.02;
+  EXPECT_EQ(name().count, 1);
+}
+
+TEST_F(FewMarkersTest, NamesNoneThatALabelingHas) {
+  show(place(0, 2));
+  taken_[0] = true;
+  EXPECT_EQ(name().count, 0);
+}
+
+TEST_F(FewMarkersTest, NamesNoneWhereTheToolsOwnGatesMeet) {
+  show(place(0, 2));
+  expect_within(0, 0.003, k_turn_sigma);
+  EXPECT_EQ(name().count, 1);
+  expect_within(0, 0.012, k_turn_sigma);
+  EXPECT_EQ(name().count, 0);
+}
+
+TEST_F(FewMarkersTest, NamesNoneBeyondItsGateOrHalfHidden) {
+  show(place(0, 2) + Vector3(0.012, 0, 0));
+  EXPECT_EQ(name().count, 0);
+  show(place(0, 0), k_marker_uneven);
+  EXPECT_EQ(name().count, 0);
+  show(place(0, 1), k_marker_touches_edge);
+  EXPECT_EQ(name().count, 0);
+}
+
+TEST_F(FewMarkersTest, RefusesTwoThatAreNotAsFarApartAsTheyShouldBe) {
+  show(place(0, 0));
+  show(place(0, 1) + Vector3(0.0035, 0, 0));
+  EXPECT_EQ(name().count, 0);
+  markers_->count = 1;
+  show(place(0, 1) + Vector3(0, 0.0035, 0));
+  EXPECT_EQ(name().count, 2) << "beside it, where the tool may have turned";
+}
+
+TEST_F(FewMarkersTest, LosesOneInTenThousandOfThoseThatTheCovarianceTells) {
+  test::Random random(7);
+  int named = 0;
+  constexpr int k_draws = 20000;
+  for (int i = 0; i < k_draws; ++i) {
+    markers_->count = 0;
+    const Vector3 shift = random.vector(k_sigma_m);
+    const Quaternion turn = from_rotation_vector(random.vector(k_turn_sigma));
+    const Pose& predicted = expected_[0].T_camera_tool;
+    const Vector3 lever = predicted.rotation * (tools_[0].markers_m[2] - tools_[0].middle_m());
+    const Vector3 centre = predicted * tools_[0].middle_m() + shift + turn * lever;
+    const Vector3 ray = centre.normalized();
+    const double across = 0.1 / 250 * centre.norm();
+    const Vector3 side = random.vector(across);
+    show(centre + side - ray * ray.dot(side) + ray * 0.0015 * random.normal());
+    named += name().count;
+  }
+  EXPECT_GE(named, k_draws - 12);
+  EXPECT_LT(named, k_draws) << "a gate that loses none is too wide";
+}
+
+TEST_F(FewMarkersTest, TestsEachMarkerAgainstEachGateOfAPredictedTool) {
+  for (int m = 0; m < 10; ++m) show(Vector3(0.1 * m, 0, 1));
+  (void)name();
+  EXPECT_EQ(work_.gates, 4);
+  EXPECT_EQ(work_.tests, 40);
+}
+
+}  // namespace
+}  // namespace glint

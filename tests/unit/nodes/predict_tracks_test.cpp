@@ -1,0 +1,144 @@
+#include "nodes/predict_tracks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace glint {
+namespace {
+
+constexpr double k_half_pi = 1.57079632679489661923;
+
+// One tool half a metre away, seen at 1 s.
+class PredictTracks : public testing::Test {
+ protected:
+  PredictTracks() {
+    node_.camera.width = node_.camera.height = 512;
+    node_.camera.fx = node_.camera.fy = 250;
+    node_.camera.cx = node_.camera.cy = 256;
+    tools_->count = 1;
+    tool().marker_count = 3;
+    tool().markers_m = {Vector3(-0.05, 0, 0), Vector3(0.05, 0, 0), Vector3(0, 0.06, 0)};
+    tool().marker_radius_m = 0.005;
+    EXPECT_EQ(prepare_tool(tool()), Reason::none);
+    track().alive = track().seen_now = true;
+    track().identity = tool().identity;
+    track().newest.time = track().motion.time = Time{} + milliseconds(1000);
+    place({Quaternion::Identity(), Vector3(0, 0, 0.5)});
+  }
+  Tool& tool() { return tools_->items[0]; }
+  Track& track() { return last_->tracks[0]; }
+  void place(const Pose& T_base_tool) {
+    track().newest.pose = track().T_camera_tool = T_base_tool;
+    track().motion.pose = {T_base_tool.rotation, T_base_tool * tool().middle_m()};
+  }
+  void sure_within(double position_m, double rotation_rad) {
+    MotionCovariance& p = track().motion.covariance;
+    p.setZero();
+    p.diagonal().segment<3>(k_position).setConstant(position_m * position_m);
+    p.diagonal().segment<3>(k_rotation).setConstant(rotation_rad * rotation_rad);
+  }
+  const Prediction& predict(std::int64_t gap_ms = 22) {
+    graph::Latest<ToolSet> tools;
+    tools.set(*tools_, 1, 0);
+    FrameVerdict verdict;
+    verdict.stamp.mid_exposure = Time{} + milliseconds(1000 + gap_ms);
+    node_(verdict, head_, tools, graph::Previous<Anchor>(anchor_),
+          graph::Previous<Estimates>(*last_), *predictions_);
+    return predictions_->tools[0];
+  }
+
+  std::unique_ptr<ToolSet> tools_ = std::make_unique<ToolSet>();
+  HeadPose head_;
+  Anchor anchor_;
+  std::unique_ptr<Estimates> last_ = std::make_unique<Estimates>();
+  std::unique_ptr<Predictions> predictions_ = std::make_unique<Predictions>();
+  glint::PredictTracks node_;
+};
+
+TEST_F(PredictTracks, GoesOnWithTheMotionThatTheFilterFollowed) {
+  track().motion.velocity_m_s = {0.5, 0, 0};
+  track().motion.angular_velocity_rad_s = {0, 0, 2};
+  const Prediction& found = predict(20);
+  const Vector3 middle = found.T_camera_tool * tool().middle_m();
+  EXPECT_NEAR(middle.x(), 0.010, 1e-6);
+  EXPECT_NEAR(middle.z(), 0.5, 1e-9);
+  const Vector3 across = found.T_camera_tool.rotation * Vector3::UnitX();
+  EXPECT_NEAR(across.y(), 0.040, 1e-3) << "turned about the markers' middle";
+}
+
+TEST_F(PredictTracks, ReachesAsFarAsTheCovarianceSaysBetweenAFloorAndACeiling) {
+  const double start = 0.5 * 30 * 0.022 * 0.022;
+  sure_within(1e-5, 1e-4);
+  EXPECT_NEAR(predict().reach_m, 0.0045 + start, 1e-4) << "a hand at rest may set off";
+  sure_within(0.0025, 1e-4);
+  EXPECT_NEAR(predict().reach_m, 8 * 0.0025, 5e-4);
+  sure_within(1e-5, 0.05);
+  EXPECT_NEAR(predict().reach_m, 8 * 0.05 * (tool().markers_m[0] - tool().middle_m()).norm(), 2e-3)
+      << "the marker furthest from the middle is the least sure";
+  sure_within(1, 1);
+  EXPECT_NEAR(predict().reach_m, 0.015 + 0.022 + start, 1e-9);
+}
+
+TEST_F(PredictTracks, ReachesFurtherWhereTheLastMeasurementWasASurprise) {
+  sure_within(0.002, 1e-4);
+  const double before = predict().reach_m;
+  track().surprise = 4;
+  EXPECT_NEAR(predict().reach_m, 2 * before, 1e-3);
+}
+
+TEST_F(PredictTracks, HoldsTheToolBeyondTheHorizonAndReachesWhereItMayBe) {
+  sure_within(1e-4, 1e-3);
+  track().motion.velocity_m_s = {0.5, 0, 0};
+  const Prediction& found = predict(100);
+  EXPECT_NEAR((found.T_camera_tool * tool().middle_m()).x(), 0, 1e-9);
+  EXPECT_GT(found.reach_m, 0.05);
+}
+
+TEST_F(PredictTracks, TurnsTheCovarianceIntoTheCamera) {
+  head_.valid = true;
+  head_.T_world_camera.rotation = from_rotation_vector(Vector3(0, 0, k_half_pi));
+  track().base = ReferenceFrame::world;
+  place(head_.T_world_camera * track().T_camera_tool);
+  sure_within(1e-4, 1e-4);
+  track().motion.covariance(0, 0) = 1e-4;  // along the world's x, which is the camera's -y
+  const Prediction& found = predict(1);
+  ASSERT_TRUE(found.follows_motion);
+  EXPECT_NEAR(found.covariance(1, 1), 1e-4, 1e-6);
+  EXPECT_LT(found.covariance(0, 0), 1e-6);
+  EXPECT_NEAR((found.T_camera_tool * tool().middle_m()).z(), 0.5, 1e-9);
+}
+
+TEST_F(PredictTracks, CountsWhatTheHeadsetsErrorMayHaveChangedBySince) {
+  head_.valid = true;
+  track().base = ReferenceFrame::world;
+  sure_within(1e-4, 1e-4);
+  const double alone = predict(22).covariance(0, 0);
+  track().head_covariance = Matrix6::Identity() * 1e-4;
+  // 2 (1 - exp(-22 / 400))
+  EXPECT_NEAR(predict(22).covariance(0, 0) - alone, 0.107029 * 1e-4, 1e-9);
+}
+
+TEST_F(PredictTracks, HoldsWhatTheCameraSawWhereTheHeadsPoseWentMissing) {
+  track().base = ReferenceFrame::world;
+  track().motion.velocity_m_s = {0.5, 0, 0};
+  const Prediction& found = predict(22);
+  EXPECT_FALSE(found.follows_motion);
+  EXPECT_EQ(found.T_camera_tool.translation, track().T_camera_tool.translation);
+  EXPECT_GT(found.reach_m, 0.04);
+}
+
+TEST_F(PredictTracks, ForgetsAToolOlderThanLostAfter) {
+  EXPECT_TRUE(predict(250).has_prior);
+  EXPECT_FALSE(predict(251).has_prior);
+}
+
+TEST_F(PredictTracks, KnowsNothingOfAnotherToolInTheSamePlace) {
+  ASSERT_TRUE(predict().has_prior);
+  tool().markers_m[0].x() -= 0.002;
+  ASSERT_EQ(prepare_tool(tool()), Reason::none);
+  EXPECT_FALSE(predict().has_prior);
+}
+
+}  // namespace
+}  // namespace glint
