@@ -74,8 +74,10 @@ TEST_F(PredictTracks, ReachesAsFarAsTheCovarianceSaysBetweenAFloorAndACeiling) {
   sure_within(0.0025, 1e-4);
   EXPECT_NEAR(predict().reach_m, 8 * 0.0025, 5e-4);
   sure_within(1e-5, 0.05);
-  EXPECT_NEAR(predict().reach_m, 8 * 0.05 * (tool().markers_m[0] - tool().middle_m()).norm(), 2e-3)
-      << "the marker furthest from the middle is the least sure";
+  // The marker furthest from the middle is the least sure; the bound is a fifth too wide at most.
+  const double furthest = 8 * 0.05 * (tool().markers_m[0] - tool().middle_m()).norm();
+  EXPECT_GE(predict().reach_m, furthest);
+  EXPECT_LE(predict().reach_m, 1.2 * furthest);
   sure_within(1, 1);
   EXPECT_NEAR(predict().reach_m, 0.015 + 0.022 + start, 1e-9);
 }
