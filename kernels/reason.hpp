@@ -48,8 +48,7 @@ inline constexpr Reason k_last_reason = Reason::tool_changed;
       "degenerate",    "collinear",         "bad_fit",         "frame_late",   "frame_doubled",
       "frame_invalid", "head_pose_missing", "too_old",         "runs_full",    "blobs_full",
       "search_full",   "not_prepared",      "out_of_range",    "no_reference", "overrun_skipped",
-      "overrun_held",  "overrun_predicted", "overrun_stopped",
-      "tool_changed"};
+      "overrun_held",  "overrun_predicted", "overrun_stopped", "tool_changed"};
   const auto i = static_cast<std::size_t>(reason);
   return i < sizeof names / sizeof names[0] ? names[i] : "unknown";
 }

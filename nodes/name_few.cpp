@@ -18,8 +18,7 @@ void NameFew::operator()(const FrameVerdict& verdict, const Markers& markers,
     const Prediction& prediction = predictions.tools[t];
     ExpectedTool& expected = expected_[t];
     expected = {&set.items[t], prediction.T_camera_tool, prediction.covariance,
-                prediction.follows_motion &&
-                    set.items[t].marker_count <= limits.markers_per_tool,
+                prediction.follows_motion && set.items[t].marker_count <= limits.markers_per_tool,
                 assignment.reason[t] != Reason::none};
     any_wanted = any_wanted || (expected.predicted && expected.wanted);
     if (expected.wanted) continue;

@@ -29,23 +29,24 @@ double moved_share(double seconds, double correlation_s) {
 
 }  // namespace
 
-// T_camera_world: null where the head's pose is not known.
-void PredictTracks::foretell(const Track& track, const Tool& tool, Time time,
-                             const Pose* T_camera_world, Prediction& prediction) noexcept {
+// T_camera_world: null where the head's pose is not known. Returns how far from where its motion
+// would lead the tool is held.
+double PredictTracks::foretell(const Track& track, const Tool& tool, Time time,
+                               const Pose* T_camera_world, Prediction& prediction) noexcept {
   const bool in_world = track.base == ReferenceFrame::world;
   prediction.has_prior = true;
   prediction.missed_last = !track.seen_now;
   prediction.follows_motion = !in_world || T_camera_world != nullptr;
   if (!prediction.follows_motion) {
     prediction.T_camera_tool = track.T_camera_tool;  // held where the camera saw it
-    return;
+    return 0;
   }
   ++counts_[2];
   const UncertainPose later = predict_pose(track.motion, time, settings.motion, track.noise);
   const bool goes_on = time - track.motion.time <= settings.horizon;
   Pose middle = goes_on ? later.pose : track.motion.pose;
   prediction.covariance = track.surprise * later.covariance;
-  prediction.reach_m = goes_on ? 0 : (later.pose.translation - middle.translation).norm();
+  const double held_back_m = (later.pose.translation - middle.translation).norm();
   if (in_world) {
     const double since_s = (time - track.newest.time).seconds();
     prediction.covariance +=
@@ -54,10 +55,11 @@ void PredictTracks::foretell(const Track& track, const Tool& tool, Time time,
     middle = *T_camera_world * middle;
   }
   prediction.T_camera_tool = {middle.rotation, middle * (-tool.middle_m())};
+  return held_back_m;
 }
 
 double PredictTracks::reach_of(const Prediction& prediction, const Tool& tool, int markers,
-                               double seconds) const noexcept {
+                               double seconds, double held_back_m) const noexcept {
   const double half_jerk = 0.5 * settings.acceleration_max_m_s2;
   const double widest =
       settings.margin_m + settings.speed_max_m_s * seconds + half_jerk * seconds * seconds;
@@ -70,7 +72,7 @@ double PredictTracks::reach_of(const Prediction& prediction, const Tool& tool, i
   }
   const double start_s = std::min(seconds, settings.start_max.seconds());
   const double least = settings.floor_m + half_jerk * start_s * start_s;
-  return std::clamp(prediction.reach_m + settings.gate_sigmas * std::sqrt(variance), least, widest);
+  return std::clamp(held_back_m + settings.gate_sigmas * std::sqrt(variance), least, widest);
 }
 
 void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head,
@@ -97,9 +99,10 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
 
     ++counts_[1];
     const Tool& tool = set.items[t];
-    foretell(track, tool, now, head.valid ? &T_camera_world : nullptr, prediction);
+    const double held_back_m =
+        foretell(track, tool, now, head.valid ? &T_camera_world : nullptr, prediction);
     const int markers = markers_within(tool, limits);
-    prediction.reach_m = reach_of(prediction, tool, markers, gap.seconds());
+    prediction.reach_m = reach_of(prediction, tool, markers, gap.seconds(), held_back_m);
     counts_[3] += markers;
     prediction.in_view = true;
     prediction.low_px = Vector2::Constant(1e9);

@@ -3,8 +3,9 @@
 // What:   the motion that the filter followed goes on to this frame's mid-exposure, mean and
 //         covariance in closed form (kernels/motion/predict_motion.hpp), and from the world into
 //         the camera, with what the headset's own error may have changed by since. The reach is
-//         gate_sigmas of the marker that is least sure, between what a hand at rest may set off by
-//         unforeseen and what any hand can do.
+//         gate_sigmas of the marker that is least sure, more after a measurement that was less
+//         like the foretold one than its covariance said; between what a hand at rest may set off
+//         by unforeseen and what any hand can do.
 // Cost:   a prediction for each tool; for each of its markers a covariance and a projection
 //         (through a lens table: up to lens_steps look-ups).
 // Worst:  all tools tracked, with the head's pose known. How sure a track is makes no difference.
@@ -30,8 +31,8 @@ struct ReachSettings {
   Duration lost_after = milliseconds(250);
   // Beyond it speeds and accelerations say less than the last place: the tool is held there.
   Duration horizon = milliseconds(60);
-  MotionSettings motion;              // as those that the tracks were followed with
-  double head_correlation_s = 0.4;    // of the headset's own error while it moves
+  MotionSettings motion;            // as those that the tracks were followed with
+  double head_correlation_s = 0.4;  // of the headset's own error while it moves
   // The gate only limits cost, the residual decides: wide enough that noise never reaches it.
   double gate_sigmas = 8;
   // Three sigma of a marker's range, by which what is seen of it may lie beside it.
@@ -64,10 +65,11 @@ struct PredictTracks {
                   Predictions& predictions) noexcept GLINT_NONBLOCKING;
 
  private:
-  void foretell(const Track& track, const Tool& tool, Time time, const Pose* T_camera_world,
-                Prediction& prediction) noexcept GLINT_NONBLOCKING;
+  double foretell(const Track& track, const Tool& tool, Time time, const Pose* T_camera_world,
+                  Prediction& prediction) noexcept GLINT_NONBLOCKING;
   [[nodiscard]] double reach_of(const Prediction& prediction, const Tool& tool, int markers,
-                                double seconds) const noexcept GLINT_NONBLOCKING;
+                                double seconds,
+                                double held_back_m) const noexcept GLINT_NONBLOCKING;
 
   graph::LoopCounts counts_;
 };

@@ -133,8 +133,8 @@ struct FollowedTools {
 
 // What is known of a tool after a frame: its newest pose and the one before, from which velocity
 // follows. `base` is the frame both are in: the world, or the camera where no head pose was valid.
-// A pose that rests on one or two markers is the newest like any other, as long as it is sure enough
-// (FollowMotion); its mask has no more, and the reason says why there are no more.
+// A pose that rests on one or two markers is the newest like any other, as long as it is sure
+// enough (FollowMotion); its mask has no more, and the reason says why there are no more.
 struct Track {
   bool alive = false;                    // a pose younger than lost_after exists
   bool seen_now = false;                 // this frame gave it, by three markers or more
@@ -143,12 +143,12 @@ struct Track {
   ReferenceFrame base = ReferenceFrame::camera;
   std::uint8_t marker_mask = 0;
   std::uint32_t frame_sequence = 0;
-  std::uint32_t identity = 0;  // of the tool that it is of
-  double rms_m = 0;            // of the newest that three markers or more gave
+  std::uint32_t identity = 0;    // of the tool that it is of
+  double rms_m = 0;              // of the newest that three markers or more gave
   StampedPose newest, previous;  // T_base_tool
   Pose T_camera_tool;            // the newest, as the camera saw it
-  MotionState motion;  // T_base_middle (of its markers) and how it changes, not before newest.time
-  NoiseScale noise;    // of what the hand does next, as motion's filter has it
+  MotionState motion;   // T_base_middle (of its markers) and how it changes, not before newest.time
+  NoiseScale noise;     // of what the hand does next, as motion's filter has it
   double surprise = 1;  // variance of the newest measurement beside what was foretold; 1: no more
   // What the headset's own error adds to motion's covariance, about the same point and axes.
   Matrix6 head_covariance = Matrix6::Zero();

@@ -27,8 +27,7 @@ using Tracker = graph::Graph<graph::Inputs<Frame, HeadPose, graph::Latest<ToolSe
                              graph::Outputs<Estimates>, StampFrame, CheckFrame, PredictTracks,
                              LocateRois, graph::Split<RoiThreshold, k_row_bands>, FindBlobs,
                              BackProject, graph::Split<Correspond, k_tool_slices>, AssignMarkers,
-                             NameFew,
-                             graph::Split<RefinePose, k_tool_slices>, AnchorHead,
+                             NameFew, graph::Split<RefinePose, k_tool_slices>, AnchorHead,
                              graph::Split<FollowMotion, k_tool_slices>, TrackTools>;
 static_assert(graph::valid<Tracker>);
 

@@ -42,8 +42,7 @@ void open_gate(const ExpectedTool& expected, int marker, const MarkerNoise& nois
                              centre_covariance(sight_of(there, range, noise), range);
   const Cholesky<3> factor(covariance);
   if (!factor.positive) return;
-  for (int axis = 0; axis < 3; ++axis)
-    gate.whiten.col(axis) = factor.forward(Vector3::Unit(axis));
+  for (int axis = 0; axis < 3; ++axis) gate.whiten.col(axis) = factor.forward(Vector3::Unit(axis));
   radius_m = std::sqrt(chi_square_limit(3) * largest_variance(covariance));
 }
 
@@ -74,8 +73,8 @@ NamedMarker measured(const Marker& marker, const Tool& tool, int of_tool,
 bool fits(const NamedMarker& a, const NamedMarker& b, const Tool& tool) {
   const Vector3 between = b.centre_m - a.centre_m;
   const double length = between.norm();
-  const double model = tool.distance_m[static_cast<std::size_t>(a.of_tool)]
-                                      [static_cast<std::size_t>(b.of_tool)];
+  const double model =
+      tool.distance_m[static_cast<std::size_t>(a.of_tool)][static_cast<std::size_t>(b.of_tool)];
   if (!(length > 0)) return false;
   const Vector3 along = between / length;
   const double variance = along.dot((a.covariance_m2 + b.covariance_m2) * along);
@@ -95,8 +94,7 @@ void name(const ExpectedTool& expected, const Markers& markers, const FewScratch
     if (!gate.apart || gate.held != 1) continue;
     const auto at = static_cast<std::size_t>(gate.marker);
     if (scratch.claims[at] != 1 || (markers.items[at].flags & k_not_whole) != 0) continue;
-    few.items[static_cast<std::size_t>(few.count++)] =
-        measured(markers.items[at], tool, m, noise);
+    few.items[static_cast<std::size_t>(few.count++)] = measured(markers.items[at], tool, m, noise);
   }
   if (few.count == k_few_max && !fits(few.items[0], few.items[1], tool)) few.count = 0;
 }

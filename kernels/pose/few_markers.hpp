@@ -56,9 +56,9 @@ struct FewScratch {
   struct Gate {
     Vector3 place_m = Vector3::Zero();
     Matrix3 whiten = Matrix3::Zero();  // a residual's squared length by it is its chi square
-    bool apart = false;  // meets no other gate of the same tool
-    int held = 0;        // markers in it that no labeling has taken
-    int marker = -1;     // the last of them
+    bool apart = false;                // meets no other gate of the same tool
+    int held = 0;                      // markers in it that no labeling has taken
+    int marker = -1;                   // the last of them
   };
   std::array<std::array<Gate, k_markers_per_tool_max>, k_tools_max> gates;
   std::array<std::uint8_t, k_blobs_max> claims{};  // gates that hold the marker

@@ -49,9 +49,9 @@ struct ToolSet {
 // Two markers nearer to each other than this are one: no marker is that small.
 inline constexpr double k_marker_distance_min_m = 0.001;
 
-// Fills distance_m from markers_m, and the identity. Reason: too_few_markers (< 3), out_of_range (more than
-// k_markers_per_tool_max, or a coordinate that is not finite), degenerate (two markers in one
-// place) or collinear. Such a tool must not be used.
+// Fills distance_m from markers_m, and the identity. Reason: too_few_markers (< 3), out_of_range
+// (more than k_markers_per_tool_max, or a coordinate that is not finite), degenerate (two markers
+// in one place) or collinear. Such a tool must not be used.
 [[nodiscard]] Reason prepare_tool(Tool& tool) noexcept;
 
 }  // namespace glint

@@ -26,8 +26,7 @@ class NameFewKernel final : public NodeKernel<NameFew> {
       prediction.has_prior = prediction.follows_motion = all || !numbers.one_in(4);
       prediction.T_camera_tool = any_view(numbers);
       prediction.covariance.diagonal() << Vector3::Constant(4e-6), Vector3::Constant(1e-4);
-      assignment_.reason[t] =
-          all || !numbers.one_in(4) ? Reason::too_few_markers : Reason::none;
+      assignment_.reason[t] = all || !numbers.one_in(4) ? Reason::too_few_markers : Reason::none;
       assignment_.labeling[t].marker.fill(-1);
       if (markers_.count + markers <= limits.blobs)
         add_tool(markers_, set_.items[t], prediction.T_camera_tool, 0.001, numbers, limits.blobs);

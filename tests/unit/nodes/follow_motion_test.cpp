@@ -238,7 +238,8 @@ class TrackToolsInTime : public testing::Test {
     verdict.stamp.mid_exposure = followed().estimate.time = Time{} + milliseconds(22) * ++number_;
     verdict.stamp.sequence = static_cast<std::uint32_t>(number_);
     *last_ = *out_;
-    node_(verdict, Anchor{}, tools, *fitted_, *followed_, graph::Previous<Estimates>(*last_), *out_);
+    node_(verdict, Anchor{}, tools, *fitted_, *followed_, graph::Previous<Estimates>(*last_),
+          *out_);
     return out_->tracks[0];
   }
   const Track& found() {

@@ -140,10 +140,8 @@ class Hand {
   void judge_hidden(int frame, unsigned shown, const Track& track, Figures& figures) const {
     ++figures.hidden;
     const Time now = Time{} + time_of(frame);
-    const UncertainPose stated =
-        predict_pose(track.motion, now, MotionSettings{}, track.noise);
-    const double off_m =
-        (stated.pose.translation - true_middle(frame).translation).norm();
+    const UncertainPose stated = predict_pose(track.motion, now, MotionSettings{}, track.noise);
+    const double off_m = (stated.pose.translation - true_middle(frame).translation).norm();
     const double chi_square = squared(stated, frame);
     figures.squares_m2 += off_m * off_m;
     figures.nees += chi_square / 6;
@@ -171,10 +169,11 @@ class Hand {
 };
 
 void print(const char* what, const Figures& f) {
-  std::printf("  %s: %d hidden, %d updated, %.1f %% inside 99.9 %%, NEES/6 %.2f, rms %.2f mm, %d of "
-              "%d returns beyond 99.9 %%\n",
-              what, f.hidden, f.updated, 100 * f.inside_share(), f.nees / f.hidden,
-              1e3 * f.rms_m(), f.jumps, f.returns);
+  std::printf(
+      "  %s: %d hidden, %d updated, %.1f %% inside 99.9 %%, NEES/6 %.2f, rms %.2f mm, %d of "
+      "%d returns beyond 99.9 %%\n",
+      what, f.hidden, f.updated, 100 * f.inside_share(), f.nees / f.hidden, 1e3 * f.rms_m(),
+      f.jumps, f.returns);
   for (const Standing* poses : {&f.by_few, &f.by_more})
     std::printf("    %s: %d measured, %d gross, %d name a hidden marker\n",
                 poses == &f.by_few ? "by one or two" : "by more", poses->standing, poses->gross,
