@@ -2,6 +2,8 @@
 
 #include <span>
 
+#include "nodes/predict_tracks.hpp"
+
 namespace glint {
 namespace {
 
@@ -32,6 +34,8 @@ void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
     }
     const Prediction& prediction = predictions.tools[i];
     gated.prior_gate_m = settings.prior_gate_m + prediction.reach_m;
+    gated.prior_sigma_m = prediction.reach_m / k_reach_sigmas;
+    gated.only_near = prediction.follows_motion;
     gated.few_gate_m = prediction.reach_m + 3 * settings.range_sigma_m;
     gated.search_steps_max += limits.search_steps;
     const CorrespondWork work = propose_labelings(

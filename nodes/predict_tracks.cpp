@@ -72,7 +72,7 @@ double PredictTracks::reach_of(const Prediction& prediction, const Tool& tool, i
   }
   const double start_s = std::min(seconds, settings.start_max.seconds());
   const double least = settings.floor_m + half_jerk * start_s * start_s;
-  return std::clamp(held_back_m + settings.gate_sigmas * std::sqrt(variance), least, widest);
+  return std::clamp(held_back_m + k_reach_sigmas * std::sqrt(variance), least, widest);
 }
 
 void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head,

@@ -3,7 +3,7 @@
 // What:   the motion that the filter followed goes on to this frame's mid-exposure, mean and
 //         covariance in closed form (kernels/motion/predict_motion.hpp), and from the world into
 //         the camera, with what the headset's own error may have changed by since. The reach is
-//         gate_sigmas of the marker that is least sure, more after a measurement that was less
+//         k_reach_sigmas of the marker that is least sure, more after a measurement that was less
 //         like the foretold one than its covariance said; between what a hand at rest may set off
 //         by unforeseen and what any hand can do.
 // Cost:   a prediction for each tool; for each of its markers a covariance and a projection
@@ -27,14 +27,15 @@
 
 namespace glint {
 
+// The gate only limits cost, the residual decides: wide enough that noise never reaches it.
+inline constexpr double k_reach_sigmas = 8;
+
 struct ReachSettings {
   Duration lost_after = milliseconds(250);
   // Beyond it speeds and accelerations say less than the last place: the tool is held there.
   Duration horizon = milliseconds(60);
   MotionSettings motion;            // as those that the tracks were followed with
   double head_correlation_s = 0.4;  // of the headset's own error while it moves
-  // The gate only limits cost, the residual decides: wide enough that noise never reaches it.
-  double gate_sigmas = 8;
   // Three sigma of a marker's range, by which what is seen of it may lie beside it.
   double floor_m = 0.0045;
   // A hand that rests, and is known to, may set off: half its greatest acceleration times the gap

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include "kernels/pose/chi_square_limit.hpp"
+
 namespace glint {
 namespace {
 
@@ -39,10 +41,15 @@ SeenMarkers weigh(const Tool& tool, int marker_count, const Markers& markers,
 // errors by the method of least squares); a wrong name is off by far more.
 constexpr double k_noise_stretch_most = 16;
 
+// What three markers agree on, or what had to be forgiven to agree, may be strays: it counts only
+// where the followed motion explains it, too.
+constexpr std::size_t k_agree_by_chance_most = 3;
+constexpr double k_surprise_most = chi_square_limit(6);
+
 }  // namespace
 
 void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& labeling,
-                     FittedTool& out) noexcept {
+                     const Prediction& prediction, FittedTool& out) noexcept {
   const SeenMarkers seen = weigh(tool, markers_within(tool, limits), markers, labeling, noise);
   out.reason = seen.reason;
   if (out.reason != Reason::none) return;
@@ -51,8 +58,9 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
       std::min(settings.steps_max, k_most.steps_max), settings.left_out_max,
       std::min(settings.left_out_steps_max, k_most.left_out_steps_max),
       labeling.predicted_worth_m2 > 0 ? k_predicted_left_least : k_most.markers_left_least};
-  const RefinedPose pose =
-      refine_pose({seen.items.data(), seen.count}, tool.tip_m, nullptr, within);
+  const ExpectedPose expected = {prediction.T_camera_tool, prediction.covariance, tool.middle_m()};
+  const RefinedPose pose = refine_pose({seen.items.data(), seen.count}, tool.tip_m, nullptr, within,
+                                       prediction.follows_motion ? &expected : nullptr);
   counts_[2] += pose.work.fits;
   counts_[3] += pose.work.steps;
   counts_[4] += pose.work.marker_steps;
@@ -60,8 +68,15 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
                          pose.chi_square <= k_noise_stretch_most * pose.degrees_of_freedom;
   out.reason = stretched ? Reason::none : pose.reason;
   if (out.reason != Reason::none) return;
-  out.covariance = pose.covariance;
-  if (stretched) out.covariance *= pose.chi_square / pose.degrees_of_freedom;
+  Matrix6 covariance = pose.covariance;
+  if (stretched) covariance *= pose.chi_square / pose.degrees_of_freedom;
+  const bool weak = stretched || pose.left_out >= 0 || seen.count <= k_agree_by_chance_most;
+  if (weak && prediction.follows_motion &&
+      surprise_of(expected, pose.T_camera_tool, covariance, tool.tip_m) > k_surprise_most) {
+    out.reason = Reason::bad_fit;
+    return;
+  }
+  out.covariance = covariance;
   double squares = 0;
   int kept = 0;
   for (std::size_t i = 0; i < seen.count; ++i) {
@@ -76,8 +91,9 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
 }
 
 void RefinePose::operator()(const FrameVerdict& verdict, const Markers& markers,
-                            const graph::Latest<ToolSet>& tools, const Assignment& assignment,
-                            graph::Slice slice, FittedTools& fitted) noexcept {
+                            const graph::Latest<ToolSet>& tools, const Predictions& predictions,
+                            const Assignment& assignment, graph::Slice slice,
+                            FittedTools& fitted) noexcept {
   counts_ = {{1}};
   const ToolSet& set = tools.value();
   const int count = tools_within(set, limits);
@@ -87,7 +103,8 @@ void RefinePose::operator()(const FrameVerdict& verdict, const Markers& markers,
     FittedTool& out = fitted.tools[i];
     out = FittedTool{};
     out.reason = verdict.usable() ? assignment.reason[i] : verdict.reason;
-    if (out.reason == Reason::none) fit(set.items[i], markers, assignment.labeling[i], out);
+    if (out.reason == Reason::none)
+      fit(set.items[i], markers, assignment.labeling[i], predictions.tools[i], out);
   }
 }
 

@@ -22,7 +22,8 @@ inline constexpr int k_predicted_left_least = 3;
 
 // A pose that the noise does not explain, with any one marker left out or with all, is given with a
 // covariance grown to what its residuals show, and where four times the noise would not do either
-// it is none: its reason is bad_fit. The mask names the markers that count.
+// it is none: its reason is bad_fit. So it is where three markers, or what was forgiven, put the
+// tool where its followed motion cannot have brought it. The mask names the markers that count.
 struct RefinePose {
   static constexpr std::array<std::string_view, 5> k_loops = {"call", "tools", "fits", "steps",
                                                               "marker_steps"};
@@ -43,12 +44,13 @@ struct RefinePose {
   BiasCorrection correction;  // of every tool, where it holds; none unless a cell names one
   Limits limits;
   void operator()(const FrameVerdict& verdict, const Markers& markers,
-                  const graph::Latest<ToolSet>& tools, const Assignment& assignment,
-                  graph::Slice slice, FittedTools& fitted) noexcept GLINT_NONBLOCKING;
+                  const graph::Latest<ToolSet>& tools, const Predictions& predictions,
+                  const Assignment& assignment, graph::Slice slice,
+                  FittedTools& fitted) noexcept GLINT_NONBLOCKING;
 
  private:
   void fit(const Tool& tool, const Markers& markers, const Labeling& labeling,
-           FittedTool& out) noexcept GLINT_NONBLOCKING;
+           const Prediction& prediction, FittedTool& out) noexcept GLINT_NONBLOCKING;
 
   graph::LoopCounts counts_;
 };

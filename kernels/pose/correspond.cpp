@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "kernels/elementary.hpp"
+
 namespace glint {
 namespace {
 
@@ -34,18 +36,30 @@ bool agrees(const Labeling& labeling, const Tool& tool, const Pose& prior, doubl
   return true;
 }
 
+// What lying there is worth beside lying anywhere a hand may be, in units of chi square: twice the
+// logarithm of the two densities' ratio, at least 1. Tools that claim the same markers share the
+// workplace, so its size only has to be larger than any prediction's sigma.
+double worth_of(const Labeling& labeling, const Tool& tool, const CorrespondSettings& settings,
+                const Pose& prior) {
+  constexpr double k_workplace_m = 1;
+  const double sigma = std::max(settings.prior_sigma_m, settings.range_sigma_m);
+  const Vector3 middle = tool.middle_m();
+  const Vector3 away = labeling.T_camera_tool * middle - prior * middle;
+  return std::max(1.0, 6 * logarithm(k_workplace_m / sigma) - away.squaredNorm() / (sigma * sigma));
+}
+
 // Rule 3 of the header.
 void prefer_predicted(Labelings& found, const Tool& tool, const CorrespondSettings& settings,
                       const Pose& prior) {
   if (found.count == 0) return;
-  const double worth_m2 = 9 * settings.range_sigma_m * settings.range_sigma_m;
+  const double noise_m2 = settings.range_sigma_m * settings.range_sigma_m;
   for (int k = 0; k < found.count; ++k) {
     Labeling& labeling = found.items[static_cast<std::size_t>(k)];
     if (agrees(labeling, tool, prior, settings.prior_gate_m))
-      labeling.predicted_worth_m2 = worth_m2;
+      labeling.predicted_worth_m2 = noise_m2 * worth_of(labeling, tool, settings, prior);
   }
   const Labeling best = found.items[0];
-  const double slack = worth_m2 / best.count;
+  const double slack = 9 * noise_m2 / best.count;
   for (int k = 0; k < found.count; ++k) {
     const Labeling candidate = found.items[static_cast<std::size_t>(k)];
     if (candidate.count != best.count) return;
@@ -92,7 +106,8 @@ CorrespondWork propose_labelings(const Markers& markers, const Tool& tool,
     run_levels(search, candidates.nearest, settings, std::min(most, least_alone - 1),
                least_predicted, labelings);
   }
-  run_levels(search, all_of(candidates), settings, most, least_alone, labelings);
+  if (!predicted || !settings.only_near)
+    run_levels(search, all_of(candidates), settings, most, least_alone, labelings);
   if (predicted) prefer_predicted(labelings, tool, settings, *prior_T_camera_tool);
   if (search.full()) {
     labelings.reason = Reason::search_full;

@@ -16,9 +16,12 @@ struct CorrespondSettings {
   double delta_min_m = 0.001;     // the least gate: tool files are not exact, nor is a centroid
   double max_rms_m = 0.0045;      // of the fit, 3 range_sigma_m: beyond it, Reason::bad_fit
   double prior_gate_m = 0.05;     // a hand's 2 m/s over one frame at 45 Hz
+  double prior_sigma_m = 0.006;   // of a predicted marker's place, an axis
   // For labelings of fewer markers than min_markers_without_prior, which agree by chance where many
   // strays are near: no further than the tool can have got. At most prior_gate_m counts.
   double few_gate_m = 0.05;
+  // A prediction that is sure within prior_gate_m: what lies beyond is another tool's, or a stray.
+  bool only_near = false;
   int min_markers_without_prior = 4;  // 3 of many strays agree by chance; 3 for a tool of three
   int min_markers_with_prior = 3;
   int fewer_kept = 1;             // labelings with this many markers fewer than the best are kept

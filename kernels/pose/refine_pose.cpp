@@ -20,6 +20,16 @@ struct Task {
   const Vector3& reference_m;
   const PosePrior* prior;
   const RefineSettings& settings;
+  const ExpectedPose* expected;
+};
+
+// A fit, how sure it is of the reference, and how far from what was expected.
+struct Minimum {
+  WeightedFit fit;
+  Matrix6 covariance = Matrix6::Zero();
+  double surprise = 0;
+  Reason reason = Reason::none;
+  [[nodiscard]] double misfit() const { return fit.chi_square + surprise; }
 };
 
 Vector3 mean_of(MarkerSpan markers) {
@@ -37,20 +47,36 @@ RigidFit rigid_start(MarkerSpan markers) {
   return fit_rigid({model.data(), markers.size()}, {measured.data(), markers.size()});
 }
 
-void count(const WeightedFit& fit, MarkerSpan markers, RefineWork& work) {
+Minimum fit_from(const Pose& start, MarkerSpan markers, const Vector3& mean, const Task& task,
+                 int steps_max, RefineWork& work) {
+  Minimum found;
+  found.fit = fit_weighted(markers, mean, start, task.prior, steps_max);
   ++work.fits;
-  work.steps += fit.steps;
-  work.marker_steps += fit.steps * static_cast<int>(markers.size());
+  work.steps += found.fit.steps;
+  work.marker_steps += found.fit.steps * static_cast<int>(markers.size());
+  found.reason = found.fit.reason;
+  if (found.reason != Reason::none) return found;
+  const Pose& pose = found.fit.T_camera_tool;
+  const Result<PoseFactor> factor = pose_factor(found.fit.information);
+  if (factor) {
+    const Vector3 lever = pose.rotation * (task.reference_m - mean);
+    found.covariance = moved_covariance(factor.value.inverse(), lever);
+  }
+  if (!factor || !std::isfinite(found.covariance.sum())) {
+    found.reason = Reason::degenerate;
+  } else if (task.expected != nullptr) {
+    found.surprise = surprise_of(*task.expected, pose, found.covariance, task.reference_m);
+  }
+  return found;
 }
 
-bool is_better(const WeightedFit& a, const WeightedFit& b) {
+bool is_better(const Minimum& a, const Minimum& b) {
   if (a.reason != Reason::none || b.reason != Reason::none) return a.reason == Reason::none;
-  return a.chi_square < b.chi_square;
+  return a.misfit() < b.misfit();
 }
 
 OtherMinimum other_than(const WeightedFit& best, const WeightedFit& second) {
   OtherMinimum other;
-  if (second.reason != Reason::none) return other;
   const Vector3 apart =
       rotation_vector(second.T_camera_tool.rotation * best.T_camera_tool.rotation.conjugate());
   const Matrix3 turning =
@@ -71,24 +97,19 @@ RefinedPose refine_all(MarkerSpan markers, const Task& task, int steps_max) {
   if (out.reason != Reason::none) return out;
   const bool two = start.reason == Reason::none;
   const Pose first = two ? start.transform : task.prior->T_camera_tool;
-  WeightedFit best = fit_weighted(markers, mean, first, task.prior, steps_max);
-  count(best, markers, out.work);
+  Minimum best = fit_from(first, markers, mean, task, steps_max, out.work);
   if (two) {
     const Pose flip = depth_flipped(first, flattest_direction(markers, mean), mean);
-    WeightedFit second = fit_weighted(markers, mean, flip, task.prior, steps_max);
-    count(second, markers, out.work);
+    Minimum second = fit_from(flip, markers, mean, task, steps_max, out.work);
     if (is_better(second, best)) std::swap(best, second);
-    out.other = other_than(best, second);
+    if (second.reason == Reason::none) out.other = other_than(best.fit, second.fit);
   }
   out.reason = best.reason;
-  out.T_camera_tool = best.T_camera_tool;
-  out.chi_square = best.chi_square;
+  out.T_camera_tool = best.fit.T_camera_tool;
+  out.covariance = best.covariance;
+  out.chi_square = best.fit.chi_square;
+  out.surprise = best.surprise;
   out.degrees_of_freedom = 3 * static_cast<int>(markers.size()) - (task.prior != nullptr ? 0 : 6);
-  if (out.reason != Reason::none) return out;
-  const Result<PoseFactor> factor = pose_factor(best.information);
-  const Vector3 lever = best.T_camera_tool.rotation * (task.reference_m - mean);
-  if (factor) out.covariance = moved_covariance(factor.value.inverse(), lever);
-  if (!factor || !std::isfinite(out.covariance.sum())) out.reason = Reason::degenerate;
   return out;
 }
 
@@ -116,7 +137,8 @@ RefinedPose without_one(MarkerSpan markers, const Task& task, const RefinedPose&
     RefinedPose pose = refine_all({others.data(), n}, task, task.settings.left_out_steps_max);
     add_work(pose.work, work);
     if (!is_explained(pose)) continue;
-    if (best.left_out >= 0 && !(pose.chi_square < best.chi_square)) continue;
+    if (best.left_out >= 0 && !(pose.chi_square + pose.surprise < best.chi_square + best.surprise))
+      continue;
     best = pose;
     best.left_out = static_cast<int>(left_out);
   }
@@ -127,14 +149,14 @@ RefinedPose without_one(MarkerSpan markers, const Task& task, const RefinedPose&
 }  // namespace
 
 RefinedPose refine_pose(MarkerSpan markers, const Vector3& reference_m, const PosePrior* prior,
-                        const RefineSettings& settings) noexcept {
+                        const RefineSettings& settings, const ExpectedPose* expected) noexcept {
   const std::size_t least = prior != nullptr ? 1 : 3;
   if (markers.size() < least || markers.size() > k_markers_per_tool_max) {
     RefinedPose none;
     none.reason = Reason::too_few_markers;
     return none;
   }
-  const Task task{reference_m, prior, settings};
+  const Task task{reference_m, prior, settings, expected};
   RefinedPose pose = refine_all(markers, task, settings.steps_max);
   if (is_explained(pose)) return pose;
   if (pose.reason == Reason::none) pose.reason = Reason::bad_fit;

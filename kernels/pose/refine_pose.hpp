@@ -4,7 +4,10 @@
 // What:     chi-square over the pixels' and ranges' own noise made least, from the rigid fit and
 //           from its depth flip (a flat tool has two minima); the lesser of both stands. Where
 //           the noise does not explain it, each marker is left out in turn, and the best such fit
-//           that the noise does explain stands.
+//           that the noise does explain stands. Where a pose is expected, the best is the one with
+//           the least sum of chi-square and surprise (expected_pose.hpp): so a flat tool's minima
+//           are told apart where the noise alone does not. The pose itself rests on the markers
+//           alone: a filter that foretold it would else count it twice.
 // Cost:     two weighted fits of some five steps: 6 us of five markers (bench_tracker); without one
 //           of n markers 2 n more, of half as many steps at most.
 // Worst:    5 or more markers that no pose explains, nor any without one: 2 (n + 1) fits of all
@@ -21,6 +24,7 @@
 #include "kernels/geometry.hpp"
 #include "kernels/limits.hpp"
 #include "kernels/nonblocking.hpp"
+#include "kernels/pose/expected_pose.hpp"
 #include "kernels/pose/pose_prior.hpp"
 #include "kernels/pose/weighted_fit.hpp"
 #include "kernels/pose/weighted_marker.hpp"
@@ -66,6 +70,7 @@ struct RefinedPose {
   Pose T_camera_tool;
   Matrix6 covariance = Matrix6::Zero();  // of the reference; order as in fit_covariance.hpp
   double chi_square = 0;
+  double surprise = 0;         // to whom expected a pose; 0 where none was
   int degrees_of_freedom = 0;  // residuals, the prior's six too, less the pose's six
   OtherMinimum other;
   int left_out = -1;  // index of the marker that did not fit, -1: all count
@@ -74,13 +79,14 @@ struct RefinedPose {
 };
 
 // reference_m: the point of the tool, in its frame, whose place is asked for (the tip). The prior
-// may be null; with one a single marker is enough, without one three that are not on a line.
+// may be null; with one a single marker is enough, without one three that are not on a line. What
+// is expected may be null, too; it only helps to choose.
 // Reason: too_few_markers (or more than k_markers_per_tool_max), degenerate, collinear,
 // out_of_range; or bad_fit: the noise does not explain what is left. Then the pose stands, with
 // left_out -1, but must not be called measured.
-[[nodiscard]] RefinedPose refine_pose(std::span<const WeightedMarker> markers,
-                                      const Vector3& reference_m, const PosePrior* prior = nullptr,
-                                      const RefineSettings& settings = {}) noexcept
-    GLINT_NONBLOCKING;
+[[nodiscard]] RefinedPose refine_pose(
+    std::span<const WeightedMarker> markers, const Vector3& reference_m,
+    const PosePrior* prior = nullptr, const RefineSettings& settings = {},
+    const ExpectedPose* expected = nullptr) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -55,6 +55,23 @@ Cell cell_of(const ClutterCase& c) {
   return cell;
 }
 
+// What leaves the graph: the pose that the filter has after the frame, in this frame's camera.
+FrameOutcome as_followed(const FrameOutcome& fitted, const Estimates& estimates,
+                         const ToolSet& tools, const HeadPose& head) {
+  FrameOutcome outcome = fitted;
+  for (int t = 0; t < tools.count; ++t) {
+    const auto i = static_cast<std::size_t>(t);
+    const Track& track = estimates.tracks[i];
+    if (!outcome.tools[i].seen) continue;
+    const Pose T_middle_tool{Quaternion::Identity(), -tools.items[i].middle_m()};
+    const Pose T_base_tool = track.motion.pose * T_middle_tool;
+    const bool in_world = track.base == ReferenceFrame::world;
+    outcome.tools[i].T_camera_tool =
+        in_world ? head.T_world_camera.inverse() * T_base_tool : T_base_tool;
+  }
+  return outcome;
+}
+
 // A tracker of the published method for each tool.
 class SeedTrackers {
  public:
@@ -83,7 +100,8 @@ void run_case(const ClutterCase& c, const CaseOptions& options, CaseList& list) 
   tracker->latest<ToolSet>().set(c.tools, 1, 0);
   const sim::Simulator simulator(c.scenario);
   SeedTrackers seed(c);
-  ClutterTally glint(c.tools, cell.lost_after), published(c.tools, cell.lost_after);
+  ClutterTally glint(c.tools, cell.lost_after), fits(c.tools, cell.lost_after);
+  ClutterTally published(c.tools, cell.lost_after);
   SearchTally search;
   sim::SimFrame frame;
   const int seed_frames = options.quick ? k_seed_frames_quick : k_seed_frames;
@@ -93,10 +111,14 @@ void run_case(const ClutterCase& c, const CaseOptions& options, CaseList& list) 
     tracker->input<HeadPose>() = frame.head;
     tracker->activate();
     search.add(*tracker, c.tools);
-    glint.add(outcome_of(tracker->output<Estimates>()), frame.truth);
+    const Estimates& estimates = tracker->output<Estimates>();
+    const FrameOutcome fitted = outcome_of(estimates);
+    fits.add(fitted, frame.truth);
+    glint.add(as_followed(fitted, estimates, c.tools, frame.head), frame.truth);
     if (i < seed_frames) published.add(seed.process(frame.view(), frame.head), frame.truth);
   }
   std::vector<Figure> figures = glint.figures(c.tracked, c.wrong);
+  figures.push_back({"gross_fits", "", static_cast<double>(fits.gross())});
   figures.push_back({"blobs_most", "", static_cast<double>(search.blobs_most)});
   figures.push_back({"named_most", "", static_cast<double>(search.steps_most)});
   figures.push_back({"searches_full", "", static_cast<double>(search.full)});

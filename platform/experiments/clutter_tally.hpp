@@ -3,6 +3,7 @@
 // A tool counts as visible with four or more of its markers visible by the simulator's rule, or
 // with three while a measured pose is at most lost_after old. Tracked: this frame gave a measured
 // pose. Gross: it did, and a marker is more than 20 mm or the orientation more than 15 degrees off.
+// The pose is what the filter has after the frame; gross_fits counts the frame's own, before it.
 // Swapped: gross, and every marker that it names lies within 20 mm of one of some other tool's.
 #pragma once
 

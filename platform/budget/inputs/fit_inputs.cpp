@@ -98,6 +98,10 @@ class RefineKernel final : public NodeKernel<RefinePose> {
     for (int t = 0; t < set_.count; ++t) {
       assignment_.reason[t] = all || !numbers.one_in(5) ? Reason::none : Reason::taken_by_other;
       const int first = markers_.count;
+      Prediction& prediction = predictions_.tools[t];
+      prediction.follows_motion = all || numbers.one_in(2);
+      prediction.T_camera_tool = any_view(numbers);
+      prediction.covariance = 1e-4 * Matrix6::Identity();
       if (all) {
         set_.items[t] = add_hardest(limits.markers_per_tool, numbers);
       } else {
@@ -118,7 +122,8 @@ class RefineKernel final : public NodeKernel<RefinePose> {
     rewind();
   }
   void run() noexcept override {
-    node_(verdict_, markers_, tools_, assignment_, graph::Slice{0, k_tool_slices}, fitted_);
+    node_(verdict_, markers_, tools_, predictions_, assignment_, graph::Slice{0, k_tool_slices},
+          fitted_);
   }
 
  private:
@@ -156,6 +161,7 @@ class RefineKernel final : public NodeKernel<RefinePose> {
   Markers markers_;
   ToolSet set_;
   graph::Latest<ToolSet> tools_;
+  Predictions predictions_;
   Assignment assignment_;
   FittedTools fitted_;
 };

@@ -67,13 +67,15 @@ class RefinePose : public testing::Test {
   void start_over() { world_->markers.count = set_.count = 0; }
   const FittedTools& run(graph::Slice slice = {0, 1}) {
     tools_.set(set_, 1, 0);
-    node_(verdict_, world_->markers, tools_, world_->assignment, slice, world_->fitted);
+    node_(verdict_, world_->markers, tools_, world_->predictions, world_->assignment, slice,
+          world_->fitted);
     return world_->fitted;
   }
   const FittedTool& run_one() { return run().tools[0]; }
 
   struct World {
     Markers markers;
+    Predictions predictions;
     Assignment assignment;
     FittedTools fitted;
   };
@@ -307,6 +309,53 @@ TEST_F(RefinePose, IsLessSureOfMarkersThatAreOffByMoreThanTheirNoise) {
   EXPECT_GT(found.covariance(2, 2), 4 * sure(2, 2));
   const Vector6 error = error_of(found, truth, tool.tip_m);
   EXPECT_LT(error.dot(pose_factor(found.covariance).value.solve(error)), 20);
+}
+
+// Foretold to 3 mm and 2 degrees at the middle of the markers.
+void foretell(const Tool& tool, const Pose& T_camera_tool, Prediction& prediction) {
+  prediction.follows_motion = true;
+  prediction.T_camera_tool = T_camera_tool;
+  prediction.covariance.diagonal() << Vector3::Constant(9e-6), Vector3::Constant(1.2e-3);
+  ASSERT_GT(tool.marker_count, 0);
+}
+
+TEST_F(RefinePose, BelievesThreeMarkersOnlyWhereTheMotionCanHaveBroughtTheTool) {
+  Random random(15);
+  Tool tool = test::five_marker_pen();
+  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
+  const Pose aside{truth.rotation, truth.translation + Vector3(0.03, 0, 0)};
+  add_tool(0, tool, truth, 1, random);
+  Prediction& prediction = world_->predictions.tools[0];
+  foretell(tool, aside, prediction);
+  EXPECT_EQ(run_one().reason, Reason::none) << "five that agree are no chance";
+  forget(0, 4);
+  forget(0, 3);
+  EXPECT_EQ(run_one().reason, Reason::bad_fit);
+  EXPECT_TRUE(run_one().covariance.isZero());
+  foretell(tool, truth, prediction);
+  EXPECT_EQ(run_one().reason, Reason::none);
+  foretell(tool, aside, prediction);
+  prediction.covariance *= 100;  // long hidden
+  EXPECT_EQ(run_one().reason, Reason::none);
+  prediction = {};  // it is not known how it moved
+  EXPECT_EQ(run_one().reason, Reason::none);
+}
+
+TEST_F(RefinePose, ForgivesOnlyWhatTheMotionExplains) {
+  Random random(16);
+  Tool tool = test::five_marker_pen();
+  tool.marker_count = 4;
+  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
+  const Pose aside{truth.rotation, truth.translation + Vector3(0.03, 0, 0)};
+  add_tool(0, tool, truth, 0, random);
+  world_->assignment.labeling[0].predicted_worth_m2 = 1e-5;
+  marker_of(0, 2).surface_range_m += 0.03;
+  Prediction& prediction = world_->predictions.tools[0];
+  foretell(tool, truth, prediction);
+  EXPECT_EQ(run_one().reason, Reason::none);
+  EXPECT_EQ(run_one().marker_mask, 0b1011);
+  foretell(tool, aside, prediction);
+  EXPECT_EQ(run_one().reason, Reason::bad_fit);
 }
 
 TEST_F(RefinePose, TakesAMeasuredMeanErrorOffWhereItHolds) {

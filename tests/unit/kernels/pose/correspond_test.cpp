@@ -153,9 +153,32 @@ TEST(Correspond, SaysWhatAPredictionIsWorthOnlyWhereItIsMet) {
   };
   const Pose far{truth.rotation, truth.translation + Vector3(0.06, 0, 0)};
   const double sigma = ahat().range_sigma_m;
-  EXPECT_EQ(worth(&truth), 9 * sigma * sigma);
+  // In sigmas squared, 6 ln(1 m / 6 mm): where it was foretold, and so surely.
+  EXPECT_NEAR(worth(&truth), 30.7 * sigma * sigma, 1.5 * sigma * sigma);
+  const Pose near{truth.rotation, truth.translation + Vector3(0, 0.012, 0)};
+  EXPECT_NEAR(worth(&truth) - worth(&near), 4 * sigma * sigma, 1.5 * sigma * sigma);
   EXPECT_EQ(worth(&far), 0);
   EXPECT_EQ(worth(nullptr), 0);
+}
+
+TEST(Correspond, LooksOnlyNearAPredictionThatIsSure) {
+  const Tool pen = test::five_marker_pen();
+  const Pose truth{Quaternion::Identity(), Vector3(0, 0, 0.4)};
+  std::vector<Vector3> points;
+  for (int i = 0; i < pen.marker_count; ++i)
+    points.push_back(truth * pen.markers_m[std::size_t(i)]);
+  const Markers markers = centres(pen, points);
+  CorrespondSettings settings = ahat();
+  for (const bool sure : {false, true}) {
+    settings.only_near = sure;
+    const auto found_with_prior_off_by = [&](double off_m) {
+      const Pose prior{truth.rotation, truth.translation + Vector3(off_m, 0, 0)};
+      return labelings_of(markers, pen, settings, &prior).count > 0;
+    };
+    EXPECT_TRUE(found_with_prior_off_by(0.04));
+    EXPECT_EQ(found_with_prior_off_by(0.06), !sure);
+    EXPECT_EQ(labelings_of(markers, pen, settings).count > 0, true) << "without any";
+  }
 }
 
 TEST(Correspond, DoesNotCallStraysATool) {

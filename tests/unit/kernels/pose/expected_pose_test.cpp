@@ -1,0 +1,107 @@
+#include "kernels/pose/expected_pose.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "kernels/pose/chi_square_limit.hpp"
+#include "kernels/pose/lever_arm.hpp"
+#include "tests/unit/kernels/pose/weighted_scene.hpp"
+
+namespace glint {
+namespace {
+
+using test::Random;
+
+const Vector3 k_place(0.08, -0.05, 0.5);
+const MarkerVariance k_usual{0.01, 0, 0.01, 0.0015 * 0.0015};
+const MarkerVariance k_unsure{0.09, 0, 0.09, 0.01 * 0.01};
+constexpr double k_shift_sigma_m = 0.003, k_turn_sigma_rad = 0.03;
+
+// As a filter would foretell it: off by as much as it says, at the middle of the markers.
+ExpectedPose expect(const Tool& tool, const Pose& truth, Random& random) {
+  ExpectedPose expected;
+  expected.reference_m = test::mean_of_markers(tool);
+  const auto noise = [&](double sigma) {
+    return Vector3(sigma * Vector3(random.normal(), random.normal(), random.normal()));
+  };
+  const Quaternion rotation = from_rotation_vector(noise(k_turn_sigma_rad)) * truth.rotation;
+  const Vector3 middle = truth * expected.reference_m + noise(k_shift_sigma_m);
+  expected.T_camera_tool = {rotation, middle - rotation * expected.reference_m};
+  expected.covariance.diagonal() << Vector3::Constant(k_shift_sigma_m * k_shift_sigma_m),
+      Vector3::Constant(k_turn_sigma_rad * k_turn_sigma_rad);
+  return expected;
+}
+
+TEST(ExpectedPose, SurprisesByChiSquareOfSixWhereAllIsAsDeclared) {
+  Random random(1);
+  const Tool tool = test::five_marker_pen();
+  constexpr int k_trials = 3000;
+  double sum = 0;
+  int beyond = 0;
+  for (int trial = 0; trial < k_trials; ++trial) {
+    const Pose truth = test::tilted_pose(tool, random.within(0.4, 1), k_place, random);
+    const auto markers = test::weighted_view(tool, truth, k_usual, 1, random);
+    // The tip is 0.15 m from the middle, which the expectation is about.
+    const Vector3 tip = test::mean_of_markers(tool) + Vector3(0, 0, 0.15);
+    const RefinedPose pose = refine_pose(markers, tip);
+    ASSERT_EQ(pose.reason, Reason::none);
+    const double surprise =
+        surprise_of(expect(tool, truth, random), pose.T_camera_tool, pose.covariance, tip);
+    sum += surprise;
+    beyond += surprise > chi_square_limit(6) ? 1 : 0;
+  }
+  EXPECT_NEAR(sum / k_trials, 6, 0.3);  // 3,000 means of chi square of 6: 0.063, 1 sigma
+  EXPECT_LE(beyond, 4);                 // 0.3 on average
+}
+
+TEST(ExpectedPose, WithoutACovarianceNothingIsExpected) {
+  const ExpectedPose certain;
+  EXPECT_EQ(surprise_of(certain, Pose{}, Matrix6::Zero(), Vector3::Zero()), k_no_surprise_known);
+}
+
+TEST(ExpectedPose, LeavesThePoseToTheMarkers) {
+  Random random(2);
+  const Tool tool = test::five_marker_pen();
+  for (int trial = 0; trial < 100; ++trial) {
+    const Pose truth = test::tilted_pose(tool, 0.6, k_place, random);
+    const auto markers = test::weighted_view(tool, truth, k_usual, 1, random);
+    const ExpectedPose expected = expect(tool, truth, random);
+    const RefinedPose alone = refine_pose(markers, tool.tip_m);
+    const RefinedPose led = refine_pose(markers, tool.tip_m, nullptr, {}, &expected);
+    EXPECT_EQ(alone.surprise, 0);
+    EXPECT_GT(led.surprise, 0);
+    // Both starts end in one minimum, each as near to it as a fit ends.
+    EXPECT_LT((led.T_camera_tool * tool.tip_m - alone.T_camera_tool * tool.tip_m).norm(), 1e-5);
+    EXPECT_TRUE(led.covariance.isApprox(alone.covariance, 1e-3));
+  }
+}
+
+struct Wrong {
+  int alone = 0, led = 0;
+};
+
+// Three markers of a flat tool seen from the front: two minima which their noise hardly tells
+// apart.
+TEST(ExpectedPose, TellsAFlatToolsMinimaApart) {
+  Random random(3);
+  const Tool tool = test::flat_tool();
+  Wrong gross;
+  for (int trial = 0; trial < 1000; ++trial) {
+    const Pose truth = test::tilted_pose(tool, random.within(0.2, 0.5), k_place, random);
+    const auto markers = test::weighted_view(tool, truth, k_unsure, 1, random);
+    const ExpectedPose expected = expect(tool, truth, random);
+    const auto count = [&](const ExpectedPose* by, int& wrong) {
+      const RefinedPose pose = refine_pose({markers.data(), 3}, tool.tip_m, nullptr, {}, by);
+      wrong += test::angle_between(pose.T_camera_tool.rotation, truth.rotation) > 0.35 ? 1 : 0;
+    };
+    count(nullptr, gross.alone);
+    count(&expected, gross.led);
+  }
+  std::printf("  grossly off: %d alone, %d with an expectation\n", gross.alone, gross.led);
+  EXPECT_GT(gross.alone, 80);             // else the test shows nothing
+  EXPECT_LE(gross.led, gross.alone / 2);  // the rest is noise, not the other minimum
+}
+
+}  // namespace
+}  // namespace glint
