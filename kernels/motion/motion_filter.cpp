@@ -46,6 +46,15 @@ void apply(MotionState& state, const Gain<1>& error) {
   state.angular_acceleration_rad_s2 += error.segment<3>(k_angular_acceleration);
 }
 
+// T P T', where T turns each triple of errors alike.
+void turn_errors(MotionCovariance& p, const Matrix3& turn) {
+  for (int side = 0; side < 2; ++side) {  // T P, then its transpose again: T (T P)'
+    for (int row = 0; row < k_motion_size; row += 3)
+      p.middleRows<3>(row) = turn.lazyProduct(p.middleRows<3>(row)).eval();
+    p.transposeInPlace();
+  }
+}
+
 // ph: P H'; s: H P H' + R.
 template <int M>
 Correction correct(MotionState& state, const Gain<M>& ph, const Eigen::Matrix<double, M, M>& s,
@@ -170,8 +179,14 @@ Correction correct_by_point(MotionState& state, const MeasuredPoint& measured) n
   const Matrix3 s = ph.middleRows<3>(k_position) - cross.lazyProduct(ph.middleRows<3>(k_rotation)) +
                     measured.covariance_m2 + beyond.covariance;
   const Vector3 innovation = measured.measured_m - (state.pose.translation + lever + beyond.mean);
+  const Quaternion before = state.pose.rotation;
   Correction correction = correct<3>(state, ph, s, innovation);
   correction.linear_chi_square = correction.chi_square;
+  if (correction.reason != Reason::none) return correction;
+  // One marker ties the errors of place to those of rotation by its lever, and a correction may
+  // turn that far. Errors that did not turn along would seem to tell, with the next frame, how the
+  // tool is turned about the marker, which no frame has shown.
+  turn_errors(state.covariance, (state.pose.rotation * before.conjugate()).toRotationMatrix());
   return correction;
 }
 
@@ -188,13 +203,7 @@ MotionState moved_state(const MotionState& state, const Pose& moved) noexcept {
   for (Vector3* v : {&out.velocity_m_s, &out.acceleration_m_s2, &out.angular_velocity_rad_s,
                      &out.angular_acceleration_rad_s2})
     *v = moved.rotation * *v;
-  const Matrix3 turn = moved.rotation.toRotationMatrix();
-  for (int side = 0; side < 2; ++side) {  // T P, then its transpose again: T (T P)'
-    for (int row = 0; row < k_motion_size; row += 3)
-      out.covariance.middleRows<3>(row) =
-          turn.lazyProduct(out.covariance.middleRows<3>(row)).eval();
-    out.covariance.transposeInPlace();
-  }
+  turn_errors(out.covariance, moved.rotation.toRotationMatrix());
   return out;
 }
 

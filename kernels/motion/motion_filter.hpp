@@ -10,7 +10,8 @@
 // Source:   Singer 1970 (the damped acceleration); Bar-Shalom, Li and Kirubarajan 2001, section
 //           5.2 (the filter's equations, as P - W'W with W = L^-1 H P, S = L L') and 10.3.2 (second
 //           order); error of rotation about fixed axes: Sola, Deray and Atchuthan 2018, A micro Lie
-//           theory for state estimation in robotics.
+//           theory for state estimation in robotics; errors that turn with what a marker corrects:
+//           Barrau and Bonnabel 2017, The invariant extended Kalman filter as a stable observer.
 #pragma once
 
 #include "kernels/motion/motion_state.hpp"
@@ -28,6 +29,9 @@ struct MotionSettings {
   // At the start: how fast a hand may already be.
   double start_speed_m_s = 0.5;
   double start_turn_rad_s = 3.0;
+  // What a hand may do to its speed while nobody looks: stroke_noise.hpp.
+  double linear_stroke_1_s = 0.9;
+  double angular_stroke_1_s = 2.0;
 };
 
 // By how much the process noise differs from the settings', as the innovations have it.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "kernels/motion/cholesky.hpp"
+#include "kernels/motion/stroke_noise.hpp"
 
 namespace glint {
 namespace {
@@ -61,10 +62,12 @@ MotionUpdate MotionTrack::update(const UncertainPose& measured, const ToolMotion
     state_ = start_motion(measured, settings.motion);
     scale_ = briskest_ = {};
     correction_ = {};
+    posed_ = measured.time;
     return done;
   }
   scale_.linear = moved(scale_.linear, correction_.linear_chi_square, frames, settings.linear);
   scale_.angular = moved(scale_.angular, correction_.angular_chi_square, frames, settings.angular);
+  posed_ = measured.time;
   const double faded = 1 - 1 / settings.briskest_frames;
   briskest_.linear = std::max(scale_.linear, faded * briskest_.linear);
   briskest_.angular = std::max(scale_.angular, faded * briskest_.angular);
@@ -79,7 +82,13 @@ Reason MotionTrack::update(Time time, std::span<const MeasuredPoint> points,
     return Reason::too_few_markers;
   // Single markers are no poses to average: from a rest the filter goes on where the rest was.
   MotionState next = estimate(sums);
+  const double seconds = (time - next.time).seconds();
+  const double hidden_s = (time - posed_).seconds();
   propagate(next, time, settings.motion, partial_noise_scale(settings));
+  add_strokes(next.covariance, k_position, next.velocity_m_s, settings.motion.linear_stroke_1_s,
+              hidden_s, seconds);
+  add_strokes(next.covariance, k_rotation, next.angular_velocity_rad_s,
+              settings.motion.angular_stroke_1_s, hidden_s, seconds);
   const std::size_t count = std::min(points.size(), k_points_max);
   for (std::size_t i = 0; i < count; ++i) {
     correction_ = correct_by_point(next, points[i]);

@@ -77,6 +77,7 @@ class MotionTrack {
 
   bool known_ = false;
   MotionState state_;
+  Time posed_;  // the newest pose: since then markers alone hold it
   NoiseScale scale_, briskest_;
   RestWindow rest_;
   Correction correction_;

@@ -2,6 +2,7 @@
 
 #include "kernels/motion/interpolate.hpp"
 #include "kernels/motion/singer.hpp"
+#include "kernels/motion/stroke_noise.hpp"
 
 namespace glint {
 namespace {
@@ -52,6 +53,10 @@ UncertainPose predict_pose(const MotionState& state, Time time, const MotionSett
     later.covariance(i, i) += place_noise;
     later.covariance(3 + i, 3 + i) += turn_noise;
   }
+  later.covariance.topLeftCorner<3, 3>() +=
+      stroke_spread(state.velocity_m_s, settings.linear_stroke_1_s, seconds);
+  later.covariance.bottomRightCorner<3, 3>() +=
+      stroke_spread(state.angular_velocity_rad_s, settings.angular_stroke_1_s, seconds);
   return later;
 }
 

@@ -1,0 +1,40 @@
+// What frames 22 ms apart do not show of a hand: that a stroke ends, or turns back.
+//
+// What:     along its velocity v a tool gathers or loses share * |v| of speed a second, as chance
+//           has it and for as long as nobody looks: after a time t its speed has spread by
+//           share^2 t^2 v v', its place by share^2 t^4 / 4 v v'. Across v nothing.
+// Cost:     one outer product of three a motion: 20 ns.
+// Worst:    nothing depends on the input; at rest it adds nothing.
+// Accuracy: along single steps the spread of speed is exact, that of place 2/3 of the whole's.
+// Source:   the mechanism: errors of 0.2 s ahead lay along the motion 1.3 to 2.3 times as much as
+//           across it in four recordings, those of 44 ms nearly alike. Shares: README.md,
+//           "Strokes".
+#pragma once
+
+#include "kernels/motion/motion_filter.hpp"
+#include "kernels/motion/motion_state.hpp"
+
+namespace glint {
+
+// Of the place, or of the rotation, `seconds` after the velocity was known.
+[[nodiscard]] inline Matrix3 stroke_spread(const Vector3& velocity, double share_1_s,
+                                           double seconds) {
+  const double moved = 0.5 * share_1_s * seconds * seconds;
+  return (moved * velocity) * (moved * velocity).transpose();
+}
+
+// To a covariance that was propagated over the last `seconds` of the `hidden_s` since all of the
+// tool was seen: what its first triple and the speed behind it gather.
+inline void add_strokes(MotionCovariance& covariance, int place, const Vector3& velocity,
+                        double share_1_s, double hidden_s, double seconds) {
+  // White noise that brings the speed's spread from where it was to where it is.
+  const double density = share_1_s * share_1_s * (2 * hidden_s - seconds);
+  const Matrix3 noise = (density * velocity) * velocity.transpose();
+  const int speed = place + 3;
+  covariance.block<3, 3>(place, place) += (seconds * seconds * seconds / 3) * noise;
+  covariance.block<3, 3>(place, speed) += (seconds * seconds / 2) * noise;
+  covariance.block<3, 3>(speed, place) += (seconds * seconds / 2) * noise;
+  covariance.block<3, 3>(speed, speed) += seconds * noise;
+}
+
+}  // namespace glint
