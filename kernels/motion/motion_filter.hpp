@@ -29,9 +29,6 @@ struct MotionSettings {
   // At the start: how fast a hand may already be.
   double start_speed_m_s = 0.5;
   double start_turn_rad_s = 3.0;
-  // What a hand may do to its speed while nobody looks: stroke_noise.hpp.
-  double linear_stroke_1_s = 0.9;
-  double angular_stroke_1_s = 2.0;
 };
 
 // By how much the process noise differs from the settings', as the innovations have it.

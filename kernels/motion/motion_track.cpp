@@ -85,10 +85,10 @@ Reason MotionTrack::update(Time time, std::span<const MeasuredPoint> points,
   const double seconds = (time - next.time).seconds();
   const double hidden_s = (time - posed_).seconds();
   propagate(next, time, settings.motion, partial_noise_scale(settings));
-  add_strokes(next.covariance, k_position, next.velocity_m_s, settings.motion.linear_stroke_1_s,
+  add_strokes(next.covariance, k_position, next.velocity_m_s, k_linear_stroke_1_s, hidden_s,
+              seconds);
+  add_strokes(next.covariance, k_rotation, next.angular_velocity_rad_s, k_angular_stroke_1_s,
               hidden_s, seconds);
-  add_strokes(next.covariance, k_rotation, next.angular_velocity_rad_s,
-              settings.motion.angular_stroke_1_s, hidden_s, seconds);
   const std::size_t count = std::min(points.size(), k_points_max);
   for (std::size_t i = 0; i < count; ++i) {
     correction_ = correct_by_point(next, points[i]);

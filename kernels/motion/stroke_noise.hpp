@@ -11,10 +11,13 @@
 //           "Strokes".
 #pragma once
 
-#include "kernels/motion/motion_filter.hpp"
 #include "kernels/motion/motion_state.hpp"
 
 namespace glint {
+
+// The rms of that share, of shifts and of turns.
+inline constexpr double k_linear_stroke_1_s = 0.9;
+inline constexpr double k_angular_stroke_1_s = 2.0;
 
 // Of the place, or of the rotation, `seconds` after the velocity was known.
 [[nodiscard]] inline Matrix3 stroke_spread(const Vector3& velocity, double share_1_s,

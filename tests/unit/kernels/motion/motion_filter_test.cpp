@@ -179,6 +179,24 @@ TEST(MotionFilter, LeavesTheStateWhereACovarianceIsNone) {
   EXPECT_EQ(state.covariance, before.covariance);
 }
 
+// The place is known, one marker is far off: the tool turns to it. How it lies about the line to
+// the marker no sight of it tells, wherever that line has turned to.
+TEST(MotionFilter, LearnsNothingOfTurnsAboutTheLineToItsOnlyMarker) {
+  const double sigma = 0.3;
+  MotionState state;
+  state.covariance = 1e-10 * MotionCovariance::Identity();
+  state.covariance.block<3, 3>(k_rotation, k_rotation) = sigma * sigma * Matrix3::Identity();
+  MeasuredPoint point{Vector3(0.05, 0, 0), Vector3::Zero(), 1e-8 * Matrix3::Identity()};
+  point.measured_m = from_rotation_vector(Vector3(0, 0.2, 0.4)) * point.model_m;
+  for (int sight = 0; sight < 3; ++sight) {
+    ASSERT_EQ(correct_by_point(state, point).reason, Reason::none);
+    const Vector3 line = (state.pose.rotation * point.model_m).normalized();
+    EXPECT_GT(line.y(), 0.3);
+    const Matrix3 turns = state.covariance.block<3, 3>(k_rotation, k_rotation);
+    EXPECT_NEAR(line.dot(turns * line), sigma * sigma, 0.01 * sigma * sigma) << sight;
+  }
+}
+
 TEST(MotionFilter, GivesTheSameBitsEverywhere) {
   test::Random random(5);
   test::BitHash hash;

@@ -2,12 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "kernels/motion/stroke_noise.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"
 
 namespace glint {
 namespace {
 
-TEST(PredictPose, IsWhereTheFilterItselfWouldBe) {
+TEST(PredictPose, IsWhereTheFilterItselfWouldBeAndAsUnsureAsStrokesMakeIt) {
   test::Random random(1);
   for (const int ms : {1, 25, 50, 250}) {
     for (int trial = 0; trial < 50; ++trial) {
@@ -15,7 +16,11 @@ TEST(PredictPose, IsWhereTheFilterItselfWouldBe) {
       const Time time{ms * 1'000'000LL};
       MotionState later = state;
       propagate(later, time, {}, {1.3, 0.8});
-      const UncertainPose expected = pose_of(later);
+      UncertainPose expected = pose_of(later);
+      expected.covariance.topLeftCorner<3, 3>() +=
+          stroke_spread(state.velocity_m_s, k_linear_stroke_1_s, 0.001 * ms);
+      expected.covariance.bottomRightCorner<3, 3>() +=
+          stroke_spread(state.angular_velocity_rad_s, k_angular_stroke_1_s, 0.001 * ms);
       const UncertainPose predicted = predict_pose(state, time, {}, {1.3, 0.8});
       EXPECT_EQ(predicted.time, time);
       EXPECT_LT(pose_difference(predicted.pose, expected.pose).norm(), 1e-14);

@@ -6,6 +6,8 @@
 #include <limits>
 #include <memory>
 
+#include "kernels/motion/interpolate.hpp"
+#include "kernels/motion/stroke_noise.hpp"
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"
 
@@ -110,6 +112,29 @@ TEST(ToolMotion, GoesOnWithOneMarkerButNeedsAPoseFirst) {
   EXPECT_LT(sigma, 0.005);
   EXPECT_EQ(tool.motion->update(test::frame_time(tool.frame + 100), {&point, 1}),
             Reason::too_few_markers);
+}
+
+// A marker on the axis shows nothing of a turn about it.
+TEST(ToolMotion, GrowsUnsureAlongATurnThatOneMarkerDoesNotShow) {
+  Followed tool;
+  tool.truth.rotation = Quaternion::Identity();
+  const Vector3 turn(0, 0, 2), model(0, 0, 0.05);
+  const auto turn_on = [&] {
+    tool.truth.rotation =
+        (from_rotation_vector(turn * (1 / 45.0)) * tool.truth.rotation).normalized();
+  };
+  for (int i = 0; i < 90; ++i) {
+    turn_on();
+    ASSERT_EQ(tool.motion->update(seen(tool.truth, tool.frame++, tool.random)), Reason::none);
+  }
+  for (int i = 0; i < 9; ++i) {
+    turn_on();
+    const MeasuredPoint point{model, tool.truth * model, 9e-8 * Matrix3::Identity()};
+    ASSERT_EQ(tool.motion->update(test::frame_time(tool.frame++), {&point, 1}), Reason::none);
+  }
+  const double stroke = k_angular_stroke_1_s * 2 * 0.2 * 0.2;  // rad, twice the place's
+  EXPECT_GT(tool.motion->estimate().covariance(k_rotation + 2, k_rotation + 2),
+            0.9 * stroke * stroke / 6);
 }
 
 TEST(ToolMotion, KeepsItsNoiseAboveTheFloorWithoutAnyNoise) {

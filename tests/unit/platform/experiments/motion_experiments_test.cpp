@@ -105,14 +105,14 @@ TEST(MotionExperiments, NameARecordingThatIsMissing) {
   }
 }
 
-TEST(MotionExperiments, ForetellTheRealRecordings) {
+TEST(MotionExperiments, ForetellTheRealRecordingsAndReturnToThem) {
   const char* folder = std::getenv("GLINT_TEST_DATA");
   const std::string path = std::string(folder ? folder : "") + "/trajectories";
   if (!folder || !std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
   CaseOptions options;
   options.data = path;
-  const CaseList list = run_prediction(options);
-  EXPECT_EQ(missed_bars(list), 0) << case_table(list);
+  for (const CaseList& list : {run_prediction(options), run_occlusion(options)})
+    EXPECT_EQ(missed_bars(list), 0) << case_table(list);
 }
 
 }  // namespace

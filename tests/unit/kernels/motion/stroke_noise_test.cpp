@@ -1,0 +1,37 @@
+#include "kernels/motion/stroke_noise.hpp"
+
+#include <gtest/gtest.h>
+
+namespace glint {
+namespace {
+
+TEST(Strokes, SpreadAlongTheMotionAlone) {
+  const Vector3 velocity(0.3, 0.4, 0);
+  const Matrix3 spread = stroke_spread(velocity, 2, 0.2);
+  EXPECT_NEAR(velocity.dot(spread * velocity) / velocity.squaredNorm(), 0.0016 * 0.25, 1e-15);
+  EXPECT_NEAR((spread * Vector3(0.4, -0.3, 0)).norm(), 0, 1e-15);
+  EXPECT_EQ(stroke_spread(Vector3::Zero(), 2, 0.2), Matrix3(Matrix3::Zero()));
+}
+
+// Carried by hand between the steps: place by speed.
+TEST(Strokes, OfSingleStepsAddUpToTheWholesSpeed) {
+  const Vector3 velocity(0, 0, 1.5);
+  const int steps = 90;
+  const double seconds = 0.9 / steps;
+  MotionCovariance sum = MotionCovariance::Zero();
+  MotionCovariance carry = MotionCovariance::Identity();
+  carry.block<3, 3>(k_rotation, k_angular_velocity) = seconds * Matrix3::Identity();
+  for (int step = 1; step <= steps; ++step) {
+    sum = (carry * sum * carry.transpose()).eval();
+    add_strokes(sum, k_rotation, velocity, 0.5, step * seconds, seconds);
+  }
+  const double speed = 0.5 * 0.9 * 1.5;
+  EXPECT_NEAR(sum(k_angular_velocity + 2, k_angular_velocity + 2), speed * speed, 1e-12);
+  const double whole = stroke_spread(velocity, 0.5, 0.9)(2, 2);
+  EXPECT_NEAR(sum(k_rotation + 2, k_rotation + 2), 2 * whole / 3, 1e-3 * whole);
+  sum.block<6, 6>(k_rotation, k_rotation).setZero();
+  EXPECT_NEAR(sum.norm(), 0, 1e-12);  // what moves the place is left alone
+}
+
+}  // namespace
+}  // namespace glint
