@@ -192,7 +192,7 @@ TEST(ToolMotion, GivesTheSameBitsEverywhere) {
     }
     test::add_bits(hash, tool.motion->estimate());
   }
-  EXPECT_EQ(hash.value(), 17243042835067967198u);
+  EXPECT_EQ(hash.value(), 18373310529880203982u);
 }
 
 }  // namespace
