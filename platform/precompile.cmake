@@ -1,18 +1,32 @@
-# cmake -DGLINT_PRECOMPILE=ON: Eigen and GoogleTest are a third of what most files take to compile;
-# here they are read once, in three variants: without exceptions for the core, with them, and with
-# GoogleTest beside it. The machine code stays the same. Sanitizers, second compilers and arm64 build
-# with it; the release build does not, so that each file has to name what it uses.
-find_package(GTest REQUIRED)
+# GLINT_PRECOMPILE: Eigen, GoogleTest, nlohmann-json and the standard library are two thirds of what
+# most files take to compile; here they are read once, in three variants: small and without
+# exceptions for the core, with them, and with GoogleTest beside it. The machine code stays the same.
+# A file that does not name what it uses is no longer told so by the compiler: tests/check_includes
+# looks, and the debug preset builds each file by itself and reads everything anew.
+find_package(GTest QUIET)
+find_package(nlohmann_json REQUIRED)
 file(WRITE ${CMAKE_BINARY_DIR}/precompiled.cpp "")
+set(core_headers <Eigen/Core> <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <optional> <span>)
+set(headers ${core_headers} <atomic> <chrono> <filesystem> <fstream> <functional> <map> <memory>
+  <random> <sstream> <string> <thread> <vector> <nlohmann/json.hpp>)
 foreach(variant precompiled precompiled_core precompiled_tests)
   add_library(glint_${variant} OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
   target_link_libraries(glint_${variant} PRIVATE Eigen3::Eigen)
-  target_precompile_headers(glint_${variant} PRIVATE <Eigen/Core> <Eigen/Geometry> <algorithm>
-    <array> <atomic> <cmath> <functional> <memory> <optional> <span> <string> <vector>)
 endforeach()
+target_precompile_headers(glint_precompiled_core PRIVATE ${core_headers})
 target_link_libraries(glint_precompiled_core PRIVATE glint_core_flags)
-target_link_libraries(glint_precompiled_tests PRIVATE GTest::gtest)
-target_precompile_headers(glint_precompiled_tests PRIVATE <gtest/gtest.h>)
+foreach(variant precompiled precompiled_tests)
+  target_precompile_headers(glint_${variant} PRIVATE ${headers})
+  target_link_libraries(glint_${variant} PRIVATE nlohmann_json::nlohmann_json)
+endforeach()
+if(GTest_FOUND)
+  target_link_libraries(glint_precompiled_tests PRIVATE GTest::gtest)
+  target_precompile_headers(glint_precompiled_tests PRIVATE <gtest/gtest.h>)
+endif()
+# It has options of its own, so it reads them itself.
+if(TARGET footprint_core)
+  target_precompile_headers(footprint_core PRIVATE ${core_headers})
+endif()
 
 function(glint_precompile folder)
   get_property(folders DIRECTORY ${folder} PROPERTY SUBDIRECTORIES)

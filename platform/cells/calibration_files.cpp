@@ -4,12 +4,11 @@
 #include <array>
 
 #include "kernels/elementary.hpp"
+#include "platform/cells/cell_headset.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {
 namespace {
-
-constexpr double k_radians_per_degree = 3.14159265358979323846 / 180.0;
 
 [[noreturn]] void complain(const std::string& file, std::uint32_t line, const std::string& what) {
   throw InputError(file + ":" + std::to_string(line) + ": " + what);

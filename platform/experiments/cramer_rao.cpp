@@ -1,6 +1,7 @@
 #include "platform/experiments/cramer_rao.hpp"
 
 #include <Eigen/Cholesky>
+#include <cmath>
 
 namespace glint {
 namespace {
