@@ -6,16 +6,16 @@
 # Where a new name gives "redefinition" in a build folder that is older, configure it again.
 set(files_together 8)  # more would be one long file at the end, on which every core waits
 
-# What a file defines: constants anywhere, types and functions at the start of a line.
+# What a file defines: constants anywhere, types, functions and variables at the start of a line.
 function(glint_defined_names file result)
   file(READ ${file} text)
   string(REGEX REPLACE "[][;]" "#" text "${text}")  # what CMake's lists would stumble over
   string(REGEX MATCHALL "k_[a-z0-9_]+(#[^\n=]*#)? *[={]" constants "${text}")
   string(REGEX MATCHALL "\n(struct|class|enum class|using) [A-Za-z0-9_]+" types "${text}")
-  string(REGEX MATCHALL "\n[A-Za-z][A-Za-z0-9_:<>,*& ]*[ *&][a-z0-9_]+\\(" functions "${text}")
+  string(REGEX MATCHALL "\n[A-Za-z#][A-Za-z0-9_:<>,*&# ]*[ *&][a-z0-9_]+ *[(=]" functions "${text}")
   list(TRANSFORM constants REPLACE "^(k_[a-z0-9_]+).*" "\\1")
   set(names ${constants} ${types} ${functions})
-  list(TRANSFORM names REPLACE "^.*[^A-Za-z0-9_]([A-Za-z0-9_]+)\\(?$" "\\1")
+  list(TRANSFORM names REPLACE "^.*[^A-Za-z0-9_]([A-Za-z0-9_]+) *[(=]?$" "\\1")
   list(REMOVE_DUPLICATES names)
   set(${result} "${names}" PARENT_SCOPE)
 endfunction()
