@@ -33,8 +33,9 @@ enum class Reason : std::uint8_t {
   overrun_predicted = 21,  // the last known motion goes on
   overrun_stopped = 22,    // everything is declared lost
   tool_changed = 23,       // another tool, or none, is in its place since
+  unsure = 24,             // found, but not surely enough to be called measured
 };
-inline constexpr Reason k_last_reason = Reason::tool_changed;
+inline constexpr Reason k_last_reason = Reason::unsure;
 
 // Whether it stands for a measurement that was not in time.
 [[nodiscard]] constexpr bool is_overrun(Reason reason) {
@@ -48,7 +49,8 @@ inline constexpr Reason k_last_reason = Reason::tool_changed;
       "degenerate",    "collinear",         "bad_fit",         "frame_late",   "frame_doubled",
       "frame_invalid", "head_pose_missing", "too_old",         "runs_full",    "blobs_full",
       "search_full",   "not_prepared",      "out_of_range",    "no_reference", "overrun_skipped",
-      "overrun_held",  "overrun_predicted", "overrun_stopped", "tool_changed"};
+      "overrun_held",  "overrun_predicted", "overrun_stopped", "tool_changed",
+      "unsure"};
   const auto i = static_cast<std::size_t>(reason);
   return i < sizeof names / sizeof names[0] ? names[i] : "unknown";
 }

@@ -33,6 +33,11 @@ bool within(const Matrix3& covariance, double sigma) {
   return true;
 }
 
+bool is_sure(const MotionCovariance& covariance, const SureLimits& sure) {
+  return within(covariance.block<3, 3>(k_position, k_position), sure.position_m) &&
+         within(covariance.block<3, 3>(k_rotation, k_rotation), sure.rotation_rad);
+}
+
 }  // namespace
 
 // Leaves the reason, which says why there is no pose.
@@ -55,9 +60,7 @@ void FollowMotion::follow_few(const FewMarkers& few, const Tool& shape,
   tool.few_mask = mask;
   tool.estimate = tool.motion.estimate(sums_[place]);
   tool.noise = tool.motion.partial_noise_scale(settings);
-  const MotionCovariance& covariance = tool.estimate.covariance;
-  tool.stands = within(covariance.block<3, 3>(k_position, k_position), sure.position_m) &&
-                within(covariance.block<3, 3>(k_rotation, k_rotation), sure.rotation_rad);
+  tool.stands = is_sure(tool.estimate.covariance, sure);
 }
 
 void FollowMotion::operator()(
@@ -103,6 +106,7 @@ void FollowMotion::operator()(
     counts_[3] += done.rest_tests;
     tool.estimate = tool.motion.estimate(sums_[place]);
     tool.noise = tool.motion.noise_scale();
+    tool.stands = is_sure(tool.estimate.covariance, sure);
   }
   for (; place < k_tools_per_slice; ++place) followed.items[place] = {};
 }

@@ -3,17 +3,16 @@
 // headset knew its own pose, else the camera's).
 //
 // A frame that gives no pose but one or two markers (NameFew) moves the filter on by these, from
-// what it knew. Whether that stands as a measurement is a matter of how sure the tool still is,
-// whichever markers said so: a pose whose every axis is within SureLimits is one, and is called
-// measured; beyond, what is known goes on, predicted and in the end lost, however long the marker
-// is in view.
+// what it knew. Whether that stands as a measurement is a matter of how sure the tool is then,
+// whichever markers said so, and so it is of three and more: a pose whose every axis is within
+// SureLimits is one, and is called measured; beyond, what is known goes on, predicted and in the
+// end lost, however long the markers are in view.
 //
 // The filters travel as a token, so that a frame which is abandoned leaves no trace; the rest
 // windows' sums stay here, for a frame only ever writes entries that the one before does not need.
 // A tool whose slot holds another one than before begins anew.
 // Cost:   an update of filter and rest window for each tool found, by up to k_rest_levels tests;
-// one
-//         by two markers costs less than one by a pose with its tests.
+//         one by two markers costs less than one by a pose with its tests.
 // Worst:  all tools found, all at rest for as long as the window reaches.
 #pragma once
 

@@ -34,12 +34,17 @@ void accept(const FittedTool& found, const FollowedTool& followed, const FrameSt
   if (head.valid) track.head_covariance = anchored.lasting_at(track.motion.pose.translation);
 }
 
+// What is known goes on, but is no measurement.
+void move_on(const FollowedTool& followed, double numbers, Track& track) {
+  track.motion = followed.estimate;
+  track.noise = followed.noise;
+  track.surprise = surprise_of(followed, numbers);
+}
+
 // One or two markers moved it on. The pose that stands is the filter's, for they give none.
 void accept_few(const FollowedTool& followed, const Tool& tool, const FrameStamp& stamp,
                 const AnchoredHead& anchored, Track& track) {
-  track.motion = followed.estimate;
-  track.noise = followed.noise;
-  track.surprise = surprise_of(followed, 3);
+  move_on(followed, 3, track);
   if (!followed.stands) return;
   const HeadPose& head = anchored.head;
   const Pose& middle = track.motion.pose;
@@ -103,14 +108,16 @@ void TrackTools::operator()(const FrameVerdict& verdict, const Anchor& anchor,
     if (anchor.now.moved_along && track.base == ReferenceFrame::world) move(anchor.now, track);
 
     const FollowedTool& tool = followed[t % k_tool_slices].items[t / k_tool_slices];
-    if (tool.reason == Reason::none) {
+    if (tool.reason == Reason::none && tool.stands) {
       ++counts_[2];
       accept(fitted[t % k_tool_slices].tools[t], tool, verdict.stamp, anchor.now,
              settings.velocity_gap_max, track);
       continue;
     }
     track.seen_now = false;
-    track.reason = tool.reason;
+    track.reason = tool.reason != Reason::none ? tool.reason : Reason::unsure;
+    if (tool.reason == Reason::none && track.alive && track.base == tool.base)
+      move_on(tool, 6, track);
     if (tool.few_mask != 0 && track.alive)
       accept_few(tool, shape, verdict.stamp, anchor.now, track);
     if (verdict.stamp.mid_exposure - track.newest.time > settings.lost_after) {
