@@ -1,49 +1,64 @@
 # CMAKE_UNITY_BUILD: a few files of a target are compiled as one, so that what they include is read
-# and instantiated once for all of them. Files that give different things the same name, as each may
+# and instantiated once for all of them. Files that mean different things by one name, as each may
 # in its unnamed namespace, are kept apart here: nobody has to invent names that no neighbour has.
-# What is measured, counted or timed stays file by file: CMAKE_UNITY_BUILD is OFF in its folder. So
-# is the debug preset, and -DCMAKE_UNITY_BUILD=OFF serves whoever edits one file again and again.
+# What is measured, counted or timed stays file by file: CMAKE_UNITY_BUILD is OFF in its folder.
 # Where a new name gives "redefinition" in a build folder that is older, configure it again.
 set(files_together 8)  # more would be one long file at the end, on which every core waits
 
-# What a file defines: constants anywhere, types, functions and variables at the start of a line.
-function(glint_defined_names file result)
+# What a file defines: constants anywhere, types, functions and variables at the start of a line. And
+# which names of types and constants it has at all: they may be a header's.
+function(glint_names file defined apart used)
   file(READ ${file} text)
   string(REGEX REPLACE "[][;]" "#" text "${text}")  # what CMake's lists would stumble over
   string(REGEX MATCHALL "k_[a-z0-9_]+(#[^\n=]*#)? *[={]" constants "${text}")
-  string(REGEX MATCHALL "\n(struct|class|enum class|using) [A-Za-z0-9_]+" types "${text}")
-  string(REGEX MATCHALL "\n[A-Za-z#][A-Za-z0-9_:<>,*&# ]*[ *&][a-z0-9_]+ *[(=]" functions "${text}")
+  string(REGEX MATCHALL "\n(struct|class|enum class|using) [A-Z][A-Za-z0-9_]+" types "${text}")
+  string(REGEX MATCHALL "\n[A-Za-z#][A-Za-z0-9_:<>,*&# ]*[ *&][a-z0-9_]+ *[(=]" others "${text}")
   list(TRANSFORM constants REPLACE "^(k_[a-z0-9_]+).*" "\\1")
-  set(names ${constants} ${types} ${functions})
-  list(TRANSFORM names REPLACE "^.*[^A-Za-z0-9_]([A-Za-z0-9_]+) *[(=]?$" "\\1")
-  list(REMOVE_DUPLICATES names)
-  set(${result} "${names}" PARENT_SCOPE)
+  list(TRANSFORM types REPLACE "^.* " "")
+  list(TRANSFORM others REPLACE "^.*[^A-Za-z0-9_]([A-Za-z0-9_]+) *[(=]$" "\\1")
+  string(REGEX MATCHALL "[A-Za-z0-9_]+" words "${text}")
+  list(FILTER words INCLUDE REGEX "^(k_|[A-Z])")
+  set(all ${constants} ${types} ${others})
+  set(own ${constants} ${types})
+  foreach(names all own words)
+    list(REMOVE_DUPLICATES ${names})
+  endforeach()
+  set(${defined} "${all}" PARENT_SCOPE)
+  set(${apart} "${own}" PARENT_SCOPE)
+  set(${used} "${words}" PARENT_SCOPE)
+endfunction()
+
+function(glint_common result first second)  # how many elements two lists share
+  list(LENGTH first before)
+  list(REMOVE_ITEM first ${second} "")
+  list(LENGTH first after)
+  math(EXPR common "${before} - ${after}")
+  set(${result} ${common} PARENT_SCOPE)
 endfunction()
 
 function(glint_compile_together target)
   get_target_property(folder ${target} SOURCE_DIR)
   get_target_property(sources ${target} SOURCES)
-  set(groups 0)
   foreach(source ${sources})
     cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${folder})
     if(NOT source MATCHES "\\.cpp$" OR NOT EXISTS ${source})
       continue()
     endif()
-    glint_defined_names(${source} names)
+    glint_names(${source} defined apart used)
     set(group 0)
-    set(placed FALSE)
-    while(NOT placed)
-      set(shared ${names} ${names_${group}})
-      list(LENGTH shared before)
-      list(REMOVE_DUPLICATES shared)
-      list(LENGTH shared after)
-      if(before EQUAL after AND NOT "${count_${group}}" STREQUAL "${files_together}")
-        set(placed TRUE)
-      else()
-        math(EXPR group "${group} + 1")
+    while(TRUE)
+      glint_common(twice "${defined}" "${defined_${group}}")
+      glint_common(theirs "${used}" "${apart_${group}}")
+      glint_common(ours "${used_${group}}" "${apart}")
+      math(EXPR clashes "${twice} + ${theirs} + ${ours}")
+      if(clashes EQUAL 0 AND NOT "${count_${group}}" STREQUAL "${files_together}")
+        break()
       endif()
+      math(EXPR group "${group} + 1")
     endwhile()
-    set(names_${group} ${shared})
+    foreach(names defined apart used)
+      list(APPEND ${names}_${group} ${${names}})
+    endforeach()
     math(EXPR count_${group} "0${count_${group}} + 1")
     set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES
       UNITY_GROUP together_${group})
