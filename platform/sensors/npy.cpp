@@ -17,6 +17,7 @@ static_assert(std::endian::native == std::endian::little);
 // on u32), then a Python dictionary with descr, fortran_order and shape.
 constexpr char k_magic[] = "\x93NUMPY";
 constexpr std::size_t k_magic_length = 6;
+constexpr std::streamoff k_bytes_max = 256 << 20;
 
 std::string value_after(const std::string& header, const std::string& key) {
   const std::size_t at = header.find("'" + key + "'");
@@ -44,45 +45,94 @@ std::vector<std::size_t> shape_of(const std::string& text) {
   return shape;
 }
 
-}  // namespace
+struct NpyFile {
+  std::string kind, bytes;  // descr; the whole file
+  std::size_t data_at = 0;
+  std::vector<std::size_t> shape;
+};
 
-NpyArray read_npy_float32(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+NpyFile read_npy(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
   if (!file) throw InputError(path + ": cannot be opened; expected a .npy file");
-  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (file.tellg() > k_bytes_max) {
+    throw InputError(path + ": " + std::to_string(file.tellg()) + " bytes; expected at most " +
+                     std::to_string(k_bytes_max));
+  }
+  file.seekg(0);
+  NpyFile out;
+  out.bytes.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  const std::string& bytes = out.bytes;
   if (bytes.size() < 12 || std::memcmp(bytes.data(), k_magic, k_magic_length) != 0) {
     throw InputError(path + ":byte 0: no NumPy magic; expected a .npy file");
   }
   const std::size_t length_bytes = bytes[6] == 1 ? 2 : 4;
   std::uint32_t header_length = 0;
   std::memcpy(&header_length, bytes.data() + 8, length_bytes);
-  const std::size_t data_at = 8 + length_bytes + header_length;
-  if (data_at > bytes.size()) {
+  out.data_at = 8 + length_bytes + header_length;
+  if (out.data_at > bytes.size()) {
     throw InputError(path + ":byte 8: header of " + std::to_string(header_length) +
                      " bytes is longer than the file; expected a whole .npy file");
   }
   const std::string header = bytes.substr(8 + length_bytes, header_length);
-  const std::string kind = value_after(header, "descr");
-  if (kind.find("'<f4'") == std::string::npos || kind.find("'<f4'") > kind.find_first_not_of(' ')) {
-    throw InputError(path + ":byte 10: descr is not '<f4'; expected little-endian float32");
+  const std::string descr = value_after(header, "descr");
+  const std::size_t open = descr.find('\'');
+  if (open != std::string::npos && open == descr.find_first_not_of(' ')) {
+    out.kind = descr.substr(open + 1, descr.find('\'', open + 1) - open - 1);
   }
   const std::string order = value_after(header, "fortran_order");
   if (order.compare(0, order.find(','), " False") != 0) {
     throw InputError(path + ":byte 10: fortran_order is not False; expected C order");
   }
-  NpyArray out;
   out.shape = shape_of(value_after(header, "shape"));
-  std::size_t count = out.shape.empty() ? 0 : 1;
-  for (const std::size_t n : out.shape) count *= n;
-  const std::size_t found = bytes.size() - data_at;
-  if (count == 0 || found / sizeof(float) != count || found % sizeof(float) != 0) {
-    throw InputError(path + ":byte " + std::to_string(data_at) + ": " + std::to_string(found) +
-                     " bytes of data; expected " + std::to_string(count * sizeof(float)) +
-                     " by the shape");
-  }
-  out.values.resize(count);
-  std::memcpy(out.values.data(), bytes.data() + data_at, found);
   return out;
+}
+
+// How many values of this size the shape asks for: as many as the file has.
+std::size_t count_of(const NpyFile& file, std::size_t value_bytes, const std::string& path) {
+  const std::size_t found = file.bytes.size() - file.data_at;
+  std::size_t count = file.shape.empty() ? 0 : 1;
+  for (const std::size_t n : file.shape) {
+    count = n == 0 || count > found / n ? found + 1 : count * n;  // more than there can be
+  }
+  if (count == 0 || found / value_bytes != count || found % value_bytes != 0) {
+    throw InputError(path + ":byte " + std::to_string(file.data_at) + ": " + std::to_string(found) +
+                     " bytes of data; expected " + std::to_string(value_bytes) +
+                     " for each value of the shape");
+  }
+  return count;
+}
+
+template <class Value>
+std::vector<double> values_of(const NpyFile& file, const std::string& path) {
+  std::vector<double> values(count_of(file, sizeof(Value), path));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    Value value;
+    std::memcpy(&value, file.bytes.data() + file.data_at + i * sizeof value, sizeof value);
+    values[i] = static_cast<double>(value);
+  }
+  return values;
+}
+
+}  // namespace
+
+NpyArray read_npy_float32(const std::string& path) {
+  const NpyFile file = read_npy(path);
+  if (file.kind != "<f4") {
+    throw InputError(path + ":byte 10: descr is not '<f4'; expected little-endian float32");
+  }
+  NpyArray out{file.shape, std::vector<float>(count_of(file, sizeof(float), path))};
+  std::memcpy(out.values.data(), file.bytes.data() + file.data_at,
+              out.values.size() * sizeof(float));
+  return out;
+}
+
+NpyNumbers read_npy_numbers(const std::string& path) {
+  const NpyFile file = read_npy(path);
+  if (file.kind == "<f4") return {file.shape, values_of<float>(file, path), false};
+  if (file.kind == "<f8") return {file.shape, values_of<double>(file, path), false};
+  if (file.kind == "<u2") return {file.shape, values_of<std::uint16_t>(file, path), true};
+  if (file.kind == "|u1") return {file.shape, values_of<std::uint8_t>(file, path), true};
+  throw InputError(path + ":byte 10: descr is '" + file.kind + "'; expected <f4, <f8, <u2 or |u1");
 }
 
 std::string npy_float32_bytes(const NpyArray& array) {

@@ -1,0 +1,15 @@
+// Boxes, cylinders and spheres of a URDF, as triangles about their middle.
+#pragma once
+
+#include <vector>
+
+#include "platform/robot/robot_model.hpp"
+
+namespace glint {
+
+// Lengths in metres; a cylinder stands along z.
+[[nodiscard]] std::vector<Triangle> box_surface(const Eigen::Vector3d& size_m);
+[[nodiscard]] std::vector<Triangle> cylinder_surface(double radius_m, double length_m);
+[[nodiscard]] std::vector<Triangle> sphere_surface(double radius_m);
+
+}  // namespace glint

@@ -1,0 +1,51 @@
+// A robot as its URDF and meshes describe it: joints as a tree, links as triangles.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kernels/robot/joint_tree.hpp"
+
+namespace glint {
+
+using Vector3f = Eigen::Vector3f;
+
+struct Triangle {
+  Vector3f a, b, c;  // metres
+};
+
+struct LinkSurface {
+  int link = 0;                     // as in LinkPoses
+  std::vector<Triangle> triangles;  // in the link's frame
+};
+
+struct RobotModel {
+  std::string name;
+  JointTree tree;
+  std::vector<std::string> links;   // by number; 0 is the root
+  std::vector<std::string> inputs;  // the joints that have a value of their own, in URDF order
+  std::vector<LinkSurface> surfaces;
+  int triangles_skipped = 0;  // without an area, or not finite
+};
+
+// What of a link stands for its surface. A link that has none of the kind gets the other.
+enum class Geometry { collision, visual };
+
+struct RobotFiles {
+  std::string urdf;
+  std::vector<std::string> package_dirs;  // where package:// may lead; "NAME=DIR" for one package
+  Geometry geometry = Geometry::collision;
+};
+
+// Throws InputError, naming file and place: no URDF, a loop or a link with two parents, a joint
+// that does not exist or cannot move as it says, a missing or empty mesh, one in millimetres.
+[[nodiscard]] RobotModel load_robot(const RobotFiles& files);
+
+// The links' triangles in the root's frame at these positions (radians, metres; one for each of
+// robot.inputs). Throws InputError naming `what` where the positions are none.
+[[nodiscard]] std::vector<Triangle> posed_surface(const RobotModel& robot,
+                                                  std::span<const double> positions,
+                                                  const std::string& what);
+
+}  // namespace glint

@@ -1,0 +1,20 @@
+// A URDF file, read and checked: after it nothing can run in a circle.
+#pragma once
+
+#include <urdf_model/model.h>
+#include <urdf_world/types.h>
+
+#include <string>
+#include <vector>
+
+namespace glint {
+
+struct UrdfFile {
+  urdf::ModelInterfaceSharedPtr model;
+  std::vector<std::string> joints;  // in the order of the file; the model sorts them by name
+};
+
+// Throws InputError for what is no URDF, and for joints that form no tree.
+[[nodiscard]] UrdfFile read_urdf(const std::string& path);
+
+}  // namespace glint
