@@ -5,15 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "kernels/registration/triangle.hpp"
 #include "kernels/robot/joint_tree.hpp"
 
 namespace glint {
-
-using Vector3f = Eigen::Vector3f;
-
-struct Triangle {
-  Vector3f a, b, c;  // metres
-};
 
 struct LinkSurface {
   int link = 0;                     // as in LinkPoses

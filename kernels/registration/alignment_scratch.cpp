@@ -1,0 +1,64 @@
+#include "kernels/registration/alignment_scratch.hpp"
+
+namespace glint {
+namespace {
+
+std::size_t pixels_of(const SceneView& view) noexcept {
+  return static_cast<std::size_t>(view.camera.width) * static_cast<std::size_t>(view.camera.height);
+}
+
+}  // namespace
+
+Reason AlignmentScratch::prepare(int view_count, int pixels) {
+  if (view_count < 1 || view_count > k_scene_views_max || pixels < 1 ||
+      pixels > k_scene_pixels_max) {
+    return Reason::out_of_range;
+  }
+  views.resize(static_cast<std::size_t>(view_count));
+  for (View& view : views) {
+    const auto size = static_cast<std::size_t>(pixels);
+    view.z.resize(size);
+    view.triangle.resize(size);
+    view.seen.resize(size);
+    view.scene.resize(size);
+    if (const Reason reason = view.grid.prepare(pixels); reason != Reason::none) return reason;
+  }
+  return Reason::none;
+}
+
+bool scene_fits(std::span<const SceneView> views, const AlignmentScratch& scratch) noexcept {
+  if (views.empty() || views.size() > scratch.views.size()) return false;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const std::size_t pixels = pixels_of(views[v]);
+    if (views[v].camera.width < 1 || views[v].camera.height < 1 || pixels == 0 ||
+        pixels > scratch.views[v].z.size() || views[v].depth_m.size() != pixels ||
+        (!views[v].mask.empty() && views[v].mask.size() != pixels)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void render_model(const SceneView& view, const Pose& T_world_base, int step,
+                  AlignmentScratch::View& memory) noexcept {
+  const DepthBuffer buffer{std::span(memory.z).first(pixels_of(view)),
+                           std::span(memory.triangle).first(pixels_of(view))};
+  memory.seen_count =
+      seen_points(view, view.T_camera_world * T_world_base, step, buffer, memory.seen);
+}
+
+void search_scene(const SceneView& view, int step, double reach_m,
+                  AlignmentScratch::View& memory) noexcept {
+  std::size_t count = 0;
+  for (int y = 0; y < view.camera.height; y += step) {
+    for (int x = 0; x < view.camera.width; x += step) {
+      const auto pixel = static_cast<std::size_t>(y * view.camera.width + x);
+      const float z = view.depth_m[pixel];
+      if (!(z > 0) || !view.may_be_model(pixel)) continue;
+      memory.scene[count++] = pixel_point(view.camera, x, y, z);
+    }
+  }
+  (void)memory.grid.build(std::span(memory.scene).first(count), reach_m);
+}
+
+}  // namespace glint

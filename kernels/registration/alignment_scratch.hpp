@@ -1,0 +1,42 @@
+// The memory of an alignment: rendered pictures, points seen, grids.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kernels/nonblocking.hpp"
+#include "kernels/registration/point_grid.hpp"
+#include "kernels/registration/seen_points.hpp"
+
+namespace glint {
+
+class AlignmentScratch {
+ public:
+  // Allocates, for so many views of so many pixels each. Reason::out_of_range: none or too many.
+  [[nodiscard]] Reason prepare(int views, int pixels);
+
+  struct View {
+    std::vector<float> z;
+    std::vector<std::int32_t> triangle;
+    std::vector<SeenPoint> seen;
+    std::vector<Vector3f> scene;
+    PointGrid grid;  // of the scene
+    int seen_count = 0;
+  };
+  std::vector<View> views;
+};
+
+// Whether the scratch is large enough, and each view as large as its camera says.
+[[nodiscard]] bool scene_fits(std::span<const SceneView> views,
+                              const AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;
+
+// What is seen of the model, every step-th pixel of every step-th row.
+void render_model(const SceneView& view, const Pose& T_world_base, int step,
+                  AlignmentScratch::View& memory) noexcept GLINT_NONBLOCKING;
+
+// Makes the scene's points, every step-th, ready for searches within reach_m.
+void search_scene(const SceneView& view, int step, double reach_m,
+                  AlignmentScratch::View& memory) noexcept GLINT_NONBLOCKING;
+
+}  // namespace glint

@@ -1,0 +1,52 @@
+// The normal equations of a small motion of the model, in one order.
+//
+// What:     for residuals r with the gradient g at a point p: matrix = sum w J' J, slope =
+//           sum w J' r, with J = [g', ((p - m) x g)']: a shift, and a turn about the middle m.
+// Cost:     28 multiplications a residual.
+// Worst:    none is worse than another.
+// Accuracy: sums of doubles in the order of the calls; equal bits wherever.
+// Source:   Gauss-Newton's equations, e.g. Nocedal and Wright 2006, eq. (10.23); Chen and Medioni
+//           1992 for residuals along normals.
+#pragma once
+
+#include "kernels/geometry.hpp"
+#include "kernels/nonblocking.hpp"
+#include "kernels/pose/pose_factor.hpp"
+
+namespace glint {
+
+struct AlignmentSums {
+  Matrix6 matrix = Matrix6::Zero();  // the lower half holds
+  Vector6 slope = Vector6::Zero();
+  double squares = 0;  // sum w r^2
+  int count = 0;
+
+  void add(const Vector3& lever, const Vector3& gradient, double residual, double weight) noexcept;
+};
+
+struct AlignmentStep {
+  Vector3 shift = Vector3::Zero();  // metres
+  Vector3 turn = Vector3::Zero();   // radians about the middle
+};
+
+// The motion with the least squares. Reason::degenerate: the residuals leave a direction open.
+[[nodiscard]] Result<AlignmentStep> solve(const AlignmentSums& sums) noexcept GLINT_NONBLOCKING;
+
+// T, shifted and turned about the point that is at `middle`.
+[[nodiscard]] Pose moved(const Pose& T, const AlignmentStep& step,
+                         const Vector3& middle) noexcept GLINT_NONBLOCKING;
+
+inline void AlignmentSums::add(const Vector3& lever, const Vector3& gradient, double residual,
+                               double weight) noexcept {
+  const Vector3 turn = lever.cross(gradient);
+  const double row[6] = {gradient.x(), gradient.y(), gradient.z(), turn.x(), turn.y(), turn.z()};
+  for (int c = 0; c < 6; ++c) {
+    const double weighted = weight * row[c];
+    slope(c) += weighted * residual;
+    for (int r = c; r < 6; ++r) matrix(r, c) += weighted * row[r];
+  }
+  squares += weight * residual * residual;
+  ++count;
+}
+
+}  // namespace glint

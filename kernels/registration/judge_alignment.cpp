@@ -1,0 +1,67 @@
+#include "kernels/registration/judge_alignment.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace glint {
+namespace {
+
+struct Distances {
+  std::array<int, k_distance_steps + 1> counts{};
+  int count = 0;
+
+  void add(double distance_m) noexcept {
+    const double step = distance_m / k_distance_step_m;
+    ++counts[step < k_distance_steps ? static_cast<std::size_t>(step) : k_distance_steps];
+    ++count;
+  }
+  [[nodiscard]] double median_m() const noexcept {
+    int below = 0;
+    for (int i = 0; i <= k_distance_steps; ++i) {
+      below += counts[static_cast<std::size_t>(i)];
+      if (2 * below >= count) return (i + 0.5) * k_distance_step_m;
+    }
+    return 0;
+  }
+};
+
+}  // namespace
+
+Judgement judge_alignment(std::span<const SceneView> views, const Pose& T_world_base,
+                          const JudgeSettings& settings, AlignmentScratch& scratch) noexcept {
+  Judgement judgement;
+  if (!scene_fits(views, scratch)) {
+    judgement.reason = Reason::not_prepared;
+    return judgement;
+  }
+  Distances distances;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const SceneView& view = views[v];
+    AlignmentScratch::View& memory = scratch.views[v];
+    search_scene(view, 1, k_distance_steps * k_distance_step_m, memory);
+    render_model(view, T_world_base, 1, memory);
+    for (int i = 0; i < memory.seen_count; ++i) {
+      const SeenPoint& seen = memory.seen[static_cast<std::size_t>(i)];
+      const auto pixel = static_cast<std::size_t>(seen.pixel);
+      ++judgement.rendered;
+      const float z = view.depth_m[pixel];
+      if (!(z > 0)) continue;
+      ++judgement.measured;
+      const double behind = static_cast<double>(z - seen.point.z());
+      if (behind < -settings.far_m) {
+        ++judgement.hidden;
+        continue;
+      }
+      if (behind > settings.far_m) ++judgement.seen_through;
+      const Nearest nearest = memory.grid.nearest(
+          seen.point, static_cast<float>(k_distance_steps * k_distance_step_m));
+      const double distance = std::sqrt(static_cast<double>(nearest.square_m2));
+      if (nearest.index >= 0 && distance <= settings.inlier_m) ++judgement.inliers;
+      distances.add(distance);
+    }
+  }
+  judgement.median_m = distances.median_m();
+  return judgement;
+}
+
+}  // namespace glint

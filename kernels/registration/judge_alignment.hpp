@@ -1,0 +1,51 @@
+// How well a model at a pose explains what is seen of it.
+//
+// What:     the model is rendered into each view. Of its pixels that were measured: hidden where
+//           the scene is more than near_m in front; seen through where it is more than far_m
+//           behind; explained where a scene point lies within near_m. Distances are those of the
+//           rendered points to the nearest scene points.
+// Cost:     a rendering, and a search a pixel.
+// Worst:    the model fills the picture and is nowhere near the scene.
+// Accuracy: the median to distance_step_m: it is read off a histogram.
+// Source:   the accept test of the project's own trials: share and seen through together.
+#pragma once
+
+#include <span>
+
+#include "kernels/registration/align_model.hpp"
+
+namespace glint {
+
+struct JudgeSettings {
+  double inlier_m = 0.020;
+  double far_m = 0.040;
+};
+inline constexpr double k_distance_step_m = 5e-5;
+inline constexpr int k_distance_steps = 2000;
+
+struct Judgement {
+  int rendered = 0;      // pixels of the model, in all views
+  int measured = 0;      // of those, with a depth in the scene
+  int hidden = 0;        // of the measured: the scene is far_m in front or nearer
+  int inliers = 0;       // of the measured: a scene point within inlier_m
+  int seen_through = 0;  // of the measured: the scene is more than far_m behind
+  double median_m = 0;   // of the distances of all measured pixels that are not hidden
+  Reason reason = Reason::none;
+
+  [[nodiscard]] double inlier_share() const {
+    return measured > hidden ? static_cast<double>(inliers) / (measured - hidden) : 0;
+  }
+  [[nodiscard]] double seen_through_share() const {
+    return measured > 0 ? static_cast<double>(seen_through) / measured : 0;
+  }
+  // How much of the model could be looked at.
+  [[nodiscard]] double visible_share() const {
+    return rendered > 0 ? static_cast<double>(measured - hidden) / rendered : 0;
+  }
+};
+
+[[nodiscard]] Judgement judge_alignment(std::span<const SceneView> views, const Pose& T_world_base,
+                                        const JudgeSettings& settings,
+                                        AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;
+
+}  // namespace glint

@@ -1,0 +1,68 @@
+// The nearest of many points, by a grid of cells in a table of fixed size.
+//
+// What:     points sorted by cell; a cell's points are found by the hash of its place.
+// Cost:     building is linear; a search looks at the 27 to 125 cells about its point, the nearest
+//           first, and at the points in them.
+// Worst:    all points in one cell: a search then looks at k_grid_points_looked_at of them, in the
+//           order in which they came, and takes the nearest of those.
+// Accuracy: exact, but for the worst case above; of equally near points the first.
+// Source:   Teschner et al. 2003, "Optimized spatial hashing", section 4.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kernels/nonblocking.hpp"
+#include "kernels/reason.hpp"
+#include "kernels/registration/triangle.hpp"
+
+namespace glint {
+
+inline constexpr int k_grid_points_looked_at = 4096;  // of one search
+inline constexpr int k_grid_probes_max = 64;          // of one look-up of a cell
+
+struct Nearest {
+  std::int32_t index = -1;  // of the point as it was given; -1: none within the radius
+  float square_m2 = 0;
+};
+
+class PointGrid {
+ public:
+  // Allocates for so many points.
+  [[nodiscard]] Reason prepare(int points_max);
+
+  // Takes the points with finite coordinates; cells are reach_m / 2 wide, and nearest() finds what
+  // lies within reach_m. Reason::not_prepared: more points than prepared for; out_of_range: no
+  // reach.
+  [[nodiscard]] Reason build(std::span<const Vector3f> points, double reach_m) noexcept
+      GLINT_NONBLOCKING;
+
+  // radius_m: at most the reach.
+  [[nodiscard]] Nearest nearest(const Vector3f& point, float radius_m) const noexcept
+      GLINT_NONBLOCKING;
+
+  [[nodiscard]] int size() const { return count_; }
+
+ private:
+  struct Cell {
+    std::uint64_t key = 0;  // 0: free
+    std::int32_t begin = 0, end = 0;
+  };
+  struct Entry {
+    Vector3f point;
+    std::int32_t index;
+  };
+  [[nodiscard]] const Cell* find(std::uint64_t key) const noexcept;
+  [[nodiscard]] std::uint64_t key_of(const Eigen::Vector3i& cell) const noexcept;
+  [[nodiscard]] Eigen::Vector3i cell_of(const Vector3f& point) const noexcept;
+
+  std::vector<Cell> cells_;
+  std::vector<Entry> entries_;
+  std::vector<std::int32_t> slot_of_;  // of each point given; -1: not taken
+  float cell_m_ = 1;
+  float reach_m_ = 0;
+  int count_ = 0;
+};
+
+}  // namespace glint

@@ -1,0 +1,117 @@
+#include "platform/reference/depth_picture.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+
+#include "platform/input_error.hpp"
+#include "platform/sensors/npy.hpp"
+
+namespace glint {
+namespace {
+
+std::string kind_of(const std::string& path) {
+  std::string kind = std::filesystem::path(path).extension().string();
+  std::transform(kind.begin(), kind.end(), kind.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return kind;
+}
+
+void check_size(const std::string& path, std::size_t width, std::size_t height,
+                const CameraModel& camera) {
+  if (width == static_cast<std::size_t>(camera.width) &&
+      height == static_cast<std::size_t>(camera.height)) {
+    return;
+  }
+  throw InputError(path + ": " + std::to_string(width) + " x " + std::to_string(height) +
+                   " pixels; expected the camera's " + std::to_string(camera.width) + " x " +
+                   std::to_string(camera.height));
+}
+
+// Rows and columns; one more side of length 1 does no harm.
+NpyNumbers npy_picture(const std::string& path, const CameraModel& camera) {
+  NpyNumbers array = read_npy_numbers(path);
+  std::erase(array.shape, std::size_t{1});
+  if (array.shape.size() != 2) {
+    throw InputError(path + ": " + std::to_string(array.shape.size()) +
+                     " dimensions; expected rows and columns");
+  }
+  check_size(path, array.shape[1], array.shape[0], camera);
+  return array;
+}
+
+cv::Mat png_picture(const std::string& path, const CameraModel& camera) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed)) {
+    throw InputError(path + ": cannot be opened; expected a PNG picture");
+  }
+  cv::Mat picture;
+  try {
+    picture = cv::imread(path, cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception&) {
+    picture.release();
+  }
+  if (picture.empty()) throw InputError(path + ": no picture; expected PNG");
+  check_size(path, static_cast<std::size_t>(picture.cols), static_cast<std::size_t>(picture.rows),
+             camera);
+  return picture;
+}
+
+float depth_of(double metres) {
+  const auto z = static_cast<float>(metres);
+  return z > 0 && z < k_depth_max_m ? z : 0;  // 0 for NaN
+}
+
+}  // namespace
+
+DepthPicture read_depth(const std::string& path, const CameraModel& camera) {
+  const std::string kind = kind_of(path);
+  DepthPicture out{camera.width, camera.height, {}};
+  if (kind == ".npy") {
+    const NpyNumbers array = npy_picture(path, camera);
+    const double scale = array.integer ? 1e-3 : 1;
+    for (const double value : array.values) out.z_m.push_back(depth_of(value * scale));
+  } else if (kind == ".png") {
+    const cv::Mat picture = png_picture(path, camera);
+    if (picture.type() != CV_16UC1) {
+      throw InputError(path + ": expected one channel of 16 bit, millimetres");
+    }
+    for (int y = 0; y < picture.rows; ++y) {
+      for (int x = 0; x < picture.cols; ++x) {
+        out.z_m.push_back(depth_of(1e-3 * picture.at<std::uint16_t>(y, x)));
+      }
+    }
+  } else {
+    throw InputError(path + ": expected depth as .npy, .png, .pcd or .ply");
+  }
+  if (std::all_of(out.z_m.begin(), out.z_m.end(), [](float z) { return z == 0; })) {
+    throw InputError(path + ": no pixel has a depth between 0 and " +
+                     std::to_string(static_cast<int>(k_depth_max_m)) + " m; expected metres");
+  }
+  return out;
+}
+
+MaskPicture read_mask(const std::string& path, const CameraModel& camera) {
+  MaskPicture out{camera.width, camera.height, {}};
+  if (kind_of(path) == ".npy") {
+    for (const double value : npy_picture(path, camera).values) out.on.push_back(value != 0);
+  } else if (kind_of(path) == ".png") {
+    const cv::Mat picture = png_picture(path, camera);
+    if (picture.depth() != CV_8U) throw InputError(path + ": expected a mask of 8 bit");
+    for (int y = 0; y < picture.rows; ++y) {
+      for (int x = 0; x < picture.cols; ++x) {
+        out.on.push_back(picture.ptr(y)[x * picture.channels()] != 0);
+      }
+    }
+  } else {
+    throw InputError(path + ": expected a mask as .png or .npy");
+  }
+  if (std::all_of(out.on.begin(), out.on.end(), [](std::uint8_t on) { return on == 0; })) {
+    throw InputError(path + ": no pixel is on; expected the robot's to be");
+  }
+  return out;
+}
+
+}  // namespace glint

@@ -1,0 +1,33 @@
+// Depth pictures and masks from files.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "kernels/pose/camera_model.hpp"
+
+namespace glint {
+
+struct DepthPicture {
+  int width = 0, height = 0;
+  std::vector<float> z_m;  // row by row; 0 where there is none: not finite, negative, or too far
+};
+
+inline constexpr float k_depth_max_m = 20;
+
+// .npy (rows x columns, floating point metres or unsigned millimetres), .png (16 bit, millimetres),
+// .pcd and .ply (points in the camera's frame, metres, projected into its picture: the nearest of a
+// pixel counts). Throws InputError naming the file and what was expected: another size than the
+// camera's, no point at all.
+[[nodiscard]] DepthPicture read_depth(const std::string& path, const CameraModel& camera);
+
+struct MaskPicture {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> on;  // row by row: 0 or 1
+};
+
+// .png or .npy of the camera's size: not 0 is the robot.
+[[nodiscard]] MaskPicture read_mask(const std::string& path, const CameraModel& camera);
+
+}  // namespace glint

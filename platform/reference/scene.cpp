@@ -1,0 +1,101 @@
+#include "platform/reference/scene.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "platform/input_error.hpp"
+#include "platform/reference/camera_info.hpp"
+#include "platform/robot/joint_file.hpp"
+
+namespace glint {
+namespace {
+
+// Where a pixel of the straightened picture lies in the camera's; -1: nowhere.
+int source_pixel(const CameraModel& camera, double u, double v) {
+  if (camera.lens != Lens::pinhole) {
+    const Result<Vector2> bent =
+        project(camera, {(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, 1});
+    if (!bent) return -1;
+    u = bent.value.x();
+    v = bent.value.y();
+  }
+  if (!(u >= 0 && v >= 0 && u < camera.width && v < camera.height)) return -1;
+  return static_cast<int>(v) * camera.width + static_cast<int>(u);
+}
+
+// A quarter of the block at least must be there: fewer are a seam of the sensor's.
+float merged(std::vector<float>& values, std::size_t block) {
+  if (values.empty() || 4 * values.size() < block) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  const float median = *middle;
+  std::sort(values.begin(), values.end());  // for an order of the sum
+  double sum = 0;
+  int count = 0;
+  for (const float value : values) {
+    if (std::abs(value - median) > 0.01f * median) continue;
+    sum += static_cast<double>(value);
+    ++count;
+  }
+  return static_cast<float>(sum / count);
+}
+
+}  // namespace
+
+SceneFrame scene_frame(const DepthPicture& depth, const MaskPicture* mask,
+                       const CameraModel& camera) {
+  SceneFrame frame;
+  const int scale = (camera.width + k_working_width - 1) / k_working_width;
+  frame.camera = {camera.width / scale, camera.height / scale, camera.fx / scale,
+                  camera.fy / scale,    camera.cx / scale,     camera.cy / scale};
+  std::vector<float> values;
+  for (int y = 0; y < frame.camera.height; ++y) {
+    for (int x = 0; x < frame.camera.width; ++x) {
+      values.clear();
+      int on = 0;
+      for (int j = 0; j < scale; ++j) {
+        for (int i = 0; i < scale; ++i) {
+          const int at = source_pixel(camera, x * scale + i + 0.5, y * scale + j + 0.5);
+          if (at < 0) continue;
+          const float z = depth.z_m[static_cast<std::size_t>(at)];
+          if (z > 0) values.push_back(z);
+          if (mask != nullptr) on += mask->on[static_cast<std::size_t>(at)];
+        }
+      }
+      frame.depth_m.push_back(merged(values, static_cast<std::size_t>(scale) * scale));
+      if (mask != nullptr) frame.mask.push_back(2 * on >= scale * scale ? 1 : 0);
+    }
+  }
+  return frame;
+}
+
+std::vector<SceneFrame> read_scene(const SceneFiles& files, const RobotModel& robot) {
+  const std::size_t count = files.depth.size();
+  if (count == 0 || count > k_scene_views_max) {
+    throw InputError("--depth: " + std::to_string(count) + " files; expected 1 to " +
+                     std::to_string(k_scene_views_max));
+  }
+  if (files.joints.size() != count) {
+    throw InputError("--joints: " + std::to_string(files.joints.size()) + " files for " +
+                     std::to_string(count) + " of --depth; expected one for each");
+  }
+  if (!files.masks.empty() && files.masks.size() != count) {
+    throw InputError("--mask: " + std::to_string(files.masks.size()) + " files for " +
+                     std::to_string(count) + " of --depth; expected one for each or none");
+  }
+  const CameraModel camera = read_camera_info(files.camera);
+  std::vector<SceneFrame> frames;
+  for (std::size_t i = 0; i < count; ++i) {
+    const DepthPicture depth = read_depth(files.depth[i], camera);
+    MaskPicture mask;
+    if (!files.masks.empty()) mask = read_mask(files.masks[i], camera);
+    frames.push_back(scene_frame(depth, files.masks.empty() ? nullptr : &mask, camera));
+    const std::vector<double> positions = read_joint_positions(files.joints[i], robot);
+    frames.back().model = posed_surface(robot, positions, files.joints[i]);
+    frames.back().name = files.depth[i];
+  }
+  return frames;
+}
+
+}  // namespace glint

@@ -1,0 +1,41 @@
+// A scene to look for a robot in: depth pictures, brought down to a working size, each with the
+// robot's surface at its joint positions.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kernels/registration/scene_view.hpp"
+#include "platform/reference/depth_picture.hpp"
+#include "platform/robot/robot_model.hpp"
+
+namespace glint {
+
+inline constexpr int k_working_width = 320;
+
+// Owns what a SceneView borrows.
+struct SceneFrame {
+  Pinhole camera;
+  std::vector<float> depth_m;
+  std::vector<std::uint8_t> mask;  // empty: none
+  std::vector<Triangle> model;
+  std::string name;  // the depth's file
+
+  [[nodiscard]] SceneView view() const { return {camera, depth_m, mask, model, {}}; }
+};
+
+// Blocks of pixels become one: the mean of what lies within 1 % of the block's median. A lens is
+// straightened on the way. `mask` may be null.
+[[nodiscard]] SceneFrame scene_frame(const DepthPicture& depth, const MaskPicture* mask,
+                                     const CameraModel& camera);
+
+struct SceneFiles {
+  std::string camera;
+  std::vector<std::string> depth, joints;  // one of each a frame
+  std::vector<std::string> masks;          // as many, or none
+};
+
+// Throws InputError where the files are none, or not as many of one kind as of another.
+[[nodiscard]] std::vector<SceneFrame> read_scene(const SceneFiles& files, const RobotModel& robot);
+
+}  // namespace glint
