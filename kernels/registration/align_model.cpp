@@ -94,8 +94,9 @@ Alignment align_model(std::span<const SceneView> views, const Pose& T_world_base
         return result;
       }
       result.T_world_base = moved(result.T_world_base, step.value, middle);
-      const bool rests = step.value.shift.norm() < settings.rest_shift_m &&
-                         step.value.turn.norm() < settings.rest_turn_rad;
+      const double wide = gate.matching == Matching::projective ? 0 : gate.gate_m / 50;
+      const bool rests = step.value.shift.norm() < std::max(wide, settings.rest_shift_m) &&
+                         step.value.turn.norm() < std::max(wide, settings.rest_turn_rad);
       if (rests) break;
     }
     if (g + 1 == gates) {

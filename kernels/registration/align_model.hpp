@@ -35,11 +35,12 @@ struct AlignmentSettings {
       {{0.15, Matching::plane, 4, 12, false},
        {0.08, Matching::plane, 3, 12, false},
        {0.04, Matching::plane, 2, 12, false},
-       {0.04, Matching::projective, 1, 12, true},
-       {0.025, Matching::projective, 1, 20, true}}};
+       {0.04, Matching::projective, 1, 6, true},
+       {0.025, Matching::projective, 1, 12, true}}};
   int gate_count = 5;
-  double rest_shift_m = 2e-5;  // a step below both is rest
-  double rest_turn_rad = 2e-5;
+  // A step below both is rest; while the gate is wide, below a fiftieth of it.
+  double rest_shift_m = 1e-4;
+  double rest_turn_rad = 1e-4;
 };
 
 struct Alignment {

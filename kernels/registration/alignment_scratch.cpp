@@ -9,9 +9,9 @@ std::size_t pixels_of(const SceneView& view) noexcept {
 
 }  // namespace
 
-Reason AlignmentScratch::prepare(int view_count, int pixels) {
+Reason AlignmentScratch::prepare(int view_count, int pixels, int corners) {
   if (view_count < 1 || view_count > k_scene_views_max || pixels < 1 ||
-      pixels > k_scene_pixels_max) {
+      pixels > k_scene_pixels_max || corners < 1 || corners > k_scene_corners_max) {
     return Reason::out_of_range;
   }
   views.resize(static_cast<std::size_t>(view_count));
@@ -19,6 +19,7 @@ Reason AlignmentScratch::prepare(int view_count, int pixels) {
     const auto size = static_cast<std::size_t>(pixels);
     view.z.resize(size);
     view.triangle.resize(size);
+    view.corners.resize(static_cast<std::size_t>(corners));
     view.seen.resize(size);
     view.scene.resize(size);
     if (const Reason reason = view.grid.prepare(pixels); reason != Reason::none) return reason;
@@ -32,6 +33,7 @@ bool scene_fits(std::span<const SceneView> views, const AlignmentScratch& scratc
     const std::size_t pixels = pixels_of(views[v]);
     if (views[v].camera.width < 1 || views[v].camera.height < 1 || pixels == 0 ||
         pixels > scratch.views[v].z.size() || views[v].depth_m.size() != pixels ||
+        views[v].model.corners.size() > scratch.views[v].corners.size() ||
         (!views[v].mask.empty() && views[v].mask.size() != pixels)) {
       return false;
     }
@@ -42,7 +44,7 @@ bool scene_fits(std::span<const SceneView> views, const AlignmentScratch& scratc
 void render_model(const SceneView& view, const Pose& T_world_base, int step,
                   AlignmentScratch::View& memory) noexcept {
   const DepthBuffer buffer{std::span(memory.z).first(pixels_of(view)),
-                           std::span(memory.triangle).first(pixels_of(view))};
+                           std::span(memory.triangle).first(pixels_of(view)), memory.corners};
   memory.seen_count =
       seen_points(view, view.T_camera_world * T_world_base, step, buffer, memory.seen);
 }

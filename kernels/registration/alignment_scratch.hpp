@@ -13,12 +13,14 @@ namespace glint {
 
 class AlignmentScratch {
  public:
-  // Allocates, for so many views of so many pixels each. Reason::out_of_range: none or too many.
-  [[nodiscard]] Reason prepare(int views, int pixels);
+  // Allocates, for so many views of so many pixels, and corners of a model, each.
+  // Reason::out_of_range: none or too many.
+  [[nodiscard]] Reason prepare(int views, int pixels, int corners);
 
   struct View {
     std::vector<float> z;
     std::vector<std::int32_t> triangle;
+    std::vector<ProjectedCorner> corners;
     std::vector<SeenPoint> seen;
     std::vector<Vector3f> scene;
     PointGrid grid;  // of the scene

@@ -40,6 +40,11 @@ Judgement judge_alignment(std::span<const SceneView> views, const Pose& T_world_
     AlignmentScratch::View& memory = scratch.views[v];
     search_scene(view, 1, k_distance_steps * k_distance_step_m, memory);
     render_model(view, T_world_base, 1, memory);
+    for (std::size_t pixel = 0; pixel < view.mask.size(); ++pixel) {
+      if (view.mask[pixel] == 0 || !(view.depth_m[pixel] > 0)) continue;
+      ++judgement.mask_pixels;
+      judgement.mask_covered += memory.triangle[pixel] >= 0 ? 1 : 0;
+    }
     for (int i = 0; i < memory.seen_count; ++i) {
       const SeenPoint& seen = memory.seen[static_cast<std::size_t>(i)];
       const auto pixel = static_cast<std::size_t>(seen.pixel);

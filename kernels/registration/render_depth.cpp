@@ -7,9 +7,7 @@
 namespace glint {
 namespace {
 
-struct Corner {
-  double u, v, inverse_z;
-};
+using Corner = ProjectedCorner;
 
 struct Box {
   int left, right, top, bottom;  // inclusive
@@ -17,10 +15,12 @@ struct Box {
 
 // The first pixel whose centre is at or right of u; clamped before it becomes an integer.
 int first_pixel(double u, int size) noexcept {
-  return static_cast<int>(std::ceil(std::clamp(u - 0.5, 0.0, static_cast<double>(size))));
+  const double clamped = std::clamp(u - 0.5, 0.0, static_cast<double>(size));
+  const int whole = static_cast<int>(clamped);
+  return whole < clamped ? whole + 1 : whole;
 }
 int last_pixel(double u, int size) noexcept {
-  return static_cast<int>(std::floor(std::clamp(u - 0.5, -1.0, static_cast<double>(size - 1))));
+  return static_cast<int>(std::clamp(u + 0.5, 0.0, static_cast<double>(size))) - 1;
 }
 
 Box box_of(const Corner (&c)[3], const Pinhole& camera) noexcept {
@@ -56,32 +56,47 @@ void fill(const Corner (&c)[3], const Box& box, std::int32_t number, const Pinho
   }
 }
 
+void project_corners(const Surface& model, const Pose& T_camera_model, const Pinhole& camera,
+                     std::span<Corner> corners) noexcept {
+  const Matrix3 rotation = T_camera_model.rotation.toRotationMatrix();
+  for (std::size_t i = 0; i < model.corners.size(); ++i) {
+    const Vector3 p = rotation * model.corners[i].cast<double>() + T_camera_model.translation;
+    corners[i] = Corner{};
+    if (!(p.z() > k_render_near_m)) continue;
+    const double inverse = 1 / p.z();
+    corners[i] = {camera.fx * p.x() * inverse + camera.cx, camera.fy * p.y() * inverse + camera.cy,
+                  inverse};
+  }
+}
+
+bool has(const Surface& model, std::int32_t corner) noexcept {
+  return corner >= 0 && static_cast<std::size_t>(corner) < model.corners.size();
+}
+
 }  // namespace
 
-Reason render_depth(std::span<const Triangle> model, const Pose& T_camera_model,
-                    const Pinhole& camera, const DepthBuffer& buffer) noexcept {
+Reason render_depth(const Surface& model, const Pose& T_camera_model, const Pinhole& camera,
+                    const DepthBuffer& buffer) noexcept {
   const std::int64_t pixels = std::int64_t{camera.width} * camera.height;
   if (camera.width < 1 || camera.height < 1 ||
       buffer.z_m.size() != static_cast<std::size_t>(pixels) ||
-      buffer.triangle.size() != buffer.z_m.size()) {
+      buffer.triangle.size() != buffer.z_m.size() ||
+      buffer.corners.size() < model.corners.size()) {
     return Reason::out_of_range;
   }
   std::fill(buffer.z_m.begin(), buffer.z_m.end(), 0.0f);
   std::fill(buffer.triangle.begin(), buffer.triangle.end(), -1);
-  const Matrix3 rotation = T_camera_model.rotation.toRotationMatrix();
+  project_corners(model, T_camera_model, camera, buffer.corners);
   std::int64_t tests_left = pixels * k_render_tests_a_pixel;
-  for (std::size_t i = 0; i < model.size(); ++i) {
-    const Vector3f* const corners[3] = {&model[i].a, &model[i].b, &model[i].c};
-    Corner c[3];
-    bool in_front = true;
-    for (int k = 0; k < 3; ++k) {
-      const Vector3 p = rotation * corners[k]->cast<double>() + T_camera_model.translation;
-      in_front = in_front && p.z() > k_render_near_m;  // false for NaN
-      const double inverse = 1 / p.z();
-      c[k] = {camera.fx * p.x() * inverse + camera.cx, camera.fy * p.y() * inverse + camera.cy,
-              inverse};
+  for (std::size_t i = 0; i < model.faces.size(); ++i) {
+    const Face& face = model.faces[i];
+    if (!has(model, face.a) || !has(model, face.b) || !has(model, face.c)) {
+      return Reason::out_of_range;
     }
-    if (!in_front) continue;
+    const Corner c[3] = {buffer.corners[static_cast<std::size_t>(face.a)],
+                         buffer.corners[static_cast<std::size_t>(face.b)],
+                         buffer.corners[static_cast<std::size_t>(face.c)]};
+    if (c[0].inverse_z == 0 || c[1].inverse_z == 0 || c[2].inverse_z == 0) continue;
     const Box box = box_of(c, camera);
     if (box.right < box.left || box.bottom < box.top) continue;
     tests_left -= std::int64_t{box.right - box.left + 1} * (box.bottom - box.top + 1);

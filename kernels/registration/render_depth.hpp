@@ -1,7 +1,7 @@
 // What a camera could see of a model: depth and triangle of each pixel.
 //
 // What:     triangles, transformed and projected, into a z-buffer; 1/z is linear in the picture.
-// Cost:     a transformation of three corners a triangle, an edge test a pixel of its box.
+// Cost:     a transformation a corner, an edge test a pixel of its box.
 // Worst:    triangles that each fill the picture: ended after k_render_tests_a_pixel tests a pixel
 //           of the picture (Reason::search_full), what is rendered by then stands.
 // Accuracy: depth to float's rounding, 1e-7 of it, at the pixels' centres. A triangle that reaches
@@ -22,13 +22,20 @@ inline constexpr double k_render_near_m = 0.05;
 // A robot's 40,000 triangles take 3 to 8.
 inline constexpr int k_render_tests_a_pixel = 256;
 
+// A corner in the picture.
+struct ProjectedCorner {
+  double u = 0, v = 0, inverse_z = 0;  // pixels, 1/m; 0: not in front of the camera
+};
+
 struct DepthBuffer {
   std::span<float> z_m;            // width * height, 0 where nothing is
   std::span<std::int32_t> triangle;  // as many, -1 where nothing is
+  std::span<ProjectedCorner> corners;  // at least as many as the surface has
 };
 
-// Reason::out_of_range: the buffer does not have the camera's size.
-[[nodiscard]] Reason render_depth(std::span<const Triangle> model, const Pose& T_camera_model,
+// Reason::out_of_range: the buffer does not have the camera's size, has
+// too few corners, or a face names a corner that is not there.
+[[nodiscard]] Reason render_depth(const Surface& model, const Pose& T_camera_model,
                                   const Pinhole& camera,
                                   const DepthBuffer& buffer) noexcept GLINT_NONBLOCKING;
 

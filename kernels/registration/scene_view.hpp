@@ -12,13 +12,14 @@ inline constexpr int k_scene_views_max = 16;
 // Of a view's picture. Depth of 1280 x 720 is brought down by four: pixels a few millimetres apart
 // at arm's length, about as exact as the depth itself.
 inline constexpr int k_scene_pixels_max = 1 << 17;
+inline constexpr int k_scene_corners_max = 1 << 23;  // of a view's model
 
 // All borrowed.
 struct SceneView {
   Pinhole camera;
   std::span<const float> depth_m;      // z of each pixel, 0 where there is none
   std::span<const std::uint8_t> mask;  // 0: not the model; empty: nobody knows
-  std::span<const Triangle> model;     // in the base's frame, at this view's joint positions
+  Surface model;                       // in the base's frame, at this view's joint positions
   Pose T_camera_world;                 // identity for a camera that stands still
 
   [[nodiscard]] bool may_be_model(std::size_t pixel) const {

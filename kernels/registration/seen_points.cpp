@@ -15,7 +15,7 @@ int seen_points(const SceneView& view, const Pose& T_camera_base, int step,
       const std::int32_t number = buffer.triangle[static_cast<std::size_t>(pixel)];
       if (number < 0) continue;
       if (count == points.size()) return static_cast<int>(count);
-      const Triangle& t = view.model[static_cast<std::size_t>(number)];
+      const Triangle t = view.model.triangle(static_cast<std::size_t>(number));
       SeenPoint& seen = points[count];
       seen.point = pixel_point(camera, x, y, buffer.z_m[static_cast<std::size_t>(pixel)]);
       const Vector3f across = rotation * (t.b - t.a).cross(t.c - t.a);

@@ -1,6 +1,9 @@
 // A surface as triangles, and a camera without a lens: what a model is rendered with.
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 #include "kernels/geometry.hpp"
 
 namespace glint {
@@ -9,6 +12,21 @@ using Vector3f = Eigen::Vector3f;
 
 struct Triangle {
   Vector3f a, b, c;  // metres
+};
+
+// Triangles that share corners. Borrowed.
+struct Face {
+  std::int32_t a = 0, b = 0, c = 0;  // numbers of corners
+};
+struct Surface {
+  std::span<const Vector3f> corners;  // metres
+  std::span<const Face> faces;
+
+  [[nodiscard]] Triangle triangle(std::size_t face) const {
+    const Face& f = faces[face];
+    return {corners[static_cast<std::size_t>(f.a)], corners[static_cast<std::size_t>(f.b)],
+            corners[static_cast<std::size_t>(f.c)]};
+  }
 };
 
 // Pixel centres at integer + 0.5; fx to cy in pixels.

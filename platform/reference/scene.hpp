@@ -18,10 +18,10 @@ struct SceneFrame {
   Pinhole camera;
   std::vector<float> depth_m;
   std::vector<std::uint8_t> mask;  // empty: none
-  std::vector<Triangle> model;
+  PosedSurface model;
   std::string name;  // the depth's file
 
-  [[nodiscard]] SceneView view() const { return {camera, depth_m, mask, model, {}}; }
+  [[nodiscard]] SceneView view() const { return {camera, depth_m, mask, model.surface(), {}}; }
 };
 
 // Blocks of pixels become one: the mean of what lies within 1 % of the block's median. A lens is

@@ -9,7 +9,7 @@ namespace {
 constexpr int k_corners = 48;
 
 Vector3f on_circle(int corner, double radius_m, double z_m) {
-  const double angle = 2 * M_PI * corner / k_corners;
+  const double angle = 2 * M_PI * (corner % k_corners) / k_corners;  // a closed ring
   return Eigen::Vector3d(radius_m * std::cos(angle), radius_m * std::sin(angle), z_m).cast<float>();
 }
 

@@ -1,5 +1,6 @@
 #include "platform/robot/robot_model.hpp"
 
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -132,8 +133,29 @@ class TreeBuilder {
   std::map<std::string, int> link_, input_;
 };
 
+// Equal corners become one: a renderer then moves a sixth of them.
+class Welder {
+ public:
+  explicit Welder(int link) { surface_.link = link; }
+  void add(const Triangle& t) {
+    surface_.faces.push_back({number_of(t.a), number_of(t.b), number_of(t.c)});
+  }
+  LinkSurface take() { return std::move(surface_); }
+
+ private:
+  std::int32_t number_of(const Vector3f& p) {
+    const auto [at, fresh] = number_.emplace(std::array{p.x(), p.y(), p.z()},
+                                             static_cast<std::int32_t>(surface_.corners.size()));
+    if (fresh) surface_.corners.push_back(p);
+    return at->second;
+  }
+
+  LinkSurface surface_;
+  std::map<std::array<float, 3>, std::int32_t> number_;
+};
+
 void add_geometry(const urdf::Geometry& geometry, const urdf::Pose& origin, const RobotFiles& files,
-                  LinkSurface& surface, RobotModel& robot) {
+                  Welder& surface, RobotModel& robot) {
   std::vector<Triangle> triangles;
   if (geometry.type == urdf::Geometry::MESH) {
     const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
@@ -154,13 +176,13 @@ void add_geometry(const urdf::Geometry& geometry, const urdf::Pose& origin, cons
   const Eigen::Matrix3f rotation = pose.rotation.toRotationMatrix().cast<float>();
   const Vector3f translation = pose.translation.cast<float>();
   for (const Triangle& t : triangles) {
-    surface.triangles.push_back(
+    surface.add(
         {rotation * t.a + translation, rotation * t.b + translation, rotation * t.c + translation});
   }
 }
 
 template <class Array>
-void add_all(const Array& items, const RobotFiles& files, LinkSurface& surface, RobotModel& robot) {
+void add_all(const Array& items, const RobotFiles& files, Welder& surface, RobotModel& robot) {
   for (const auto& item : items) {
     if (item && item->geometry) {
       add_geometry(*item->geometry, item->origin, files, surface, robot);
@@ -169,14 +191,15 @@ void add_all(const Array& items, const RobotFiles& files, LinkSurface& surface, 
 }
 
 void add_surface(int number, const urdf::Link& link, const RobotFiles& files, RobotModel& robot) {
-  LinkSurface surface{number, {}};
+  Welder surface(number);
   const bool collision = files.geometry == Geometry::collision ? !link.collision_array.empty()
                                                                : link.visual_array.empty();
   if (collision)
     add_all(link.collision_array, files, surface, robot);
   else
     add_all(link.visual_array, files, surface, robot);
-  if (!surface.triangles.empty()) robot.surfaces.push_back(std::move(surface));
+  LinkSurface welded = surface.take();
+  if (!welded.faces.empty()) robot.surfaces.push_back(std::move(welded));
 }
 
 }  // namespace
@@ -191,7 +214,7 @@ RobotModel load_robot(const RobotFiles& files) {
     const urdf::LinkConstSharedPtr link = file.model->getLink(robot.links[i]);
     const std::size_t before = robot.surfaces.size();
     add_surface(static_cast<int>(i), *link, files, robot);
-    if (robot.surfaces.size() > before) triangles += robot.surfaces.back().triangles.size();
+    if (robot.surfaces.size() > before) triangles += robot.surfaces.back().faces.size();
     if (triangles > k_triangles_max) {
       throw InputError(files.urdf + ": its meshes have more than " +
                        std::to_string(k_triangles_max) + " triangles");
@@ -203,7 +226,7 @@ RobotModel load_robot(const RobotFiles& files) {
   return robot;
 }
 
-std::vector<Triangle> posed_surface(const RobotModel& robot, std::span<const double> positions,
+PosedSurface posed_surface(const RobotModel& robot, std::span<const double> positions,
                                     const std::string& what) {
   LinkPoses poses;
   if (forward_kinematics(robot.tree, positions, poses) != Reason::none) {
@@ -211,14 +234,17 @@ std::vector<Triangle> posed_surface(const RobotModel& robot, std::span<const dou
                      " positions, or one that is none; expected " +
                      std::to_string(robot.inputs.size()) + " in radians and metres");
   }
-  std::vector<Triangle> out;
+  PosedSurface out;
   for (const LinkSurface& surface : robot.surfaces) {
     const Pose& pose = poses.T_root_link[static_cast<std::size_t>(surface.link)];
     const Eigen::Matrix3f rotation = pose.rotation.toRotationMatrix().cast<float>();
     const Vector3f translation = pose.translation.cast<float>();
-    for (const Triangle& t : surface.triangles) {
-      out.push_back({rotation * t.a + translation, rotation * t.b + translation,
-                     rotation * t.c + translation});
+    const auto first = static_cast<std::int32_t>(out.corners.size());
+    for (const Vector3f& corner : surface.corners) {
+      out.corners.push_back(rotation * corner + translation);
+    }
+    for (const Face& f : surface.faces) {
+      out.faces.push_back({first + f.a, first + f.b, first + f.c});
     }
   }
   return out;

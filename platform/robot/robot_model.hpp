@@ -12,7 +12,16 @@ namespace glint {
 
 struct LinkSurface {
   int link = 0;                     // as in LinkPoses
-  std::vector<Triangle> triangles;  // in the link's frame
+  std::vector<Vector3f> corners;  // in the link's frame
+  std::vector<Face> faces;
+};
+
+// A whole robot's triangles.
+struct PosedSurface {
+  std::vector<Vector3f> corners;
+  std::vector<Face> faces;
+
+  [[nodiscard]] Surface surface() const { return {corners, faces}; }
 };
 
 struct RobotModel {
@@ -39,7 +48,7 @@ struct RobotFiles {
 
 // The links' triangles in the root's frame at these positions (radians, metres; one for each of
 // robot.inputs). Throws InputError naming `what` where the positions are none.
-[[nodiscard]] std::vector<Triangle> posed_surface(const RobotModel& robot,
+[[nodiscard]] PosedSurface posed_surface(const RobotModel& robot,
                                                   std::span<const double> positions,
                                                   const std::string& what);
 

@@ -130,7 +130,7 @@ TEST(RobotModel, NamesAMissingMeshAndWhereItLooked) {
       {"arm.urdf", "part.stl", files.folder().c_str()});
   const std::string stl = test::stl_bytes(box_surface({0.1, 0.1, 0.1}));
   files.write("m/part.stl", stl);
-  EXPECT_EQ(load_robot({path, {files.folder()}}).surfaces.at(0).triangles.size(), 12u);
+  EXPECT_EQ(load_robot({path, {files.folder()}}).surfaces.at(0).faces.size(), 12u);
   EXPECT_EQ(load_robot({path, {"arm=" + files.folder()}}).surfaces.size(), 1u);
   expect_input_error([&] { (void)load_robot({path, {"leg=" + files.folder()}}); }, {"part.stl"});
 }
@@ -143,10 +143,10 @@ TEST(RobotModel, PutsASurfaceWhereItsJointsHaveTurnedIt) {
                                "<visual><origin xyz='1 0 0' rpy='0 0 0'/>"
                                "<geometry><sphere radius='0.1'/></geometry></visual>") +
                       joint_xml("j", "revolute", "a", "b", "<origin xyz='0 0 2' rpy='0 0 0'/>"));
+  const PosedSurface surface = posed_surface(robot, std::vector<double>{M_PI / 2}, "test");
   Vector3f sum = Vector3f::Zero();
-  const std::vector<Triangle> surface = posed_surface(robot, std::vector<double>{M_PI / 2}, "test");
-  for (const Triangle& t : surface) sum += t.a + t.b + t.c;
-  sum /= 3.0f * static_cast<float>(surface.size());
+  for (const Vector3f& corner : surface.corners) sum += corner;
+  sum /= static_cast<float>(surface.corners.size());
   EXPECT_LT((sum - Vector3f(0, 1, 2)).norm(), 1e-4f);
   expect_input_error([&] { (void)posed_surface(robot, std::vector<double>{}, "joints.txt"); },
                      {"joints.txt", "expected 1"});

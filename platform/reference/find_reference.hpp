@@ -1,0 +1,57 @@
+// Where the robot is: from a rough pose to one with its covariance and a verdict.
+//
+// The model is aligned from the pose given and from others about it (turned about the base's
+// upright axis, which is how a robot is most alike, and shifted). Wherever those end elsewhere than
+// the first, they are rivals: one that explains the scene nearly as well makes the result
+// ambiguous, a better one takes its place.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kernels/registration/align_model.hpp"
+#include "kernels/registration/judge_alignment.hpp"
+#include "platform/reference/scene.hpp"
+
+namespace glint {
+
+enum class Verdict { accepted, ambiguous, refused };
+[[nodiscard]] std::string name_of(Verdict verdict);
+
+struct ReferenceSettings {
+  AlignmentSettings alignment;
+  JudgeSettings judge;
+  double inlier_share_min = 0.85;
+  double seen_through_share_max = 0.08;
+  // Less of the model in view says nothing about the rest.
+  double visible_share_min = 0.4;
+  double mask_share_min = 0.7;  // of the mask's pixels that the model covers
+  double sigma_max_m = 0.02;    // of the base's position, along the axis that is known worst
+  double sigma_max_rad = 0.035;
+  // A rival with this part of the first one's share of inliers is nearly as good.
+  double rival_share = 0.95;
+  double elsewhere_m = 0.04, elsewhere_rad = 0.07;  // nearer than both is the same end
+  bool other_starts = true;
+};
+
+struct Candidate {
+  Alignment alignment;
+  Judgement judgement;
+};
+
+struct Reference {
+  Candidate found;
+  Verdict verdict = Verdict::refused;
+  std::string why;                // of a verdict that is not "accepted"
+  std::vector<Candidate> rivals;  // ends elsewhere that explain the scene nearly as well
+  int starts = 0;
+};
+
+// seed: T_camera_base. Deterministic: the same frames and seed give the same bits.
+[[nodiscard]] Reference find_reference(const std::vector<SceneFrame>& frames, const Pose& seed,
+                                       const ReferenceSettings& settings);
+
+// x, y, z, roll, pitch, yaw: metres and radians, about fixed axes, as a URDF has it.
+[[nodiscard]] Pose pose_of_seed(const std::vector<double>& seed);
+
+}  // namespace glint
