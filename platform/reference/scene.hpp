@@ -19,9 +19,10 @@ struct SceneFrame {
   std::vector<float> depth_m;
   std::vector<std::uint8_t> mask;  // empty: none
   PosedSurface model;
-  std::string name;  // the depth's file
+  Pose T_camera_world;  // identity for a camera that stands still
+  std::string name;     // the depth's file
 
-  [[nodiscard]] SceneView view() const { return {camera, depth_m, mask, model.surface(), {}}; }
+  [[nodiscard]] SceneView view() const { return {camera, depth_m, mask, model.surface(), T_camera_world}; }
 };
 
 // Blocks of pixels become one: the mean of what lies within 1 % of the block's median. A lens is
