@@ -34,9 +34,8 @@ AlignmentSums sums_of(std::span<const SceneView> views, const Pose& T_world_sinc
     const Pose& T_camera_world = views[v].T_camera_world;
     const Pose T_world_camera = T_camera_world.inverse();
     add_pairs(std::span(memory.seen).first(static_cast<std::size_t>(memory.seen_count)),
-              T_camera_world * T_world_since * T_world_camera, gate.matching, gate.gate_m,
-              views[v], {&memory.grid, memory.scene}, T_world_camera.rotation,
-              T_camera_world * middle, sums);
+              T_camera_world * T_world_since * T_world_camera, gate.matching, gate.gate_m, views[v],
+              {&memory.grid, memory.scene}, T_world_camera.rotation, T_camera_world * middle, sums);
   }
   return sums;
 }
@@ -55,9 +54,9 @@ Matrix6 covariance_of(const AlignmentSums& sums, const Vector3& middle,
 
 }  // namespace
 
-Alignment align_model(std::span<const SceneView> views, const Pose& T_world_base,
-                      const AlignmentSettings& settings, AlignmentScratch& scratch) noexcept {
-  Alignment result;
+ModelAlignment align_model(std::span<const SceneView> views, const Pose& T_world_base,
+                           const AlignmentSettings& settings, AlignmentScratch& scratch) noexcept {
+  ModelAlignment result;
   result.T_world_base = T_world_base;
   if (!scene_fits(views, scratch)) {
     result.reason = Reason::not_prepared;

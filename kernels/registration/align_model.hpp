@@ -36,14 +36,14 @@ struct AlignmentSettings {
        {0.08, Matching::plane, 3, 12, false},
        {0.04, Matching::plane, 2, 12, false},
        {0.04, Matching::projective, 1, 6, true},
-       {0.025, Matching::projective, 1, 12, true}}};
+       {0.035, Matching::projective, 1, 12, true}}};  // 3 sigma of 1 % at 1.2 m
   int gate_count = 5;
   // A step below both is rest; while the gate is wide, below a fiftieth of it.
   double rest_shift_m = 1e-4;
   double rest_turn_rad = 1e-4;
 };
 
-struct Alignment {
+struct ModelAlignment {
   Pose T_world_base;
   Matrix6 covariance = Matrix6::Zero();  // of shift and turn about the base's origin, world axes
   double residual_m = 0;                 // root of the mean square at the last gate
@@ -53,8 +53,8 @@ struct Alignment {
 };
 
 // Reason::not_prepared: the scratch is too small for the views.
-[[nodiscard]] Alignment align_model(std::span<const SceneView> views, const Pose& T_world_base,
-                                    const AlignmentSettings& settings,
-                                    AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] ModelAlignment align_model(std::span<const SceneView> views, const Pose& T_world_base,
+                                         const AlignmentSettings& settings,
+                                         AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

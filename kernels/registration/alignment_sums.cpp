@@ -19,8 +19,7 @@ Pose moved(const Pose& T, const AlignmentStep& step, const Vector3& middle) noex
     const Vector3 v = step.turn * (half.sine / angle);
     turn = Quaternion(half.cosine, v.x(), v.y(), v.z());
   }
-  return {(turn * T.rotation).normalized(),
-          turn * (T.translation - middle) + middle + step.shift};
+  return {(turn * T.rotation).normalized(), turn * (T.translation - middle) + middle + step.shift};
 }
 
 }  // namespace glint

@@ -58,8 +58,8 @@ Judgement judge_alignment(std::span<const SceneView> views, const Pose& T_world_
         continue;
       }
       if (behind > settings.far_m) ++judgement.seen_through;
-      const Nearest nearest = memory.grid.nearest(
-          seen.point, static_cast<float>(k_distance_steps * k_distance_step_m));
+      const Nearest nearest =
+          memory.grid.nearest(seen.point, static_cast<float>(k_distance_steps * k_distance_step_m));
       const double distance = std::sqrt(static_cast<double>(nearest.square_m2));
       if (nearest.index >= 0 && distance <= settings.inlier_m) ++judgement.inliers;
       distances.add(distance);

@@ -37,8 +37,7 @@ void add_pairs(std::span<const SeenPoint> points, const Pose& T_moved, Matching 
     }
     const Nearest nearest = search.grid->nearest(p.cast<float>(), static_cast<float>(gate_m));
     if (nearest.index < 0) continue;
-    const Vector3 apart =
-        p - search.points[static_cast<std::size_t>(nearest.index)].cast<double>();
+    const Vector3 apart = p - search.points[static_cast<std::size_t>(nearest.index)].cast<double>();
     if (matching == Matching::plane) {
       sums.add(lever, to_world * normal, normal.dot(apart), 1);
     } else {

@@ -32,8 +32,8 @@ inline constexpr double k_least_cosine = 0.2;
 
 // What is known of a view's scene.
 struct SceneSearch {
-  const PointGrid* grid = nullptr;      // of the scene's points in the camera's frame
-  std::span<const Vector3f> points;     // those that the grid was built of
+  const PointGrid* grid = nullptr;   // of the scene's points in the camera's frame
+  std::span<const Vector3f> points;  // those that the grid was built of
 };
 
 // Adds the pairs of these points, seen in the view from where the model stood then, after it moved

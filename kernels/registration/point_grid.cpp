@@ -8,7 +8,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_cells_reach = 2;      // cells on each side that a search looks at
+constexpr int k_cells_reach = 2;          // cells on each side that a search looks at
 constexpr float k_coordinate_max = 1e4f;  // metres; beyond, nothing is a cell
 
 constexpr std::uint64_t mixed(std::uint64_t x) noexcept {  // SplitMix64's finalizer
@@ -34,9 +34,9 @@ constexpr std::array<Offset, k_offsets> offsets() {
           if (x * x + y * y + z * z != squares) continue;
           // Only the widest gap along one axis counts: 0 for neighbours, one cell for the others.
           const bool far = x * x == 4 || y * y == 4 || z * z == 4;
-          list[static_cast<std::size_t>(n++)] = {
-              static_cast<std::int8_t>(x), static_cast<std::int8_t>(y), static_cast<std::int8_t>(z),
-              far ? 1.0f : 0.0f};
+          list[static_cast<std::size_t>(n++)] = {static_cast<std::int8_t>(x),
+                                                 static_cast<std::int8_t>(y),
+                                                 static_cast<std::int8_t>(z), far ? 1.0f : 0.0f};
         }
       }
     }

@@ -35,12 +35,12 @@ class PointGrid {
   // Takes the points with finite coordinates; cells are reach_m / 2 wide, and nearest() finds what
   // lies within reach_m. Reason::not_prepared: more points than prepared for; out_of_range: no
   // reach.
-  [[nodiscard]] Reason build(std::span<const Vector3f> points, double reach_m) noexcept
-      GLINT_NONBLOCKING;
+  [[nodiscard]] Reason build(std::span<const Vector3f> points,
+                             double reach_m) noexcept GLINT_NONBLOCKING;
 
   // radius_m: at most the reach.
-  [[nodiscard]] Nearest nearest(const Vector3f& point, float radius_m) const noexcept
-      GLINT_NONBLOCKING;
+  [[nodiscard]] Nearest nearest(const Vector3f& point,
+                                float radius_m) const noexcept GLINT_NONBLOCKING;
 
   [[nodiscard]] int size() const { return count_; }
 

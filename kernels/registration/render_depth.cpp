@@ -45,8 +45,8 @@ void fill(const Corner (&c)[3], const Box& box, std::int32_t number, const Pinho
       const double a = edge(c[1], c[2], u, v) * scale, b = edge(c[2], c[0], u, v) * scale;
       const double d = 1 - a - b;
       if (a < 0 || b < 0 || d < 0) continue;
-      const auto z = static_cast<float>(
-          1 / (a * c[0].inverse_z + b * c[1].inverse_z + d * c[2].inverse_z));
+      const auto z =
+          static_cast<float>(1 / (a * c[0].inverse_z + b * c[1].inverse_z + d * c[2].inverse_z));
       const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) +
                       static_cast<std::size_t>(x);
       if (buffer.triangle[at] >= 0 && buffer.z_m[at] <= z) continue;
@@ -80,8 +80,7 @@ Reason render_depth(const Surface& model, const Pose& T_camera_model, const Pinh
   const std::int64_t pixels = std::int64_t{camera.width} * camera.height;
   if (camera.width < 1 || camera.height < 1 ||
       buffer.z_m.size() != static_cast<std::size_t>(pixels) ||
-      buffer.triangle.size() != buffer.z_m.size() ||
-      buffer.corners.size() < model.corners.size()) {
+      buffer.triangle.size() != buffer.z_m.size() || buffer.corners.size() < model.corners.size()) {
     return Reason::out_of_range;
   }
   std::fill(buffer.z_m.begin(), buffer.z_m.end(), 0.0f);

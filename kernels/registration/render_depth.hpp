@@ -28,8 +28,8 @@ struct ProjectedCorner {
 };
 
 struct DepthBuffer {
-  std::span<float> z_m;            // width * height, 0 where nothing is
-  std::span<std::int32_t> triangle;  // as many, -1 where nothing is
+  std::span<float> z_m;                // width * height, 0 where nothing is
+  std::span<std::int32_t> triangle;    // as many, -1 where nothing is
   std::span<ProjectedCorner> corners;  // at least as many as the surface has
 };
 

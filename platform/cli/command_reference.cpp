@@ -42,7 +42,7 @@ Json candidate_json(const Candidate& c) {
 }
 
 Json reference_json(const Reference& reference, const RobotModel& robot, std::size_t frames) {
-  const Alignment& alignment = reference.found.alignment;
+  const ModelAlignment& alignment = reference.found.alignment;
   Json json = candidate_json(reference.found);
   json["verdict"] = name_of(reference.verdict);
   json["why"] = reference.why;
@@ -90,8 +90,7 @@ int run_reference(ReferenceArguments arguments) {
   const Matrix6& covariance = reference.found.alignment.covariance;
   std::printf("sigma      %.2f mm, %.3f deg an axis, if depth errs by noise alone\n",
               1e3 * std::sqrt(covariance.topLeftCorner<3, 3>().trace() / 3),
-              k_degrees_per_radian *
-                  std::sqrt(covariance.bottomRightCorner<3, 3>().trace() / 3));
+              k_degrees_per_radian * std::sqrt(covariance.bottomRightCorner<3, 3>().trace() / 3));
   for (const Candidate& rival : reference.rivals) print_pose("rival", rival);
   if (robot.triangles_skipped > 0) {
     std::printf("meshes     %d triangles without an area skipped\n", robot.triangles_skipped);
@@ -99,7 +98,7 @@ int run_reference(ReferenceArguments arguments) {
   std::printf("verdict    %s%s%s\n", name_of(reference.verdict).c_str(),
               reference.why.empty() ? "" : ": ", reference.why.c_str());
   write_json(arguments.json, reference_json(reference, robot, frames.size()));
-  return reference.verdict == Verdict::accepted ? 0 : 1;
+  return reference.verdict == ReferenceVerdict::accepted ? 0 : 1;
 }
 
 }  // namespace
@@ -116,14 +115,17 @@ void add_reference(CLI::App& app, int& exit_code) {
   command->add_option("--urdf", arguments->robot.urdf, "the robot's description")->required();
   command->add_option("--package-dir", arguments->robot.package_dirs,
                       "where package:// leads: folders, or NAME=FOLDER");
-  command->add_option("--joints", arguments->scene.joints,
-                      "joint positions, a file for each depth picture: .npy, or text")
+  command
+      ->add_option("--joints", arguments->scene.joints,
+                   "joint positions, a file for each depth picture: .npy, or text")
       ->required();
-  command->add_option("--depth", arguments->scene.depth,
-                      "depth pictures: .npy (m), .png (mm), .pcd, .ply")
+  command
+      ->add_option("--depth", arguments->scene.depth,
+                   "depth pictures: .npy (m), .png (mm), .pcd, .ply")
       ->required();
   command->add_option("--camera", arguments->scene.camera, "ROS camera_info, YAML")->required();
-  command->add_option("--mask", arguments->scene.masks, "the robot's pixels, a file for each depth");
+  command->add_option("--mask", arguments->scene.masks,
+                      "the robot's pixels, a file for each depth");
   command
       ->add_option("--seed", arguments->seed,
                    "x,y,z,roll,pitch,yaw of T_camera_base: metres, radians, fixed axes")

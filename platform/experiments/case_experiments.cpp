@@ -10,6 +10,7 @@
 #include "platform/experiments/marker_mocap.hpp"
 #include "platform/experiments/motion_experiments.hpp"
 #include "platform/experiments/noise_experiment.hpp"
+#include "platform/experiments/reference_experiment.hpp"
 
 namespace glint {
 
@@ -38,6 +39,8 @@ std::span<const CaseExperiment> case_experiments() {
        run_noise},
       {"clutter", "five tools among up to 200 strays, and two tools that look alike", false,
        run_clutter},
+      {"reference", "a robot found in real and simulated depth, from hundreds of rough poses", true,
+       run_reference_experiment},
   };
   return k_experiments;
 }

@@ -39,7 +39,8 @@ Pose seed_about(const Pose& truth, double shift_m, double degrees, std::uint64_t
   const sim::RandomKey key{seed, sim::Stream::reference, number};
   const auto draw = [&](std::uint64_t i) { return 2 * sim::uniform(key, i) - 1; };
   const double radians = degrees / k_degrees;
-  const Pose turn = pose_of_seed({0, 0, 0, radians * draw(3), radians * draw(4), radians * draw(5)});
+  const Pose turn =
+      pose_of_seed({0, 0, 0, radians * draw(3), radians * draw(4), radians * draw(5)});
   return {(turn.rotation * truth.rotation).normalized(),
           truth.translation + shift_m * Vector3(draw(0), draw(1), draw(2))};
 }
@@ -50,12 +51,12 @@ struct Tally {
   std::vector<double> mm, degrees, sigma_mm, sigma_degrees;  // of the accepted, against `truth`
 
   void add(const Reference& reference, const Pose& truth) {
-    const Alignment& alignment = reference.found.alignment;
+    const ModelAlignment& alignment = reference.found.alignment;
     const Apart off = apart(alignment.T_world_base, truth);
     ++runs;
-    const bool good = reference.verdict == Verdict::accepted;
+    const bool good = reference.verdict == ReferenceVerdict::accepted;
     accepted += good ? 1 : 0;
-    ambiguous += reference.verdict == Verdict::ambiguous ? 1 : 0;
+    ambiguous += reference.verdict == ReferenceVerdict::ambiguous ? 1 : 0;
     const bool is_right = off.within(20, 2);
     right += is_right ? 1 : 0;
     right_refused += is_right && !good ? 1 : 0;
@@ -97,8 +98,8 @@ class Experiment {
   }
 
  private:
-  Alignment optimum(const std::vector<SceneFrame>& frames) const {
-    ReferenceSettings alone;
+  ModelAlignment optimum(const std::vector<SceneFrame>& frames) const {
+    FindReferenceSettings alone;
     alone.other_starts = false;
     return find_reference(frames, scan_.published, alone).found.alignment;
   }
@@ -112,7 +113,8 @@ class Experiment {
       const Reference r = find_reference(frames, seed(0.1, 10, i), {});
       tally.add(r, scan_.published);
       near_best += apart(r.found.alignment.T_world_base, best).within(5, 0.5) ? 1 : 0;
-      near_published += apart(r.found.alignment.T_world_base, scan_.published).within(20, 2) ? 1 : 0;
+      near_published +=
+          apart(r.found.alignment.T_world_base, scan_.published).within(20, 2) ? 1 : 0;
       surface.push_back(1e3 * r.found.judgement.median_m);
       share.push_back(r.found.judgement.inlier_share());
     }
@@ -126,7 +128,8 @@ class Experiment {
 
   void far(const std::string& name, const std::vector<SceneFrame>& frames) {
     Tally tally;
-    for (int i = 0; i < seeds_; ++i) tally.add(find_reference(frames, seed(0.4, 40, i), {}), scan_.published);
+    for (int i = 0; i < seeds_; ++i)
+      tally.add(find_reference(frames, seed(0.4, 40, i), {}), scan_.published);
     add(name, seeds_, tally.verdicts());
   }
 
@@ -145,7 +148,7 @@ class Experiment {
   }
 
   static double surface_mm(const std::vector<SceneFrame>& frames, const Pose& T) {
-    ReferenceSettings still;
+    FindReferenceSettings still;
     still.other_starts = false;
     still.alignment.gate_count = 0;
     return 1e3 * find_reference(frames, T, still).found.judgement.median_m;
@@ -157,7 +160,7 @@ class Experiment {
     for (int i = 0; i < seeds_; ++i) {
       const double wide = i % 2 == 0 ? 1 : 4;
       const Reference r = find_reference(frames, seed(0.1 * wide, 10 * wide, i), {});
-      accepted += r.verdict == Verdict::accepted ? 1 : 0;
+      accepted += r.verdict == ReferenceVerdict::accepted ? 1 : 0;
     }
     add("robot cut out", seeds_,
         {{"accepted", "", static_cast<double>(accepted), Bar::at_most(0)}});
@@ -203,7 +206,8 @@ class Experiment {
         };
         figures.push_back({"position", "mm", mm, at_most(2.0, 0.8)});
         figures.push_back({"rotation", "deg", degrees, at_most(0.45, 0.15)});
-        figures.push_back({"position_in_sigmas", "", mm / median(tally.sigma_mm), at_most(1.3, 1.3)});
+        figures.push_back(
+            {"position_in_sigmas", "", mm / median(tally.sigma_mm), at_most(1.3, 1.3)});
         figures.push_back(
             {"rotation_in_sigmas", "", degrees / median(tally.sigma_degrees), at_most(1.3, 1.3)});
         add(name + ", " + std::to_string(views) + (views == 1 ? " view" : " views") +

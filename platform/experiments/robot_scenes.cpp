@@ -21,7 +21,8 @@ Pose published_pose(const std::string& path) {
   Matrix3 rotation, optical;
   Vector3 translation;
   for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) rotation(r, c) = static_cast<double>(array.values[static_cast<std::size_t>(4 * r + c)]);
+    for (int c = 0; c < 3; ++c)
+      rotation(r, c) = static_cast<double>(array.values[static_cast<std::size_t>(4 * r + c)]);
     translation(r) = static_cast<double>(array.values[static_cast<std::size_t>(4 * r + 3)]);
   }
   optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
@@ -31,8 +32,8 @@ Pose published_pose(const std::string& path) {
 
 void add_quad(PosedSurface& to, const Vector3& corner, const Vector3& along, const Vector3& up) {
   const auto first = static_cast<std::int32_t>(to.corners.size());
-  for (const Vector3& p : {corner, Vector3(corner + along), Vector3(corner + along + up),
-                           Vector3(corner + up)}) {
+  for (const Vector3& p :
+       {corner, Vector3(corner + along), Vector3(corner + along + up), Vector3(corner + up)}) {
     to.corners.push_back(p.cast<float>());
   }
   to.faces.push_back({first, first + 1, first + 2});
@@ -60,8 +61,7 @@ Picture rendered(const PosedSurface& surface, const Pose& T_camera_base, const P
   const auto pixels = static_cast<std::size_t>(camera.width * camera.height);
   Picture picture{std::vector<float>(pixels), std::vector<std::int32_t>(pixels)};
   std::vector<ProjectedCorner> corners(surface.corners.size());
-  (void)render_depth(surface.surface(), T_camera_base, camera,
-                     {picture.z, picture.face, corners});
+  (void)render_depth(surface.surface(), T_camera_base, camera, {picture.z, picture.face, corners});
   return picture;
 }
 
@@ -161,7 +161,8 @@ SimulatedScene simulate_scene(const RobotModel& robot, const SimulationSettings&
     frame.camera = camera;
     frame.model = model;
     frame.T_camera_world = T_camera_base * T_base_first;
-    const sim::RandomKey noise{seed, sim::Stream::blob, 16 * instance + static_cast<std::uint64_t>(v)};
+    const sim::RandomKey noise{seed, sim::Stream::blob,
+                               16 * instance + static_cast<std::uint64_t>(v)};
     for (std::size_t i = 0; i < picture.z.size(); ++i) {
       const double z = static_cast<double>(picture.z[i]);
       frame.depth_m.push_back(

@@ -1,4 +1,5 @@
-// Scenes with a robot in them: real ones with their files' names, and simulated ones with the truth.
+// Scenes with a robot in them: real ones with their files' names, and simulated ones with the
+// truth.
 #pragma once
 
 #include <string>
@@ -32,8 +33,10 @@ struct SimulationSettings {
   double distance_m = 1.2;
   double noise = 0.01;  // of the depth, independent from pixel to pixel
 };
-// Robot at random joint positions on a floor before a wall; the instance chooses all that is random.
-[[nodiscard]] SimulatedScene simulate_scene(const RobotModel& robot, const SimulationSettings& settings,
-                                            std::uint64_t seed, std::uint64_t instance);
+// Robot at random joint positions on a floor before a wall; the instance chooses all that is
+// random.
+[[nodiscard]] SimulatedScene simulate_scene(const RobotModel& robot,
+                                            const SimulationSettings& settings, std::uint64_t seed,
+                                            std::uint64_t instance);
 
 }  // namespace glint

@@ -66,9 +66,9 @@ float depth_of(double metres) {
 
 }  // namespace
 
-DepthPicture read_depth(const std::string& path, const CameraModel& camera) {
+DepthImage read_depth(const std::string& path, const CameraModel& camera) {
   const std::string kind = kind_of(path);
-  DepthPicture out{camera.width, camera.height, {}};
+  DepthImage out{camera.width, camera.height, {}};
   if (kind == ".npy") {
     const NpyNumbers array = npy_picture(path, camera);
     const double scale = array.integer ? 1e-3 : 1;

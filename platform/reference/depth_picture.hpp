@@ -9,7 +9,7 @@
 
 namespace glint {
 
-struct DepthPicture {
+struct DepthImage {
   int width = 0, height = 0;
   std::vector<float> z_m;  // row by row; 0 where there is none: not finite, negative, or too far
 };
@@ -20,7 +20,7 @@ inline constexpr float k_depth_max_m = 20;
 // .pcd and .ply (points in the camera's frame, metres, projected into its picture: the nearest of a
 // pixel counts). Throws InputError naming the file and what was expected: another size than the
 // camera's, no point at all.
-[[nodiscard]] DepthPicture read_depth(const std::string& path, const CameraModel& camera);
+[[nodiscard]] DepthImage read_depth(const std::string& path, const CameraModel& camera);
 
 struct MaskPicture {
   int width = 0, height = 0;

@@ -22,7 +22,7 @@ Quaternion turn_about_z(double radians) {
 
 class Search {
  public:
-  Search(const std::vector<SceneFrame>& frames, const ReferenceSettings& settings)
+  Search(const std::vector<SceneFrame>& frames, const FindReferenceSettings& settings)
       : settings_(settings) {
     std::size_t corners = 1, pixels = 1;
     for (const SceneFrame& frame : frames) {
@@ -63,7 +63,7 @@ class Search {
     return c;
   }
 
-  const ReferenceSettings& settings_;
+  const FindReferenceSettings& settings_;
   std::vector<SceneView> views_;
   AlignmentScratch scratch_;
 };
@@ -78,12 +78,13 @@ double worth(const Candidate& c) {
 std::vector<Pose> other_starts(const Pose& from) {
   std::vector<Pose> starts;
   for (int eighth = 1; eighth < 8; ++eighth) {
-    starts.push_back({(from.rotation * turn_about_z(eighth * M_PI / 4)).normalized(),
-                      from.translation});
+    starts.push_back(
+        {(from.rotation * turn_about_z(eighth * M_PI / 4)).normalized(), from.translation});
   }
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {-0.25, 0.25}) {
-      starts.push_back({from.rotation, from.translation + from.rotation * (side * Vector3::Unit(axis))});
+      starts.push_back(
+          {from.rotation, from.translation + from.rotation * (side * Vector3::Unit(axis))});
     }
   }
   return starts;
@@ -101,7 +102,7 @@ std::string percent(double share) {
 }
 
 // Why this is no pose to work with; empty: it is one.
-std::string objection(const Candidate& c, const ReferenceSettings& settings) {
+std::string objection(const Candidate& c, const FindReferenceSettings& settings) {
   const Judgement& j = c.judgement;
   if (c.alignment.reason != Reason::none) return "too little of the robot is seen to fix a pose";
   if (j.visible_share() < settings.visible_share_min) {
@@ -130,11 +131,14 @@ std::string objection(const Candidate& c, const ReferenceSettings& settings) {
 
 }  // namespace
 
-std::string name_of(Verdict verdict) {
+std::string name_of(ReferenceVerdict verdict) {
   switch (verdict) {
-    case Verdict::accepted: return "accepted";
-    case Verdict::ambiguous: return "ambiguous";
-    default: return "refused";
+    case ReferenceVerdict::accepted:
+      return "accepted";
+    case ReferenceVerdict::ambiguous:
+      return "ambiguous";
+    default:
+      return "refused";
   }
 }
 
@@ -147,7 +151,7 @@ Pose pose_of_seed(const std::vector<double>& seed) {
 }
 
 Reference find_reference(const std::vector<SceneFrame>& frames, const Pose& seed,
-                         const ReferenceSettings& settings) {
+                         const FindReferenceSettings& settings) {
   Search search(frames, settings);
   Reference reference;
   reference.found = search.whole(seed);
@@ -181,11 +185,11 @@ Reference find_reference(const std::vector<SceneFrame>& frames, const Pose& seed
   reference.why = objection(reference.found, settings);
   if (!reference.why.empty()) return reference;
   if (!reference.rivals.empty()) {
-    reference.verdict = Verdict::ambiguous;
+    reference.verdict = ReferenceVerdict::ambiguous;
     reference.why = "another pose explains the scene nearly as well";
     return reference;
   }
-  reference.verdict = Verdict::accepted;
+  reference.verdict = ReferenceVerdict::accepted;
   return reference;
 }
 

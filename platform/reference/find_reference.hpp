@@ -15,10 +15,10 @@
 
 namespace glint {
 
-enum class Verdict { accepted, ambiguous, refused };
-[[nodiscard]] std::string name_of(Verdict verdict);
+enum class ReferenceVerdict { accepted, ambiguous, refused };
+[[nodiscard]] std::string name_of(ReferenceVerdict verdict);
 
-struct ReferenceSettings {
+struct FindReferenceSettings {
   AlignmentSettings alignment;
   JudgeSettings judge;
   double inlier_share_min = 0.85;
@@ -35,13 +35,13 @@ struct ReferenceSettings {
 };
 
 struct Candidate {
-  Alignment alignment;
+  ModelAlignment alignment;
   Judgement judgement;
 };
 
 struct Reference {
   Candidate found;
-  Verdict verdict = Verdict::refused;
+  ReferenceVerdict verdict = ReferenceVerdict::refused;
   std::string why;                // of a verdict that is not "accepted"
   std::vector<Candidate> rivals;  // ends elsewhere that explain the scene nearly as well
   int starts = 0;
@@ -49,7 +49,7 @@ struct Reference {
 
 // seed: T_camera_base. Deterministic: the same frames and seed give the same bits.
 [[nodiscard]] Reference find_reference(const std::vector<SceneFrame>& frames, const Pose& seed,
-                                       const ReferenceSettings& settings);
+                                       const FindReferenceSettings& settings);
 
 // x, y, z, roll, pitch, yaw: metres and radians, about fixed axes, as a URDF has it.
 [[nodiscard]] Pose pose_of_seed(const std::vector<double>& seed);

@@ -43,7 +43,7 @@ float merged(std::vector<float>& values, std::size_t block) {
 
 }  // namespace
 
-SceneFrame scene_frame(const DepthPicture& depth, const MaskPicture* mask,
+SceneFrame scene_frame(const DepthImage& depth, const MaskPicture* mask,
                        const CameraModel& camera) {
   SceneFrame frame;
   const int scale = (camera.width + k_working_width - 1) / k_working_width;
@@ -87,7 +87,7 @@ std::vector<SceneFrame> read_scene(const SceneFiles& files, const RobotModel& ro
   const CameraModel camera = read_camera_info(files.camera);
   std::vector<SceneFrame> frames;
   for (std::size_t i = 0; i < count; ++i) {
-    const DepthPicture depth = read_depth(files.depth[i], camera);
+    const DepthImage depth = read_depth(files.depth[i], camera);
     MaskPicture mask;
     if (!files.masks.empty()) mask = read_mask(files.masks[i], camera);
     frames.push_back(scene_frame(depth, files.masks.empty() ? nullptr : &mask, camera));

@@ -22,12 +22,14 @@ struct SceneFrame {
   Pose T_camera_world;  // identity for a camera that stands still
   std::string name;     // the depth's file
 
-  [[nodiscard]] SceneView view() const { return {camera, depth_m, mask, model.surface(), T_camera_world}; }
+  [[nodiscard]] SceneView view() const {
+    return {camera, depth_m, mask, model.surface(), T_camera_world};
+  }
 };
 
 // Blocks of pixels become one: the mean of what lies within 1 % of the block's median. A lens is
 // straightened on the way. `mask` may be null.
-[[nodiscard]] SceneFrame scene_frame(const DepthPicture& depth, const MaskPicture* mask,
+[[nodiscard]] SceneFrame scene_frame(const DepthImage& depth, const MaskPicture* mask,
                                      const CameraModel& camera);
 
 struct SceneFiles {

@@ -1,0 +1,83 @@
+#include "kernels/registration/render_depth.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+namespace glint {
+namespace {
+
+struct Picture {
+  Pinhole camera{64, 48, 60, 60, 32, 24};
+  std::vector<float> z = std::vector<float>(64 * 48);
+  std::vector<std::int32_t> face = std::vector<std::int32_t>(64 * 48);
+  std::vector<ProjectedCorner> corners = std::vector<ProjectedCorner>(64);
+
+  Reason render(const std::vector<Vector3f>& points, const std::vector<Face>& faces,
+                const Pose& pose = {}) {
+    return render_depth({points, faces}, pose, camera, {z, face, corners});
+  }
+  [[nodiscard]] std::size_t at(int x, int y) const { return static_cast<std::size_t>(y * 64 + x); }
+};
+
+// A wall that leans: z = 1 + x / 2.
+const std::vector<Vector3f> k_wall = {{-1, -2, 0.5f}, {1, -2, 1.5f}, {1, 2, 1.5f}, {-1, 2, 0.5f}};
+const std::vector<Face> k_two = {{0, 1, 2}, {0, 2, 3}};
+
+TEST(RenderDepth, GivesAPlanesDepthAtEachPixelsCentre) {
+  Picture picture;
+  ASSERT_EQ(picture.render(k_wall, k_two), Reason::none);
+  for (const int x : {5, 20, 32, 50}) {
+    const double slope = (x + 0.5 - 32) / 60;  // x / z along the ray
+    EXPECT_NEAR(picture.z[picture.at(x, 10)], 1 / (1 - 0.5 * slope), 1e-6) << x;
+  }
+}
+
+TEST(RenderDepth, LeavesNoSeamAndNoHoleBetweenNeighbours) {
+  Picture picture;
+  ASSERT_EQ(picture.render(k_wall, k_two), Reason::none);
+  for (int y = 2; y < 46; ++y) {
+    for (int x = 2; x < 60; ++x) EXPECT_GE(picture.face[picture.at(x, y)], 0) << x << " " << y;
+  }
+}
+
+TEST(RenderDepth, KeepsWhatIsNearerWhicheverCameFirst) {
+  std::vector<Vector3f> points = {{-1, -1, 2}, {1, -1, 2}, {0, 1, 2},
+                                  {-1, -1, 1}, {1, -1, 1}, {0, 1, 1}};
+  for (const std::vector<Face>& faces :
+       {std::vector<Face>{{0, 1, 2}, {3, 4, 5}}, std::vector<Face>{{3, 4, 5}, {0, 1, 2}}}) {
+    Picture picture;
+    ASSERT_EQ(picture.render(points, faces), Reason::none);
+    EXPECT_FLOAT_EQ(picture.z[picture.at(32, 20)], 1);
+    EXPECT_EQ(picture.face[picture.at(32, 20)], faces[0].a == 0 ? 1 : 0);
+  }
+}
+
+TEST(RenderDepth, LeavesOutWhatIsBehindOrNotANumber) {
+  Picture picture;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  ASSERT_EQ(
+      picture.render({{-1, -1, -1}, {1, -1, -1}, {0, 1, -1}, {-1, -1, 1}, {1, -1, nan}, {0, 1, 1}},
+                     {{0, 1, 2}, {3, 4, 5}}),
+      Reason::none);
+  for (const std::int32_t face : picture.face) EXPECT_EQ(face, -1);
+}
+
+TEST(RenderDepth, RefusesWrongSizesAndFacesWithoutCorners) {
+  Picture picture;
+  EXPECT_EQ(picture.render(k_wall, {{0, 1, 4}}), Reason::out_of_range);
+  EXPECT_EQ(picture.render(k_wall, {{0, -1, 2}}), Reason::out_of_range);
+  picture.z.pop_back();
+  EXPECT_EQ(picture.render(k_wall, k_two), Reason::out_of_range);
+}
+
+TEST(RenderDepth, EndsAfterItsBudgetOfTests) {
+  Picture picture;
+  const std::vector<Face> many(5000, Face{0, 1, 2});
+  EXPECT_EQ(picture.render(k_wall, many), Reason::search_full);
+  EXPECT_GT(picture.z[picture.at(50, 10)], 0);
+}
+
+}  // namespace
+}  // namespace glint
