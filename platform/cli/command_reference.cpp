@@ -120,8 +120,7 @@ void add_reference(CLI::App& app, int& exit_code) {
                    "joint positions, a file for each depth picture: .npy, or text")
       ->required();
   command
-      ->add_option("--depth", arguments->scene.depth,
-                   "depth pictures: .npy (m), .png (mm), .pcd, .ply")
+      ->add_option("--depth", arguments->scene.depth, "depth pictures: .npy (m), .png (16 bit, mm)")
       ->required();
   command->add_option("--camera", arguments->scene.camera, "ROS camera_info, YAML")->required();
   command->add_option("--mask", arguments->scene.masks,

@@ -33,7 +33,7 @@ void check_size(const std::string& path, std::size_t width, std::size_t height,
 // Rows and columns; one more side of length 1 does no harm.
 NpyNumbers npy_picture(const std::string& path, const CameraModel& camera) {
   NpyNumbers array = read_npy_numbers(path);
-  std::erase(array.shape, std::size_t{1});
+  if (array.shape.size() > 2) std::erase(array.shape, std::size_t{1});
   if (array.shape.size() != 2) {
     throw InputError(path + ": " + std::to_string(array.shape.size()) +
                      " dimensions; expected rows and columns");
@@ -84,11 +84,31 @@ DepthImage read_depth(const std::string& path, const CameraModel& camera) {
       }
     }
   } else {
-    throw InputError(path + ": expected depth as .npy, .png, .pcd or .ply");
+    throw InputError(path + ": expected depth as .npy or .png");
   }
   if (std::all_of(out.z_m.begin(), out.z_m.end(), [](float z) { return z == 0; })) {
     throw InputError(path + ": no pixel has a depth between 0 and " +
                      std::to_string(static_cast<int>(k_depth_max_m)) + " m; expected metres");
+  }
+  return out;
+}
+
+DepthImage depth_of_points(std::span<const Vector3f> points, const CameraModel& camera) {
+  const auto pixels =
+      static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  DepthImage out{camera.width, camera.height, std::vector<float>(pixels, 0.0f)};
+  for (const Vector3f& point : points) {
+    const float z = depth_of(static_cast<double>(point.z()));
+    if (z == 0 || !point.allFinite()) continue;
+    const Result<Vector2> at = project(camera, point.cast<double>());
+    if (!at || !(at.value.x() >= 0 && at.value.y() >= 0 && at.value.x() < camera.width &&
+                 at.value.y() < camera.height)) {
+      continue;
+    }
+    float& pixel =
+        out.z_m[static_cast<std::size_t>(at.value.y()) * static_cast<std::size_t>(camera.width) +
+                static_cast<std::size_t>(at.value.x())];
+    if (pixel == 0 || z < pixel) pixel = z;
   }
   return out;
 }

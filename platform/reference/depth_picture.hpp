@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "kernels/pose/camera_model.hpp"
+#include "kernels/registration/triangle.hpp"
 
 namespace glint {
 
@@ -16,11 +18,15 @@ struct DepthImage {
 
 inline constexpr float k_depth_max_m = 20;
 
-// .npy (rows x columns, floating point metres or unsigned millimetres), .png (16 bit, millimetres),
-// .pcd and .ply (points in the camera's frame, metres, projected into its picture: the nearest of a
-// pixel counts). Throws InputError naming the file and what was expected: another size than the
-// camera's, no point at all.
+// .npy (rows x columns, floating point metres or unsigned millimetres) or .png (16 bit,
+// millimetres). Throws InputError naming the file and what was expected: another size than the
+// camera's, no depth at all.
 [[nodiscard]] DepthImage read_depth(const std::string& path, const CameraModel& camera);
+
+// Points in the camera's frame, metres, in its picture: the nearest of a pixel counts; those that
+// are not finite, or have no pixel, do not.
+[[nodiscard]] DepthImage depth_of_points(std::span<const Vector3f> points,
+                                         const CameraModel& camera);
 
 struct MaskPicture {
   int width = 0, height = 0;

@@ -47,6 +47,14 @@ TEST(DepthPicture, RefusesAnotherSizeNoDepthAndUnknownKinds) {
                      {"m.png", "cannot be opened"});
 }
 
+TEST(DepthImage, TakesTheNearestOfAPixelsPoints) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<Vector3f> points = {{0, 0, 2}, {0, 0, 1.5f}, {0, 0, 3},
+                                        {9, 9, 1}, {0, 0, -1},   {nan, 0, 1}};
+  const DepthImage depth = depth_of_points(points, camera(5, 3));
+  for (std::size_t i = 0; i < 15; ++i) EXPECT_FLOAT_EQ(depth.z_m[i], i == 7 ? 1.5f : 0) << i;
+}
+
 TEST(SceneFrame, MergesBlocksWithoutMixingNearAndFar) {
   DepthImage depth{640, 4, std::vector<float>(640 * 4, 1.0f)};
   depth.z_m[0] = 3;  // one far pixel of the first block

@@ -31,7 +31,11 @@ PosedSurface arm() {
 }
 PosedSurface post() { return surface_of({{{0.2, 0.2, 0.5}, {0, 0, 0.25}}}); }
 
-const Pose k_truth = pose_of_seed({-0.1, 0.15, 1.3, 2.094, 0, 0.3});
+// Seen from above, all sides of a box aslant: where one is seen edge on a direction stays open.
+// Roll before yaw would lean the robot: the yaw comes first.
+const Pose k_truth{
+    pose_of_seed({0, 0, 0, 2.094, 0, 0}).rotation * pose_of_seed({0, 0, 0, 0, 0, 0.7}).rotation,
+    {-0.1, 0.15, 1.3}};
 
 std::vector<SceneFrame> scene_of(const PosedSurface& model, const Pose& T_camera_base) {
   SceneFrame frame;
