@@ -70,7 +70,10 @@ class Search {
 
 double worth(const Candidate& c) {
   if (c.alignment.reason != Reason::none) return 0;
-  return c.judgement.inlier_share() - c.judgement.seen_through_share();
+  const Judgement& j = c.judgement;
+  // A pose that hides behind what is in front is not wrong anywhere: it leaves the mask uncovered.
+  const double covered = j.mask_pixels > 0 ? j.mask_share() : 1;
+  return (j.inlier_share() - j.seen_through_share()) * covered;
 }
 
 // Turned about the base's own z by eighths, and shifted along it and across: a robot's base is
@@ -179,7 +182,8 @@ Reference find_reference(const std::vector<SceneFrame>& frames, const Pose& seed
       reference.rivals.push_back(rival);
     }
     std::erase_if(reference.rivals, [&](const Candidate& rival) {
-      return worth(rival) < settings.rival_share * worth(reference.found);
+      return worth(rival) < settings.rival_share * worth(reference.found) ||
+             !objection(rival, settings).empty();
     });
   }
   reference.why = objection(reference.found, settings);

@@ -28,7 +28,7 @@ struct FindReferenceSettings {
   double mask_share_min = 0.7;  // of the mask's pixels that the model covers
   double sigma_max_m = 0.02;    // of the base's position, along the axis that is known worst
   double sigma_max_rad = 0.035;
-  // A rival with this part of the first one's share of inliers is nearly as good.
+  // A rival that nothing speaks against and that is worth this part of the first is nearly as good.
   double rival_share = 0.95;
   double elsewhere_m = 0.04, elsewhere_rad = 0.07;  // nearer than both is the same end
   bool other_starts = true;
