@@ -53,7 +53,9 @@ Judgement judge_alignment(std::span<const SceneView> views, const Pose& T_world_
       if (!(z > 0)) continue;
       ++judgement.measured;
       const double behind = static_cast<double>(z - seen.point.z());
-      if (behind < -settings.far_m) {
+      // What the mask says is something else hides the model from however near.
+      const bool something_else = !view.may_be_model(pixel) && behind < 0;
+      if (something_else || behind < -settings.far_m) {
         ++judgement.hidden;
         continue;
       }

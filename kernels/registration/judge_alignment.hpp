@@ -1,8 +1,9 @@
 // How well a model at a pose explains what is seen of it.
 //
 // What:     the model is rendered into each view. Of its pixels that were measured: hidden where
-//           the scene is more than near_m in front; seen through where it is more than far_m
-//           behind; explained where a scene point lies within near_m. Distances are those of the
+//           the scene is more than far_m in front, or in front at all where a mask says that it is
+//           not the model; seen through where it is more than far_m behind; explained where a
+//           scene point lies within inlier_m. Distances are those of the
 //           rendered points to the nearest scene points.
 // Cost:     a rendering, and a search a pixel.
 // Worst:    the model fills the picture and is nowhere near the scene.
@@ -26,7 +27,7 @@ inline constexpr int k_distance_steps = 800;
 struct Judgement {
   int rendered = 0;      // pixels of the model, in all views
   int measured = 0;      // of those, with a depth in the scene
-  int hidden = 0;        // of the measured: the scene is far_m in front or nearer
+  int hidden = 0;        // of the measured: something stands in front
   int inliers = 0;       // of the measured: a scene point within inlier_m
   int seen_through = 0;  // of the measured: the scene is more than far_m behind
   double median_m = 0;   // of the distances of all measured pixels that are not hidden

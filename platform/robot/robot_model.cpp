@@ -227,7 +227,7 @@ RobotModel load_robot(const RobotFiles& files) {
 }
 
 PosedSurface posed_surface(const RobotModel& robot, std::span<const double> positions,
-                                    const std::string& what) {
+                           const std::string& what) {
   LinkPoses poses;
   if (forward_kinematics(robot.tree, positions, poses) != Reason::none) {
     throw InputError(what + ": " + std::to_string(positions.size()) +

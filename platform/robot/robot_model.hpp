@@ -11,7 +11,7 @@
 namespace glint {
 
 struct LinkSurface {
-  int link = 0;                     // as in LinkPoses
+  int link = 0;                   // as in LinkPoses
   std::vector<Vector3f> corners;  // in the link's frame
   std::vector<Face> faces;
 };
@@ -48,8 +48,7 @@ struct RobotFiles {
 
 // The links' triangles in the root's frame at these positions (radians, metres; one for each of
 // robot.inputs). Throws InputError naming `what` where the positions are none.
-[[nodiscard]] PosedSurface posed_surface(const RobotModel& robot,
-                                                  std::span<const double> positions,
-                                                  const std::string& what);
+[[nodiscard]] PosedSurface posed_surface(const RobotModel& robot, std::span<const double> positions,
+                                         const std::string& what);
 
 }  // namespace glint
