@@ -34,8 +34,9 @@ enum class Reason : std::uint8_t {
   overrun_stopped = 22,    // everything is declared lost
   tool_changed = 23,       // another tool, or none, is in its place since
   unsure = 24,             // found, but not surely enough to be called measured
+  cloud_full = 25,         // more points or voxels than the capacity; the first ones were kept
 };
-inline constexpr Reason k_last_reason = Reason::unsure;
+inline constexpr Reason k_last_reason = Reason::cloud_full;
 
 // Whether it stands for a measurement that was not in time.
 [[nodiscard]] constexpr bool is_overrun(Reason reason) {
@@ -50,7 +51,7 @@ inline constexpr Reason k_last_reason = Reason::unsure;
       "frame_invalid", "head_pose_missing", "too_old",         "runs_full",    "blobs_full",
       "search_full",   "not_prepared",      "out_of_range",    "no_reference", "overrun_skipped",
       "overrun_held",  "overrun_predicted", "overrun_stopped", "tool_changed",
-      "unsure"};
+      "unsure",        "cloud_full"};
   const auto i = static_cast<std::size_t>(reason);
   return i < sizeof names / sizeof names[0] ? names[i] : "unknown";
 }

@@ -1,0 +1,145 @@
+#include "kernels/cloud/local_surface.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "kernels/cloud/plane_sums.hpp"
+
+namespace glint {
+namespace {
+
+// A pivot below this part of its diagonal is rounding: sums are floats.
+constexpr double k_pivot_least = 1e-6;
+
+// exp(-t) for t from 0 to 4: the eighth power of its series about a sixteenth of that.
+FourFloats falling(const FourFloats& t) {
+  const FourFloats h = 0.25f - 0.125f * t;
+  const FourFloats series =
+      1 + h * (1 + h * (0.5f + h * (1.0f / 6 + h * (1.0f / 24 + h * (1.0f / 120)))));
+  const FourFloats root = 0.7788007831f * series;  // exp(-1/4)
+  const FourFloats two = root * root, four = two * two;
+  return four * four;
+}
+
+PlaneSums plane_sums(const Neighbours& near) {
+  FourFloats x{}, y{}, z{}, xx{}, yy{}, zz{}, xy{}, xz{}, yz{};
+  for (int i = 0; i < near.count; i += 4) {
+    const FourFloats px = load_four(near.x + i), py = load_four(near.y + i),
+                     pz = load_four(near.z + i);
+    x += px, y += py, z += pz;
+    xx += px * px, yy += py * py, zz += pz * pz;
+    xy += px * py, xz += px * pz, yz += py * pz;
+  }
+  return {static_cast<double>(near.count),
+          sum_of(x),
+          sum_of(y),
+          sum_of(z),
+          sum_of(xx),
+          sum_of(yy),
+          sum_of(zz),
+          sum_of(xy),
+          sum_of(xz),
+          sum_of(yz)};
+}
+
+// The plane's frame at the foot of the point. Along the plane one unit is the radius.
+struct Frame {
+  Vector3 u, v, normal;
+  double height = 0;  // of the plane over the point, metres
+};
+
+// Row by row the upper triangle of the weighted normal equations, and their right side last, in the
+// order uu, uv, vv, u, v, 1: what is wanted stands at the end, where solving begins.
+constexpr int k_terms = 6;
+using Equations = std::array<std::array<double, k_terms + 1>, k_terms>;
+
+Equations sheet_equations(const Neighbours& near, const Frame& frame, float radius_m) {
+  const float scale = 1 / radius_m;
+  const auto part = [scale](double axis) { return static_cast<float>(axis) * scale; };
+  const FourFloats ux = all_four(part(frame.u.x())), uy = all_four(part(frame.u.y())),
+                   uz = all_four(part(frame.u.z())), vx = all_four(part(frame.v.x())),
+                   vy = all_four(part(frame.v.y())), vz = all_four(part(frame.v.z())),
+                   nx = all_four(part(frame.normal.x())), ny = all_four(part(frame.normal.y())),
+                   nz = all_four(part(frame.normal.z())), height = all_four(part(frame.height));
+  FourFloats s00{}, s10{}, s01{}, s20{}, s11{}, s02{}, s30{}, s21{}, s12{}, s03{}, s40{}, s31{},
+      s22{}, s13{}, s04{}, f00{}, f10{}, f01{}, f20{}, f11{}, f02{};
+  for (int i = 0; i < near.count; i += 4) {
+    const FourFloats x = load_four(near.x + i), y = load_four(near.y + i),
+                     z = load_four(near.z + i);
+    const FourFloats u = (x * ux + y * uy) + z * uz, v = (x * vx + y * vy) + z * vz;
+    const FourFloats f = ((x * nx + y * ny) + z * nz) - height;
+    const FourFloats uu = u * u, vv = v * v, uv = u * v;
+    const FourFloats w = where(first_lanes(near.count - i), falling((uu + vv) + f * f));
+    const FourFloats wu = w * u, wv = w * v, wuu = w * uu, wuv = w * uv, wvv = w * vv;
+    s00 += w, s10 += wu, s01 += wv, s20 += wuu, s11 += wuv, s02 += wvv;
+    s30 += wuu * u, s21 += wuu * v, s12 += wvv * u, s03 += wvv * v;
+    s40 += wuu * uu, s31 += wuu * uv, s22 += wuu * vv, s13 += wvv * uv, s04 += wvv * vv;
+    f00 += w * f, f10 += wu * f, f01 += wv * f, f20 += wuu * f, f11 += wuv * f, f02 += wvv * f;
+  }
+  const double uu = sum_of(s20), uv = sum_of(s11), vv = sum_of(s02), uuv = sum_of(s21),
+               uvv = sum_of(s12), uuvv = sum_of(s22), uuuv = sum_of(s31), uvvv = sum_of(s13);
+  return {{{sum_of(s40), uuuv, uuvv, sum_of(s30), uuv, uu, sum_of(f20)},
+           {0, uuvv, uvvv, uuv, uvv, uv, sum_of(f11)},
+           {0, 0, sum_of(s04), uvv, sum_of(s03), vv, sum_of(f02)},
+           {0, 0, 0, uu, uv, sum_of(s10), sum_of(f10)},
+           {0, 0, 0, 0, vv, sum_of(s01), sum_of(f01)},
+           {0, 0, 0, 0, 0, sum_of(s00), sum_of(f00)}}};
+}
+
+// The height and its slopes along u and v at the foot of the point, in radii.
+struct Sheet {
+  double height = 0, along_u = 0, along_v = 0;
+  bool found = false;
+};
+
+// Golub and Van Loan 2013, algorithm 4.1.2 (LDL'), the right side carried along.
+Sheet solve(Equations& rows) {
+  for (std::size_t k = 0; k < k_terms; ++k) {
+    const double first = rows[k][k];
+    if (k + 1 == k_terms) break;
+    const double inverse = 1 / first;
+    for (std::size_t r = k + 1; r < k_terms; ++r) {
+      const double part = rows[k][r] * inverse;
+      const double least = k_pivot_least * rows[r][r];
+      for (std::size_t c = r; c <= k_terms; ++c) rows[r][c] -= part * rows[k][c];
+      if (!(rows[r][r] > least)) return {};
+    }
+  }
+  Sheet out;
+  out.height = rows[5][6] / rows[5][5];
+  out.along_v = (rows[4][6] - rows[4][5] * out.height) / rows[4][4];
+  out.along_u = (rows[3][6] - rows[3][5] * out.height - rows[3][4] * out.along_v) / rows[3][3];
+  out.found = std::isfinite(out.height) && std::isfinite(out.along_u + out.along_v);
+  return out;
+}
+
+Vector3 turned_up(const Vector3& n) {
+  const double first = n.z() != 0 ? n.z() : (n.y() != 0 ? n.y() : n.x());
+  return first < 0 ? Vector3(-n) : n;
+}
+
+}  // namespace
+
+SurfacePoint local_surface(const Neighbours& near, float radius_m) noexcept {
+  for (int i = near.count; i < near.count + k_four_spare; ++i)
+    near.x[i] = near.y[i] = near.z[i] = 0;
+  const FittedPlane plane = fit_plane(plane_sums(near));
+  const auto [u, v] = directions_across(plane.normal);
+  const Frame frame{u, v, plane.normal, plane.mean.dot(plane.normal)};
+  SurfacePoint out;
+  out.offset_m = frame.height * frame.normal;
+  out.normal = turned_up(frame.normal);
+  if (near.count < k_sheet_neighbours_min) return out;
+  Equations equations = sheet_equations(near, frame, radius_m);
+  const Sheet sheet = solve(equations);
+  const double radius = static_cast<double>(radius_m);
+  const double height = frame.height + sheet.height * radius;
+  if (!sheet.found || !(std::abs(height) <= radius)) return out;
+  out.offset_m = height * frame.normal;
+  const Vector3 across = frame.normal - sheet.along_u * u - sheet.along_v * v;
+  out.normal = turned_up(across / std::sqrt(across.squaredNorm()));
+  out.curved = true;
+  return out;
+}
+
+}  // namespace glint

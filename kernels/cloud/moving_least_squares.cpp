@@ -1,0 +1,110 @@
+#include "kernels/cloud/moving_least_squares.hpp"
+
+#include <cmath>
+
+namespace glint {
+
+Reason MovingLeastSquares::prepare(const MovingLeastSquaresSettings& settings, int points,
+                                   Arena& arena) noexcept {
+  prepared_ = false;
+  if (!(settings.radius_m > 0 && std::isfinite(1 / settings.radius_m)) ||
+      settings.candidates_max < 1 || settings.candidates_max > k_cloud_points_max) {
+    return Reason::out_of_range;
+  }
+  settings_ = settings;
+  const Reason reason = grid_.prepare(points, arena);
+  if (reason != Reason::none) return reason;
+  for (Column<float>* column : {&x_, &y_, &z_, &near_x_, &near_y_, &near_z_}) {
+    if (!column->reserve(settings.candidates_max + k_four_spare, arena)) {
+      return Reason::not_prepared;
+    }
+  }
+  near_ = {near_x_.data(), near_y_.data(), near_z_.data(), 0};
+  prepared_ = true;
+  return Reason::none;
+}
+
+void MovingLeastSquares::begin(const PointCloud& points) noexcept {
+  if (!prepared_) return;
+  grid_.begin(points, settings_.radius_m);
+  sweep_.begin();
+  at_ = 0;
+  cell_ = -1;
+  dropped_ = lonely_ = flat_ = cut_ = 0;
+}
+
+// All points of a cell have the same candidates: they are brought together once.
+void MovingLeastSquares::gather_candidates(int cell) noexcept {
+  NeighbourSweep::Rows rows;
+  sweep_.rows_around(grid_, cell, rows);
+  candidates_ = 0;
+  cell_cut_ = false;
+  for (const NeighbourSweep::Row& row : rows) {
+    const int room = settings_.candidates_max - candidates_;
+    const int taken = std::min(row.end - row.begin, room);
+    cell_cut_ = cell_cut_ || taken < row.end - row.begin;
+    std::copy_n(grid_.x() + row.begin, taken, x_.data() + candidates_);
+    std::copy_n(grid_.y() + row.begin, taken, y_.data() + candidates_);
+    std::copy_n(grid_.z() + row.begin, taken, z_.data() + candidates_);
+    candidates_ += taken;
+  }
+}
+
+// Every candidate is written, and the next one over it where it is too far.
+void MovingLeastSquares::gather_neighbours(int point) noexcept {
+  const float x = grid_.x()[point], y = grid_.y()[point], z = grid_.z()[point];
+  const float limit = settings_.radius_m * settings_.radius_m;
+  int near = 0;
+  for (int i = 0; i < candidates_; ++i) {
+    const float dx = x_[i] - x, dy = y_[i] - y, dz = z_[i] - z;
+    near_.x[near] = dx, near_.y[near] = dy, near_.z[near] = dz;
+    near += (dx * dx + dy * dy) + dz * dz <= limit ? 1 : 0;
+  }
+  near_.count = near;
+}
+
+void MovingLeastSquares::smooth(int point, PointCloud& smoothed) noexcept {
+  gather_neighbours(point);
+  cut_ += cell_cut_ ? 1 : 0;
+  if (near_.count < k_plane_neighbours_min) {
+    ++lonely_;
+    return;
+  }
+  const SurfacePoint surface = local_surface(near_, settings_.radius_m);
+  flat_ += surface.curved ? 0 : 1;
+  const auto moved = [](float from, double by) {
+    return static_cast<float>(static_cast<double>(from) + by);
+  };
+  const int at = smoothed.count;
+  if (!smoothed.add(moved(grid_.x()[point], surface.offset_m.x()),
+                    moved(grid_.y()[point], surface.offset_m.y()),
+                    moved(grid_.z()[point], surface.offset_m.z()))) {
+    ++dropped_;
+    return;
+  }
+  smoothed.normal_x[at] = static_cast<float>(surface.normal.x());
+  smoothed.normal_y[at] = static_cast<float>(surface.normal.y());
+  smoothed.normal_z[at] = static_cast<float>(surface.normal.z());
+}
+
+bool MovingLeastSquares::step(int most, PointCloud& smoothed) noexcept {
+  if (!prepared_) return true;
+  if (!grid_.sorted()) {
+    grid_.sort(most);
+    return grid_.sorted() && grid_.count() == 0;
+  }
+  const int end = std::min(grid_.count(), at_ + std::max(most, 1));
+  for (; at_ < end; ++at_) {
+    if (at_ == grid_.first_point(cell_ + 1)) gather_candidates(++cell_);
+    smooth(at_, smoothed);
+  }
+  return at_ == grid_.count();
+}
+
+Reason MovingLeastSquares::reason() const noexcept {
+  if (!prepared_) return Reason::not_prepared;
+  if (dropped() > 0) return Reason::cloud_full;
+  return cut_ > 0 ? Reason::search_full : Reason::none;
+}
+
+}  // namespace glint

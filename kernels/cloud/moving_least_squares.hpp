@@ -1,0 +1,71 @@
+// Smooths a surface's points: each is moved onto a curved sheet through its neighbours.
+//
+// What:     local_surface.hpp for every point of a cloud, over all points within radius_m of it.
+//           What comes out is sorted by the cells of a grid and has normals.
+// Cost:     sorting (neighbour_grid.hpp); for each point at most candidates_max distances, and what
+//           local_surface takes for those that are near: some 80 and 30 at voxels of a third of the
+//           radius.
+// Worst:    more than candidates_max points in the nine rows of cells around a point: the point's
+//           own row counts first, then the others in their order, and the cell is counted. A point
+//           with fewer than k_plane_neighbours_min neighbours, itself included, is left out.
+// Accuracy: order 2 leaves the bias of a curved surface below 0.6 mm at a radius of curvature of
+//           50 mm (moving_least_squares_accuracy_test.cpp).
+// Source:   Alexa et al. 2003, IEEE Transactions on Visualization and Computer Graphics 9(1).
+#pragma once
+
+#include "kernels/cloud/local_surface.hpp"
+#include "kernels/cloud/neighbour_grid.hpp"
+
+namespace glint {
+
+struct MovingLeastSquaresSettings {
+  float radius_m = 0.03f;
+  int candidates_max = 4096;
+};
+
+class MovingLeastSquares {
+ public:
+  // What prepare() takes of an arena.
+  [[nodiscard]] static constexpr std::size_t bytes(const MovingLeastSquaresSettings& settings,
+                                                   int points) noexcept {
+    return NeighbourGrid::bytes(points) +
+           6 * Column<float>::bytes(settings.candidates_max + k_four_spare);
+  }
+  // Reason: none; out_of_range (a setting, points); not_prepared (the arena has not enough left).
+  [[nodiscard]] Reason prepare(const MovingLeastSquaresSettings& settings, int points,
+                               Arena& arena) noexcept;
+
+  // Begins with this cloud, which must stay as it is until step() says true.
+  void begin(const PointCloud& points) noexcept GLINT_NONBLOCKING;
+  // Goes on for at most `most` points, appending each on its surface. True when all are there.
+  [[nodiscard]] bool step(int most, PointCloud& smoothed) noexcept GLINT_NONBLOCKING;
+
+  // Points left out: `smoothed` or the grid was full; beyond the grid; with too few neighbours.
+  [[nodiscard]] int dropped() const noexcept { return dropped_ + grid_.dropped(); }
+  [[nodiscard]] int out_of_range() const noexcept { return grid_.out_of_range(); }
+  [[nodiscard]] int lonely() const noexcept { return lonely_; }
+  // Points on a plane, for no sheet would do; points whose candidates were not all looked at.
+  [[nodiscard]] int flat() const noexcept { return flat_; }
+  [[nodiscard]] int cut() const noexcept { return cut_; }
+  // none; cloud_full; search_full (some cut); not_prepared.
+  [[nodiscard]] Reason reason() const noexcept;
+
+ private:
+  void gather_candidates(int cell) noexcept;
+  void gather_neighbours(int point) noexcept;
+  void smooth(int point, PointCloud& smoothed) noexcept;
+
+  MovingLeastSquaresSettings settings_;
+  NeighbourGrid grid_;
+  NeighbourSweep sweep_;
+  Column<float> x_, y_, z_;                 // all candidates of one cell
+  Column<float> near_x_, near_y_, near_z_;  // neighbours of one point, relative to it
+  Neighbours near_;
+  bool prepared_ = false;
+  int candidates_ = 0;
+  bool cell_cut_ = false;
+  int at_ = 0, cell_ = -1;
+  int dropped_ = 0, lonely_ = 0, flat_ = 0, cut_ = 0;
+};
+
+}  // namespace glint

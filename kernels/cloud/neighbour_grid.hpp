@@ -1,0 +1,102 @@
+// Points sorted by the cells of a grid, so that those near a point lie in a few short rows.
+//
+// What:     cells as wide as the radius of the search; points sorted by cell, x fastest, so that
+//           three cells along x are one range of the sorted columns, and nine ranges hold every
+//           point within the radius. NeighbourSweep finds them for one cell after another.
+// Cost:     four passes over the points to sort them, whatever they are; for a cell 18 searches of
+//           at most k_row_search_max steps, usually one or two, for cells come in rising order.
+// Worst:    points beyond the grid (k_grid_cells_half cells from the origin along an axis) or not
+//           finite are counted and left out. Full: the cloud's first points are kept.
+// Accuracy: exact: coordinates are copied; equal cells keep the cloud's order.
+// Source:   counting sort by digits: Knuth, "The Art of Computer Programming", vol. 3, section
+//           5.2.5, algorithm R.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "kernels/cloud/four_floats.hpp"
+#include "kernels/cloud/point_cloud.hpp"
+#include "kernels/nonblocking.hpp"
+
+namespace glint {
+
+inline constexpr int k_grid_axis_bits = 10;
+// One cell at each end stays empty, so that a row never runs into the next.
+inline constexpr int k_grid_cells_half = (1 << (k_grid_axis_bits - 1)) - 1;
+inline constexpr int k_cell_rows = 9;
+inline constexpr int k_row_search_max = 33;  // 8 steps one by one, then 25 halvings
+
+class NeighbourGrid {
+  struct Keyed {
+    std::uint32_t key;
+    std::int32_t place;
+  };
+
+ public:
+  [[nodiscard]] static constexpr std::size_t bytes(int points) noexcept {
+    return 2 * Column<Keyed>::bytes(points) + 3 * Column<float>::bytes(points + k_four_spare) +
+           3 * Column<std::int32_t>::bytes(points + 1);
+  }
+  // Reason: none; out_of_range (points); not_prepared (the arena has less than bytes(points) left).
+  [[nodiscard]] Reason prepare(int points, Arena& arena) noexcept;
+
+  // Begins to sort this cloud, which must stay as it is until sorted() says true.
+  void begin(const PointCloud& points, float cell_m) noexcept GLINT_NONBLOCKING;
+  // Goes on for at most `most` points.
+  void sort(int most) noexcept GLINT_NONBLOCKING;
+  [[nodiscard]] bool sorted() const noexcept { return phase_ == 5; }
+
+  [[nodiscard]] int count() const noexcept { return count_; }
+  [[nodiscard]] int cells() const noexcept { return cells_; }
+  // Points not in the grid: beyond it or not finite; and beyond its capacity.
+  [[nodiscard]] int out_of_range() const noexcept { return out_of_range_; }
+  [[nodiscard]] int dropped() const noexcept { return dropped_; }
+
+  // Sorted columns, readable k_four_spare behind the end, and each point's place in the cloud.
+  [[nodiscard]] const float* x() const noexcept { return x_.data(); }
+  [[nodiscard]] const float* y() const noexcept { return y_.data(); }
+  [[nodiscard]] const float* z() const noexcept { return z_.data(); }
+  [[nodiscard]] int place_in_cloud(int i) const noexcept { return place_[i]; }
+  // The cell's first point; that of cells() is the number of points.
+  [[nodiscard]] int first_point(int cell) const noexcept { return first_[cell]; }
+  [[nodiscard]] std::uint32_t key(int cell) const noexcept { return cell_key_[cell]; }
+
+  static constexpr std::uint32_t k_step_y = 1u << k_grid_axis_bits;
+  static constexpr std::uint32_t k_step_z = 1u << (2 * k_grid_axis_bits);
+
+ private:
+  void key_points(int end) noexcept;
+  void move_points(int end) noexcept;
+  void copy_points(int end) noexcept;
+  void next_phase() noexcept;
+
+  static constexpr int k_digits = 3;
+  const PointCloud* cloud_ = nullptr;
+  float inverse_ = 0;
+  int capacity_ = 0, count_ = 0, cells_ = 0, out_of_range_ = 0, dropped_ = 0;
+  int phase_ = 0, at_ = 0;  // 0: keys; 1 to 3: a digit each; 4: columns and cells; 5: done
+  std::array<std::array<std::int32_t, 1 << k_grid_axis_bits>, k_digits> digits_{};
+  Column<Keyed> keyed_, spare_;
+  Column<float> x_, y_, z_;
+  Column<std::int32_t> place_, first_;
+  Column<std::uint32_t> cell_key_;
+};
+
+// The ranges of points around one cell, then around another behind it. Row 0 is the cell's own.
+class NeighbourSweep {
+ public:
+  struct Row {
+    int begin = 0, end = 0;  // sorted points
+  };
+  using Rows = std::array<Row, k_cell_rows>;
+
+  void begin() noexcept { cells_begin_ = cells_end_ = {}; }
+  // Cells must not fall from call to call.
+  void rows_around(const NeighbourGrid& grid, int cell, Rows& rows) noexcept GLINT_NONBLOCKING;
+
+ private:
+  std::array<int, k_cell_rows> cells_begin_{}, cells_end_{};
+};
+
+}  // namespace glint

@@ -1,0 +1,69 @@
+// The plane through points by least squares, from their sums.
+//
+// What:     the normal is the eigenvector of the points' covariance with the smallest eigenvalue.
+// Cost:     the same for every sum: 0.1 us.
+// Worst:    points on a line or in one place: a plane through them, and `spread` says so.
+// Accuracy: coordinates should be taken from a point near by: squares of them are subtracted.
+// Source:   Pearson 1901, Philosophical Magazine 2(11), p. 559.
+#pragma once
+
+#include "kernels/lone_eigenvector.hpp"
+
+namespace glint {
+
+struct PlaneSums {
+  double n = 0, x = 0, y = 0, z = 0, xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
+
+  void add(double px, double py, double pz) {
+    n += 1;
+    x += px, y += py, z += pz;
+    xx += px * px, yy += py * py, zz += pz * pz;
+    xy += px * py, xz += px * pz, yz += py * pz;
+  }
+};
+
+struct FittedPlane {
+  Vector3 mean = Vector3::Zero();
+  Vector3 normal = Vector3::UnitZ();
+  double variance = 0;  // along the normal
+  double spread = 0;    // the smaller of the two variances across it
+};
+
+// n at least 1.
+[[nodiscard]] inline FittedPlane fit_plane(const PlaneSums& s) {
+  const double part = 1 / s.n;
+  FittedPlane out;
+  out.mean = Vector3(s.x * part, s.y * part, s.z * part);
+  const Vector3& m = out.mean;
+  const SymmetricMatrix c{s.xx * part - m.x() * m.x(), s.yy * part - m.y() * m.y(),
+                          s.zz * part - m.z() * m.z(), s.xy * part - m.x() * m.y(),
+                          s.xz * part - m.x() * m.z(), s.yz * part - m.y() * m.z()};
+  const auto times = [&c](const Vector3& v) {
+    return Vector3(c.xx * v.x() + c.xy * v.y() + c.xz * v.z(),
+                   c.xy * v.x() + c.yy * v.y() + c.yz * v.z(),
+                   c.xz * v.x() + c.yz * v.y() + c.zz * v.z());
+  };
+  const LoneVector lone = lone_eigenvector(c);
+  // The two other vectors lie across the lone one.
+  const auto [p, q] = directions_across(lone.v);
+  const Vector3 cp = times(p), cq = times(q);
+  const double middle = 0.5 * (p.dot(cp) + q.dot(cq));
+  const double half = 0.5 * (p.dot(cp) - q.dot(cq)), mixed = p.dot(cq);
+  const double apart = std::sqrt(half * half + mixed * mixed);
+  if (!lone.largest) {
+    out.normal = lone.v;
+    out.variance = lone.v.dot(times(lone.v));
+    out.spread = middle - apart;
+    return out;
+  }
+  // The larger column of what is left when the larger eigenvalue is taken off the diagonal.
+  const double along_p = half < 0 ? apart - half : mixed;
+  const double along_q = half < 0 ? -mixed : -(apart + half);
+  const double length = std::sqrt(along_p * along_p + along_q * along_q);
+  out.normal = length > 0 ? Vector3((along_p * p + along_q * q) / length) : q;
+  out.variance = middle - apart;
+  out.spread = middle + apart;
+  return out;
+}
+
+}  // namespace glint

@@ -1,0 +1,113 @@
+// The large flat faces of a cloud with normals, the largest first.
+//
+// What:     of the points that are on no plane yet a sample is drawn; planes through three of its
+//           points are tried, those whose three normals agree are scored by how much of the sample
+//           lies within threshold_m *and* has the plane's normal; the best one is fitted to all
+//           points that do so, again and again, and takes them. Until planes_max, or a plane has
+//           fewer than points_min.
+// Cost:     for each plane 2 + k_plane_fits passes over the points left, tries (three points each)
+//           and at most scored_max passes over the sample.
+// Worst:    a cloud without planes: one search, for nothing. A plane that holds the part p of the
+//           points is missed by all tries with probability (1 - p^3)^tries: 2 % at p = 0.1.
+// Accuracy: least squares of the points within the threshold; sums in double.
+// Source:   Fischler and Bolles 1981, Communications of the ACM 24(6) (the tries); normals that
+//           must agree: Schnabel, Wahl and Klein 2007, Computer Graphics Forum 26(2), section 4.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "kernels/cloud/plane_sums.hpp"
+#include "kernels/cloud/point_cloud.hpp"
+#include "kernels/nonblocking.hpp"
+
+namespace glint {
+
+inline constexpr int k_planes_max = 32;
+inline constexpr int k_plane_sample = 2048;
+inline constexpr int k_plane_fits = 5;
+
+struct PlaneSettings {
+  float threshold_m = 0.01f;
+  float normal_cosine_min = 0.93969262f;  // of 20 degrees
+  int planes_max = 8;
+  int points_min = 500;
+  int tries = 4096;
+  int scored_max = 256;
+  std::uint64_t seed = 1;
+};
+
+// normal . p = offset_m
+struct Plane {
+  Vector3 normal = Vector3::UnitZ();
+  double offset_m = 0;
+  double rms_m = 0;  // of its points, before they are moved
+  int points = 0;
+};
+
+class PlaneSearch {
+ public:
+  static constexpr std::uint8_t k_no_plane = 0xFF;
+
+  // What prepare() takes of an arena.
+  [[nodiscard]] static constexpr std::size_t bytes(int points) noexcept {
+    return Column<std::int32_t>::bytes(points) + Column<std::uint8_t>::bytes(points) +
+           6 * Column<float>::bytes(k_plane_sample);
+  }
+  // Reason: none; out_of_range (a setting, points); not_prepared (the arena has not enough left).
+  [[nodiscard]] Reason prepare(const PlaneSettings& settings, int points, Arena& arena) noexcept;
+
+  // Begins with this cloud, which must stay as it is until step() says true. Of a cloud beyond the
+  // capacity the first points are looked at. Points without a normal are on no plane.
+  void begin(const PointCloud& points) noexcept GLINT_NONBLOCKING;
+  // Goes on for at most `most` points, tries or scored samples. True when no plane is left.
+  [[nodiscard]] bool step(int most) noexcept GLINT_NONBLOCKING;
+
+  [[nodiscard]] int count() const noexcept { return count_; }
+  [[nodiscard]] const Plane& plane(int i) const noexcept {
+    return planes_[static_cast<std::size_t>(i)];
+  }
+  // The plane that a point is on, or k_no_plane.
+  [[nodiscard]] std::uint8_t plane_of(int point) const noexcept { return plane_of_[point]; }
+  // none; cloud_full (points not looked at); not_prepared.
+  [[nodiscard]] Reason reason() const noexcept;
+
+ private:
+  enum class Phase : std::uint8_t { list, sample, tries, fit, take, done };
+  struct Candidate {
+    float nx = 0, ny = 0, nz = 1, offset = 0;
+  };
+  void list_free(int end) noexcept;
+  void draw_sample(int end) noexcept;
+  void try_planes(int most) noexcept;
+  [[nodiscard]] bool candidate_of(int attempt, Candidate& out) const noexcept;
+  [[nodiscard]] int score(const Candidate& candidate) const noexcept;
+  [[nodiscard]] bool is_on(const Candidate& candidate, int point) const noexcept;
+  void add_to_fit(int end) noexcept;
+  void finish_fit() noexcept;
+  void take_points(int end) noexcept;
+  void next_phase() noexcept;
+  [[nodiscard]] std::uint64_t random(std::uint64_t counter) const noexcept;
+
+  PlaneSettings settings_;
+  const PointCloud* cloud_ = nullptr;
+  bool prepared_ = false;
+  Phase phase_ = Phase::done;
+  int capacity_ = 0, points_ = 0, at_ = 0;
+  int free_count_ = 0, sample_count_ = 0, scored_ = 0, best_score_ = 0, fits_ = 0;
+  Candidate best_;
+  PlaneSums sums_;
+  Vector3 around_ = Vector3::Zero();  // sums are of coordinates from here
+  Column<std::int32_t> free_;
+  Column<std::uint8_t> plane_of_;
+  Column<float> x_, y_, z_, nx_, ny_, nz_;  // the sample
+  std::array<Plane, k_planes_max> planes_;
+  int count_ = 0;
+};
+
+// Moves points [from, from + most) that are on a plane onto it, along its normal, which becomes
+// theirs; gives the first point not yet looked at. No point moves further than the threshold.
+int snap_to_planes(const PlaneSearch& planes, int from, int most,
+                   PointCloud& points) noexcept GLINT_NONBLOCKING;
+
+}  // namespace glint

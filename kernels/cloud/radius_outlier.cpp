@@ -1,0 +1,75 @@
+#include "kernels/cloud/radius_outlier.hpp"
+
+#include <cmath>
+
+namespace glint {
+
+Reason RadiusOutlier::prepare(const RadiusOutlierSettings& settings, int points,
+                              Arena& arena) noexcept {
+  prepared_ = false;
+  if (!(settings.radius_m > 0 && std::isfinite(1 / settings.radius_m)) ||
+      settings.neighbours_min < 0 || settings.candidates_max < 1) {
+    return Reason::out_of_range;
+  }
+  settings_ = settings;
+  const Reason reason = grid_.prepare(points, arena);
+  prepared_ = reason == Reason::none;
+  return reason;
+}
+
+void RadiusOutlier::begin(const PointCloud& points) noexcept {
+  if (!prepared_) return;
+  grid_.begin(points, settings_.radius_m);
+  sweep_.begin();
+  at_ = 0;
+  cell_ = -1;
+  dropped_ = undecided_ = 0;
+}
+
+// Whether enough others lie near. The point itself is among those counted.
+bool RadiusOutlier::has_neighbours(int point) noexcept {
+  const float* const xs = grid_.x();
+  const float* const ys = grid_.y();
+  const float* const zs = grid_.z();
+  const FourFloats x = all_four(xs[point]), y = all_four(ys[point]), z = all_four(zs[point]);
+  const FourFloats limit = all_four(settings_.radius_m * settings_.radius_m);
+  int left = settings_.candidates_max, near = 0;
+  for (const NeighbourSweep::Row& row : rows_) {
+    for (int i = row.begin; i < row.end; i += 4) {
+      if (left <= 0) {
+        ++undecided_;
+        return false;
+      }
+      const FourFloats dx = load_four(xs + i) - x, dy = load_four(ys + i) - y,
+                       dz = load_four(zs + i) - z;
+      const FourMasks within = (dx * dx + dy * dy) + dz * dz <= limit;
+      near += count_of(within & first_lanes(std::min(row.end - i, left)));
+      if (near > settings_.neighbours_min) return true;
+      left -= 4;
+    }
+  }
+  return false;
+}
+
+bool RadiusOutlier::step(int most, PointCloud& kept) noexcept {
+  if (!prepared_) return true;
+  if (!grid_.sorted()) {
+    grid_.sort(most);
+    return grid_.sorted() && grid_.count() == 0;
+  }
+  const int end = std::min(grid_.count(), at_ + std::max(most, 1));
+  for (; at_ < end; ++at_) {
+    if (at_ == grid_.first_point(cell_ + 1)) sweep_.rows_around(grid_, ++cell_, rows_);
+    if (!has_neighbours(at_)) continue;
+    if (!kept.add(grid_.x()[at_], grid_.y()[at_], grid_.z()[at_])) ++dropped_;
+  }
+  return at_ == grid_.count();
+}
+
+Reason RadiusOutlier::reason() const noexcept {
+  if (!prepared_) return Reason::not_prepared;
+  if (dropped() > 0) return Reason::cloud_full;
+  return undecided_ > 0 ? Reason::search_full : Reason::none;
+}
+
+}  // namespace glint

@@ -1,0 +1,58 @@
+// Drops points that hang in the air: those with too few others near them.
+//
+// What:     a point stays if at least neighbours_min others lie within radius_m of it. Those that
+//           stay come out sorted by the cells of a grid.
+// Cost:     sorting (neighbour_grid.hpp), then at most candidates_max distances for each point;
+//           usually 16 to 32, for the search ends with the last neighbour that is needed.
+// Worst:    many points within two radii of a point, but few within one. A point whose candidates
+//           are used up is dropped and counted: nothing shows that it is one of many. At voxels of
+//           a fifth of the radius there are at most 27 x 125 candidates.
+// Accuracy: exact for float coordinates, squares of distances being rounded once an operation.
+// Source:   Rusu and Cousins 2011, "3D is here: Point Cloud Library (PCL)" (the filter); a search
+//           by cells: Bentley and Friedman 1979, Computing Surveys 11(4), section 2.3.
+#pragma once
+
+#include "kernels/cloud/neighbour_grid.hpp"
+
+namespace glint {
+
+struct RadiusOutlierSettings {
+  float radius_m = 0.05f;
+  int neighbours_min = 9;
+  int candidates_max = 4096;
+};
+
+class RadiusOutlier {
+ public:
+  [[nodiscard]] static constexpr std::size_t bytes(int points) noexcept {
+    return NeighbourGrid::bytes(points);
+  }
+  // Reason: none; out_of_range (a setting, points); not_prepared (the arena has not enough left).
+  [[nodiscard]] Reason prepare(const RadiusOutlierSettings& settings, int points,
+                               Arena& arena) noexcept;
+
+  // Begins with this cloud, which must stay as it is until step() says true.
+  void begin(const PointCloud& points) noexcept GLINT_NONBLOCKING;
+  // Goes on for at most `most` points, appending those that stay. True when all are judged.
+  [[nodiscard]] bool step(int most, PointCloud& kept) noexcept GLINT_NONBLOCKING;
+
+  // Points left out because `kept` was full, or the grid; beyond the grid; undecided.
+  [[nodiscard]] int dropped() const noexcept { return dropped_ + grid_.dropped(); }
+  [[nodiscard]] int out_of_range() const noexcept { return grid_.out_of_range(); }
+  [[nodiscard]] int undecided() const noexcept { return undecided_; }
+  // none; cloud_full; search_full (some undecided); not_prepared.
+  [[nodiscard]] Reason reason() const noexcept;
+
+ private:
+  [[nodiscard]] bool has_neighbours(int point) noexcept;
+
+  RadiusOutlierSettings settings_;
+  NeighbourGrid grid_;
+  NeighbourSweep sweep_;
+  NeighbourSweep::Rows rows_{};
+  bool prepared_ = false;
+  int at_ = 0, cell_ = -1;
+  int dropped_ = 0, undecided_ = 0;
+};
+
+}  // namespace glint
