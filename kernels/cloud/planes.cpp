@@ -40,7 +40,6 @@ void PlaneSearch::begin(const PointCloud& points) noexcept {
   cloud_ = &points;
   points_ = std::min(points.count, capacity_);
   count_ = at_ = free_count_ = 0;
-  for (int i = 0; i < points_; ++i) plane_of_[i] = k_no_plane;
   phase_ = settings_.planes_max > 0 ? Phase::list : Phase::done;
 }
 
@@ -116,6 +115,7 @@ void PlaneSearch::next_phase() noexcept {
 
 void PlaneSearch::list_free(int end) noexcept {
   for (; at_ < end; ++at_) {
+    if (count_ == 0) plane_of_[at_] = k_no_plane;
     const bool has_normal =
         cloud_->normal_x[at_] != 0 || cloud_->normal_y[at_] != 0 || cloud_->normal_z[at_] != 0;
     free_[free_count_] = at_;

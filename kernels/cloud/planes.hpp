@@ -68,7 +68,9 @@ class PlaneSearch {
     return planes_[static_cast<std::size_t>(i)];
   }
   // The plane that a point is on, or k_no_plane.
-  [[nodiscard]] std::uint8_t plane_of(int point) const noexcept { return plane_of_[point]; }
+  [[nodiscard]] std::uint8_t plane_of(int point) const noexcept {
+    return point < points_ ? plane_of_[point] : k_no_plane;
+  }
   // none; cloud_full (points not looked at); not_prepared.
   [[nodiscard]] Reason reason() const noexcept;
 

@@ -1,0 +1,22 @@
+// Glint's side of the cloud benchmark.
+#pragma once
+
+#include <memory>
+
+#include "cloud_steps.hpp"
+
+namespace glint::bench {
+
+// Memory once, for clouds up to this many points.
+class CloudChain {
+ public:
+  CloudChain(const CloudStepSettings& settings, int points);
+  ~CloudChain();
+  void run(const float* xyz, int count, CloudStepResult& result);
+
+ private:
+  struct Kernels;
+  std::unique_ptr<Kernels> kernels_;
+};
+
+}  // namespace glint::bench
