@@ -56,7 +56,6 @@ CloudChain::CloudChain(const CloudStepSettings& s, int points)
   smooth.radius_m = s.smooth_radius_m;
   PlaneSettings plane;
   plane.threshold_m = s.plane_threshold_m;
-  plane.tries = s.plane_tries;
   plane.planes_max = 1;
   RadiusOutlierSettings outlier;
   outlier.radius_m = s.outlier_radius_m;

@@ -85,7 +85,6 @@ extern "C" __attribute__((visibility("default"))) void glint_bench_pcl(
   pcl::SACSegmentation<pcl::PointXYZ> planes;
   planes.setModelType(pcl::SACMODEL_PLANE);
   planes.setMethodType(pcl::SAC_RANSAC);
-  planes.setMaxIterations(settings.plane_tries);
   planes.setDistanceThreshold(static_cast<double>(settings.plane_threshold_m));
   planes.setOptimizeCoefficients(true);
   planes.setInputCloud(flat);

@@ -6,7 +6,7 @@ extern "C" {
 
 struct CloudStepSettings {
   float voxel_m, outlier_radius_m, smooth_radius_m, plane_threshold_m;
-  int neighbours_min, plane_tries;
+  int neighbours_min;
 };
 
 enum { k_step_voxels, k_step_outliers, k_step_smooth, k_step_planes, k_cloud_steps };
