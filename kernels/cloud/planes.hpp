@@ -2,7 +2,7 @@
 //
 // What:     of the points that are on no plane yet a sample is drawn; planes through three of its
 //           points are tried, those whose three normals agree are scored by how much of the sample
-//           lies within threshold_m *and* has the plane's normal; the best one is fitted to all
+//           lies within the threshold *and* has the plane's normal; the best one is fitted to all
 //           points that do so, again and again, and takes them. Until planes_max, or a plane has
 //           fewer than points_min.
 // Cost:     for each plane 2 + k_plane_fits passes over the points left, tries (three points each)
@@ -17,19 +17,17 @@
 #include <array>
 #include <cstdint>
 
+#include "kernels/cloud/plane_sample.hpp"
 #include "kernels/cloud/plane_sums.hpp"
-#include "kernels/cloud/point_cloud.hpp"
 #include "kernels/nonblocking.hpp"
 
 namespace glint {
 
 inline constexpr int k_planes_max = 32;
-inline constexpr int k_plane_sample = 2048;
 inline constexpr int k_plane_fits = 5;
 
 struct PlaneSettings {
-  float threshold_m = 0.01f;
-  float normal_cosine_min = 0.93969262f;  // of 20 degrees
+  PlaneGate gate;
   int planes_max = 8;
   int points_min = 500;
   int tries = 4096;
@@ -52,7 +50,7 @@ class PlaneSearch {
   // What prepare() takes of an arena.
   [[nodiscard]] static constexpr std::size_t bytes(int points) noexcept {
     return Column<std::int32_t>::bytes(points) + Column<std::uint8_t>::bytes(points) +
-           6 * Column<float>::bytes(k_plane_sample);
+           PlaneSample::bytes();
   }
   // Reason: none; out_of_range (a setting, points); not_prepared (the arena has not enough left).
   [[nodiscard]] Reason prepare(const PlaneSettings& settings, int points, Arena& arena) noexcept;
@@ -76,40 +74,29 @@ class PlaneSearch {
 
  private:
   enum class Phase : std::uint8_t { list, sample, tries, fit, take, done };
-  struct Candidate {
-    float nx = 0, ny = 0, nz = 1, offset = 0;
-  };
   void list_free(int end) noexcept;
   void draw_sample(int end) noexcept;
   void try_planes(int most) noexcept;
-  [[nodiscard]] bool candidate_of(int attempt, Candidate& out) const noexcept;
-  [[nodiscard]] int score(const Candidate& candidate) const noexcept;
-  [[nodiscard]] bool is_on(const Candidate& candidate, int point) const noexcept;
+  [[nodiscard]] bool is_on(const CandidatePlane& candidate, int point) const noexcept;
   void add_to_fit(int end) noexcept;
   void finish_fit() noexcept;
   void take_points(int end) noexcept;
   void next_phase() noexcept;
-  [[nodiscard]] std::uint64_t random(std::uint64_t counter) const noexcept;
 
   PlaneSettings settings_;
   const PointCloud* cloud_ = nullptr;
   bool prepared_ = false;
   Phase phase_ = Phase::done;
   int capacity_ = 0, points_ = 0, at_ = 0;
-  int free_count_ = 0, sample_count_ = 0, scored_ = 0, best_score_ = 0, fits_ = 0;
-  Candidate best_;
+  int free_count_ = 0, sample_size_ = 0, scored_ = 0, best_score_ = 0, fits_ = 0;
+  CandidatePlane best_;
   PlaneSums sums_;
   Vector3 around_ = Vector3::Zero();  // sums are of coordinates from here
   Column<std::int32_t> free_;
   Column<std::uint8_t> plane_of_;
-  Column<float> x_, y_, z_, nx_, ny_, nz_;  // the sample
+  PlaneSample sample_;
   std::array<Plane, k_planes_max> planes_;
   int count_ = 0;
 };
-
-// Moves points [from, from + most) that are on a plane onto it, along its normal, which becomes
-// theirs; gives the first point not yet looked at. No point moves further than the threshold.
-int snap_to_planes(const PlaneSearch& planes, int from, int most,
-                   PointCloud& points) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

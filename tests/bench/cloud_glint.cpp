@@ -8,6 +8,7 @@
 #include "kernels/cloud/moving_least_squares.hpp"
 #include "kernels/cloud/planes.hpp"
 #include "kernels/cloud/radius_outlier.hpp"
+#include "kernels/cloud/snap_to_planes.hpp"
 #include "kernels/cloud/voxel_grid.hpp"
 
 namespace glint::bench {
@@ -55,7 +56,7 @@ CloudChain::CloudChain(const CloudStepSettings& s, int points)
   MovingLeastSquaresSettings smooth;
   smooth.radius_m = s.smooth_radius_m;
   PlaneSettings plane;
-  plane.threshold_m = s.plane_threshold_m;
+  plane.gate.threshold_m = s.plane_threshold_m;
   plane.planes_max = 1;
   RadiusOutlierSettings outlier;
   outlier.radius_m = s.outlier_radius_m;

@@ -1,0 +1,87 @@
+#include "kernels/cloud/local_surface.hpp"
+
+#include "plain_surface.hpp"
+
+namespace glint {
+namespace {
+
+constexpr float k_radius = 0.03f;
+
+SurfacePoint surface_of(const std::vector<Point>& relative) {
+  std::array<std::vector<float>, 3> columns;
+  for (const Point& p : relative) {
+    for (std::size_t i = 0; i < 3; ++i) columns[i].push_back(p[i]);
+  }
+  // What lies behind the end is not to be taken for a neighbour.
+  for (auto& column : columns) column.resize(relative.size() + k_four_spare, 0.02f);
+  return local_surface(
+      {columns[0].data(), columns[1].data(), columns[2].data(), static_cast<int>(relative.size())},
+      k_radius);
+}
+
+std::vector<Point> noisy_patch(int count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<float> side(-0.021f, 0.021f), noise(-0.004f, 0.004f);
+  std::vector<Point> points{{0, 0, 0}};
+  while (static_cast<int>(points.size()) < count) {
+    const float x = side(random), y = side(random);
+    points.push_back({x, y, 0.3f * x + 5 * x * x - 4 * x * y + noise(random)});
+  }
+  return points;
+}
+
+TEST(LocalSurface, IsThatOfATextbookInDouble) {
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    const std::vector<Point> near = noisy_patch(12 + static_cast<int>(seed % 40), seed);
+    const SurfacePoint fast = surface_of(near);
+    const PlainSurface plain = plain_surface({0, 0, 0}, near, static_cast<double>(k_radius));
+    ASSERT_TRUE(fast.curved);
+    ASSERT_LT((fast.offset_m - plain.point).norm(), 2e-6) << seed;
+    ASSERT_GT(std::abs(fast.normal.dot(plain.normal)), 1 - 1e-7) << seed;
+    ASSERT_GE(fast.normal.z(), 0);
+  }
+}
+
+TEST(LocalSurface, LiesOnASheetOfOrderTwoThatAllNeighboursLieOn) {
+  std::vector<Point> near;
+  for (int i = -3; i <= 3; ++i) {
+    for (int j = -3; j <= 3; ++j) {
+      const float x = 0.005f * static_cast<float>(i), y = 0.005f * static_cast<float>(j);
+      near.push_back({x, y, 4 * x * x + 3 * y * y});
+    }
+  }
+  const SurfacePoint found = surface_of(near);
+  EXPECT_TRUE(found.curved);
+  EXPECT_LT(found.offset_m.norm(), 1e-7);
+  EXPECT_GT(found.normal.z(), 1 - 1e-9);
+}
+
+TEST(LocalSurface, IsThePlaneForFewNeighboursAndForThoseOnALineOrInOnePlace) {
+  const std::vector<Point> five{
+      {0, 0, 0.01f}, {0.01f, 0, 0}, {-0.01f, 0, 0}, {0, 0.01f, 0}, {0, -0.01f, 0}};
+  EXPECT_FALSE(surface_of(five).curved);
+  EXPECT_NEAR(surface_of(five).offset_m.z(), 0.002, 1e-8);
+  std::vector<Point> line;
+  for (int i = -5; i <= 5; ++i) line.push_back({0.002f * static_cast<float>(i), 0, 0});
+  EXPECT_FALSE(surface_of(line).curved);
+  EXPECT_LT(surface_of(line).offset_m.norm(), 1e-8);
+  const std::vector<Point> place(20, Point{0, 0, 0});
+  EXPECT_FALSE(surface_of(place).curved);
+  EXPECT_EQ(surface_of(place).offset_m.norm(), 0);
+  EXPECT_NEAR(surface_of(place).normal.norm(), 1, 1e-12);
+}
+
+TEST(LocalSurface, NeverCarriesAPointFurtherThanTheRadius) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<float> side(-0.017f, 0.017f);
+  for (int round = 0; round < 20'000; ++round) {
+    std::vector<Point> near{{0, 0, 0}};
+    for (int i = 0; i < 6; ++i) near.push_back({side(random), side(random), side(random)});
+    const SurfacePoint found = surface_of(near);
+    ASSERT_LE(found.offset_m.norm(), static_cast<double>(k_radius) * (1 + 1e-9));
+    ASSERT_NEAR(found.normal.norm(), 1, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace glint

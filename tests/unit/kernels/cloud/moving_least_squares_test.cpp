@@ -1,0 +1,134 @@
+#include "kernels/cloud/moving_least_squares.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "plain_surface.hpp"
+
+namespace glint {
+namespace {
+
+struct TestSmoothing {
+  explicit TestSmoothing(int points, MovingLeastSquaresSettings settings = {})
+      : memory(MovingLeastSquares::bytes(settings, points)) {
+    EXPECT_EQ(smoothing.prepare(settings, points, memory.arena()), Reason::none);
+  }
+  std::vector<Point> run(const std::vector<Point>& points, int slice = 1 << 20,
+                         int room = 1 << 16) {
+    const TestCloud cloud(points);
+    out = std::make_unique<TestCloud>(room);
+    smoothing.begin(cloud.points);
+    while (!smoothing.step(slice, out->points)) {
+    }
+    return out->all();
+  }
+  TestMemory memory;
+  MovingLeastSquares smoothing;
+  std::unique_ptr<TestCloud> out;
+};
+
+TEST(MovingLeastSquares, MovesEveryPointAsATextbookDoes) {
+  const std::vector<Point> points = sheet_points(40, 0.01f, 0.003f, 1);
+  TestSmoothing test(2'000);
+  const std::vector<Point> smoothed = test.run(points);
+  ASSERT_EQ(smoothed.size(), points.size());
+  std::vector<Vector3> expected;
+  for (const Point& p : points) {
+    std::vector<Point> near;
+    for (const Point& q : points) {
+      if (squared_distance(p, q) <= 0.03 * 0.03) near.push_back(q);
+    }
+    expected.push_back(plain_surface(p, near, 0.03).point);
+  }
+  // What comes out is in another order: each has one that is expected, and no two the same.
+  std::vector<bool> taken(expected.size());
+  for (const Point& p : smoothed) {
+    std::size_t best = 0;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      if ((expected[i] - vector_of(p)).norm() < (expected[best] - vector_of(p)).norm()) best = i;
+    }
+    ASSERT_LT((expected[best] - vector_of(p)).norm(), 5e-6);
+    ASSERT_FALSE(taken[best]);
+    taken[best] = true;
+  }
+}
+
+TEST(MovingLeastSquares, GivesTheSameBitsInSlices) {
+  const std::vector<Point> points = sheet_points(30, 0.01f, 0.003f, 2);
+  TestSmoothing whole(1'000), sliced(1'000);
+  EXPECT_EQ(whole.run(points), sliced.run(points, 11));
+  EXPECT_EQ(whole.smoothing.reason(), Reason::none);
+  for (int i = 0; i < whole.out->points.count; ++i) {
+    ASSERT_EQ(whole.out->points.normal_x[i], sliced.out->points.normal_x[i]);
+  }
+}
+
+TEST(MovingLeastSquares, HasUnitNormalsAcrossTheSurface) {
+  TestSmoothing test(1'000);
+  test.run(sheet_points(30, 0.01f, 0, 3));
+  const PointCloud& out = test.out->points;
+  for (int i = 0; i < out.count; ++i) {
+    const Vector3 normal = vector_of({out.normal_x[i], out.normal_y[i], out.normal_z[i]});
+    const double x = static_cast<double>(out.x[i]), y = static_cast<double>(out.y[i]);
+    const Vector3 truth = Vector3(0.5 * y - 1.6 * x, 0.5 * x - 0.1, 1).normalized();
+    ASSERT_NEAR(normal.norm(), 1, 1e-6);
+    ASSERT_GT(normal.dot(truth), 1 - 1e-4);
+  }
+}
+
+TEST(MovingLeastSquares, LeavesOutPointsWithFewerThanThreeNeighboursAndCountsThem) {
+  TestSmoothing test(100);
+  EXPECT_TRUE(test.run({{0, 0, 0}}).empty());
+  EXPECT_EQ(test.smoothing.lonely(), 1);
+  EXPECT_TRUE(test.run({{0, 0, 0}, {0.01f, 0, 0}, {1, 0, 0}}).empty());
+  EXPECT_EQ(test.smoothing.lonely(), 3);
+  EXPECT_EQ(test.run({{0, 0, 0}, {0.01f, 0, 0}, {0, 0.01f, 0}}).size(), 3u);
+  EXPECT_EQ(test.smoothing.flat(), 3);
+}
+
+TEST(MovingLeastSquares, GivesNothingOfNothingOrOfWhatIsNoNumberOrTooFarAway) {
+  TestSmoothing test(100);
+  TestCloud empty(1), out(1);
+  test.smoothing.begin(empty.points);
+  while (!test.smoothing.step(10, out.points)) {
+  }
+  EXPECT_EQ(out.points.count, 0);
+  EXPECT_TRUE(test.run(std::vector<Point>(30, Point{0, k_not_a_number, 0})).empty());
+  EXPECT_EQ(test.smoothing.out_of_range(), 30);
+  EXPECT_TRUE(test.run(std::vector<Point>(30, Point{0, 0, 1e30f})).empty());
+  EXPECT_EQ(test.smoothing.out_of_range(), 30);
+}
+
+TEST(MovingLeastSquares, LeavesCoincidentPointsWhereTheyAre) {
+  TestSmoothing test(100);
+  const std::vector<Point> place(30, Point{0.25f, 0.5f, -0.75f});
+  EXPECT_EQ(test.run(place), place);
+}
+
+TEST(MovingLeastSquares, SaysWhenThereIsNoRoomAndWhenCandidatesWereUsedUp) {
+  const std::vector<Point> points = sheet_points(20, 0.01f, 0.001f, 4);
+  TestSmoothing test(400);
+  const std::vector<Point> all = test.run(points);
+  EXPECT_EQ(test.run(points, 50, 100), std::vector<Point>(all.begin(), all.begin() + 100));
+  EXPECT_EQ(test.smoothing.dropped(), 300);
+  EXPECT_EQ(test.smoothing.reason(), Reason::cloud_full);
+  MovingLeastSquaresSettings few;
+  few.candidates_max = 40;
+  TestSmoothing cut(400, few);
+  EXPECT_EQ(cut.run(points).size(), 400u);
+  EXPECT_GT(cut.smoothing.cut(), 200);
+  EXPECT_EQ(cut.smoothing.reason(), Reason::search_full);
+}
+
+TEST(MovingLeastSquares, RefusesWhatItCannotWorkWith) {
+  TestMemory memory(MovingLeastSquares::bytes({}, 10));
+  MovingLeastSquares smoothing;
+  EXPECT_EQ(smoothing.prepare({0, 100}, 10, memory.arena()), Reason::out_of_range);
+  EXPECT_EQ(smoothing.prepare({0.03f, 0}, 10, memory.arena()), Reason::out_of_range);
+  EXPECT_EQ(smoothing.prepare({}, 0, memory.arena()), Reason::out_of_range);
+  EXPECT_EQ(smoothing.prepare({}, 10'000, memory.arena()), Reason::not_prepared);
+  EXPECT_EQ(smoothing.reason(), Reason::not_prepared);
+}
+
+}  // namespace
+}  // namespace glint

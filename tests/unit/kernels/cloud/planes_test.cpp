@@ -1,0 +1,217 @@
+#include "kernels/cloud/planes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "clouds.hpp"
+#include "kernels/cloud/snap_to_planes.hpp"
+
+namespace glint {
+namespace {
+
+struct Oriented {
+  Point point;
+  Point normal;
+};
+
+TestCloud cloud_of(const std::vector<Oriented>& points) {
+  TestCloud cloud(static_cast<int>(points.size()));
+  for (const Oriented& p : points) {
+    const int i = cloud.points.count;
+    EXPECT_TRUE(cloud.points.add(p.point[0], p.point[1], p.point[2]));
+    cloud.points.normal_x[i] = p.normal[0];
+    cloud.points.normal_y[i] = p.normal[1];
+    cloud.points.normal_z[i] = p.normal[2];
+  }
+  return cloud;
+}
+
+struct TestSearch {
+  explicit TestSearch(int points, PlaneSettings settings = {})
+      : memory(PlaneSearch::bytes(points)) {
+    EXPECT_EQ(search.prepare(settings, points, memory.arena()), Reason::none);
+  }
+  void run(const PointCloud& points, int slice = 1 << 20) {
+    search.begin(points);
+    while (!search.step(slice)) {
+    }
+  }
+  TestMemory memory;
+  PlaneSearch search;
+};
+
+// A floor of 6,000 points, a wall of 3,000, 1,500 here and there, and 400 on the floor's plane that
+// stand across it; 3 mm noise, normals a few degrees off and of either sign.
+std::vector<Oriented> room(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<float> side(-1, 1);
+  std::normal_distribution<float> noise(0, 0.003f), tilt(0, 0.05f);
+  std::vector<Oriented> out;
+  const auto sign = [&] { return random() % 2 == 0 ? 1.0f : -1.0f; };
+  const auto unit = [](float x, float y, float z) {
+    const float length = std::sqrt(x * x + y * y + z * z);
+    return Point{x / length, y / length, z / length};
+  };
+  for (int i = 0; i < 6'000; ++i) {
+    out.push_back({{side(random), side(random), 0.5f + noise(random)},
+                   unit(tilt(random), tilt(random), sign())});
+  }
+  for (int i = 0; i < 3'000; ++i) {
+    out.push_back({{-1 + noise(random), side(random), 0.5f * (1 + side(random))},
+                   unit(sign(), tilt(random), tilt(random))});
+  }
+  for (int i = 0; i < 1'500; ++i) {
+    out.push_back({{side(random), side(random), side(random)},
+                   unit(side(random), side(random), side(random))});
+  }
+  for (int i = 0; i < 400; ++i) {
+    out.push_back({{side(random), side(random), 0.5f}, {0, 1, 0}});
+  }
+  return out;
+}
+
+TEST(Planes, AreFoundLargestFirstAndFittedToTheirPoints) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const TestCloud cloud = cloud_of(room(seed));
+    TestSearch test(20'000);
+    test.run(cloud.points);
+    ASSERT_EQ(test.search.count(), 2);
+    const Plane& floor = test.search.plane(0);
+    const Plane& wall = test.search.plane(1);
+    EXPECT_GT(std::abs(floor.normal.z()), std::cos(0.1 * M_PI / 180));
+    EXPECT_NEAR(std::abs(floor.offset_m), 0.5, 0.0002);
+    EXPECT_GT(std::abs(wall.normal.x()), std::cos(0.1 * M_PI / 180));
+    EXPECT_NEAR(std::abs(wall.offset_m), 1, 0.0003);
+    EXPECT_GT(floor.points, 5'900);
+    EXPECT_GT(wall.points, 2'900);
+    EXPECT_NEAR(floor.rms_m, 0.003, 0.0003);
+  }
+}
+
+TEST(Planes, TakeNoPointWhoseNormalStandsAcrossAndNoneBeyondTheThreshold) {
+  const std::vector<Oriented> points = room(1);
+  const TestCloud cloud = cloud_of(points);
+  TestSearch test(20'000);
+  test.run(cloud.points);
+  int taken = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint8_t on = test.search.plane_of(static_cast<int>(i));
+    if (on == PlaneSearch::k_no_plane) continue;
+    ++taken;
+    const Plane& plane = test.search.plane(on);
+    double along = 0, height = -plane.offset_m;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double n = plane.normal(static_cast<Eigen::Index>(k));
+      along += n * static_cast<double>(points[i].normal[k]);
+      height += n * static_cast<double>(points[i].point[k]);
+    }
+    ASSERT_GT(std::abs(along), std::cos(20.01 * M_PI / 180));
+    ASSERT_LT(std::abs(height), 0.010001);
+  }
+  EXPECT_EQ(taken, test.search.plane(0).points + test.search.plane(1).points);
+}
+
+TEST(Planes, MakeTheirPointsFlatAndMoveNoOther) {
+  const std::vector<Oriented> points = room(2);
+  TestCloud cloud = cloud_of(points);
+  TestSearch test(20'000);
+  test.run(cloud.points);
+  for (int at = 0; at < cloud.points.count;) at = snap_to_planes(test.search, at, 7, cloud.points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint8_t on = test.search.plane_of(static_cast<int>(i));
+    const Point now = cloud.at(static_cast<int>(i));
+    const double moved = std::sqrt(squared_distance(now, points[i].point));
+    if (on == PlaneSearch::k_no_plane) {
+      ASSERT_EQ(moved, 0);
+      continue;
+    }
+    ASSERT_LE(moved, 0.010001);
+    const Plane& plane = test.search.plane(on);
+    const Vector3 place(static_cast<double>(now[0]), static_cast<double>(now[1]),
+                        static_cast<double>(now[2]));
+    ASSERT_NEAR(plane.normal.dot(place), plane.offset_m, 2e-7);
+    ASSERT_EQ(cloud.points.normal_z[static_cast<int>(i)], static_cast<float>(plane.normal.z()));
+  }
+}
+
+TEST(Planes, AreTheSameInSlices) {
+  const TestCloud cloud = cloud_of(room(3));
+  TestSearch whole(20'000), sliced(20'000);
+  whole.run(cloud.points);
+  sliced.run(cloud.points, 37);
+  ASSERT_EQ(whole.search.count(), sliced.search.count());
+  for (int i = 0; i < whole.search.count(); ++i) {
+    EXPECT_EQ(whole.search.plane(i).normal, sliced.search.plane(i).normal);
+    EXPECT_EQ(whole.search.plane(i).points, sliced.search.plane(i).points);
+  }
+}
+
+TEST(Planes, AreNotSeenInScatteredPointsOrInFewerThanAsked) {
+  std::vector<Oriented> points = room(4);
+  std::vector<Oriented> scattered(points.begin() + 9'000, points.begin() + 10'500);
+  TestSearch test(20'000);
+  test.run(cloud_of(scattered).points);
+  EXPECT_EQ(test.search.count(), 0);
+  std::vector<Oriented> floor(points.begin(), points.begin() + 480);
+  test.run(cloud_of(floor).points);
+  EXPECT_EQ(test.search.count(), 0);
+  floor.assign(points.begin(), points.begin() + 600);
+  test.run(cloud_of(floor).points);
+  EXPECT_EQ(test.search.count(), 1);
+}
+
+TEST(Planes, AreNoneOfNothingNoNumbersOnePlaceALineOrPointsWithoutNormals) {
+  TestSearch test(2'000);
+  test.run(PointCloud{});
+  EXPECT_EQ(test.search.count(), 0);
+  const Point up{0, 0, 1};
+  const auto count_of = [&](const std::vector<Oriented>& points) {
+    test.run(cloud_of(points).points);
+    return test.search.count();
+  };
+  EXPECT_EQ(count_of({{{0, 0, 0}, up}}), 0);
+  EXPECT_EQ(count_of(std::vector<Oriented>(1'000, {{k_not_a_number, 0, 0}, up})), 0);
+  EXPECT_EQ(count_of(std::vector<Oriented>(1'000, {{1, 2, 3}, up})), 0);
+  std::vector<Oriented> line, bare;
+  for (int i = 0; i < 1'000; ++i) {
+    const float s = 0.001f * static_cast<float>(i);
+    line.push_back({{s, 0, 0}, up});
+    bare.push_back({{s, s * s, 0}, {0, 0, 0}});
+  }
+  EXPECT_EQ(count_of(line), 0);
+  EXPECT_EQ(count_of(bare), 0);
+}
+
+TEST(Planes, OfACloudBeyondTheCapacityAreThoseOfItsFirstPointsAndItSaysSo) {
+  TestCloud cloud = cloud_of(room(5));
+  TestSearch test(6'000);
+  test.run(cloud.points);
+  EXPECT_EQ(test.search.reason(), Reason::cloud_full);
+  ASSERT_EQ(test.search.count(), 1);
+  EXPECT_EQ(test.search.plane_of(6'000), PlaneSearch::k_no_plane);
+  EXPECT_EQ(snap_to_planes(test.search, 0, 1 << 20, cloud.points), cloud.points.count);
+}
+
+TEST(Planes, EndWithAsManyAsMayBe) {
+  PlaneSettings one;
+  one.planes_max = 1;
+  TestSearch test(20'000, one);
+  test.run(cloud_of(room(6)).points);
+  EXPECT_EQ(test.search.count(), 1);
+}
+
+TEST(Planes, RefuseWhatTheyCannotWorkWith) {
+  TestMemory memory(PlaneSearch::bytes(10));
+  PlaneSearch search;
+  PlaneSettings settings;
+  settings.planes_max = k_planes_max + 1;
+  EXPECT_EQ(search.prepare(settings, 10, memory.arena()), Reason::out_of_range);
+  settings = {};
+  settings.gate.threshold_m = k_not_a_number;
+  EXPECT_EQ(search.prepare(settings, 10, memory.arena()), Reason::out_of_range);
+  EXPECT_EQ(search.prepare({}, 100'000, memory.arena()), Reason::not_prepared);
+  EXPECT_EQ(search.reason(), Reason::not_prepared);
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,138 @@
+#include "kernels/cloud/voxel_grid.hpp"
+
+#include <cmath>
+#include <map>
+
+#include "clouds.hpp"
+
+namespace glint {
+namespace {
+
+struct TestGrid {
+  explicit TestGrid(int voxels, float voxel_m = 0.01f) : memory(VoxelGrid::bytes(voxels)) {
+    EXPECT_EQ(grid.prepare({voxel_m}, voxels, memory.arena()), Reason::none);
+  }
+  void add(const TestCloud& cloud, int slice = 1 << 20) {
+    for (int at = 0; at < cloud.points.count;) at = grid.add(cloud.points, at, slice);
+  }
+  [[nodiscard]] std::vector<Point> written(int slice = 1 << 20) const {
+    TestCloud out(std::max(grid.count(), 1));
+    for (int at = 0; at < grid.count();) at = grid.write(at, slice, out.points);
+    return out.all();
+  }
+  TestMemory memory;
+  VoxelGrid grid;
+};
+
+// The plain version: a map of lists, in the order of first points.
+std::vector<Point> plain_means(const std::vector<Point>& points, float voxel_m) {
+  struct Sum {
+    std::array<double, 3> sum{};
+    int count = 0;
+  };
+  std::map<std::array<int, 3>, std::size_t> places;
+  std::vector<Sum> sums;
+  for (const Point& p : points) {
+    std::array<int, 3> key;
+    for (std::size_t i = 0; i < 3; ++i) {
+      key[i] = static_cast<int>(std::floor(p[i] * (1 / voxel_m)));
+    }
+    const auto [place, is_new] = places.try_emplace(key, sums.size());
+    if (is_new) sums.emplace_back();
+    Sum& s = sums[place->second];
+    for (std::size_t i = 0; i < 3; ++i) s.sum[i] += static_cast<double>(p[i]);
+    ++s.count;
+  }
+  std::vector<Point> out;
+  for (const Sum& s : sums) {
+    out.push_back({static_cast<float>(s.sum[0] / s.count), static_cast<float>(s.sum[1] / s.count),
+                   static_cast<float>(s.sum[2] / s.count)});
+  }
+  return out;
+}
+
+TEST(VoxelGrid, GivesTheMeanOfEachVoxelsPointsInTheOrderOfFirstPoints) {
+  const std::vector<Point> points = random_points(20'000, 0.12f, 1);
+  TestGrid test(20'000);
+  test.add(TestCloud(points));
+  EXPECT_EQ(test.written(), plain_means(points, 0.01f));
+  EXPECT_EQ(test.grid.reason(), Reason::none);
+}
+
+TEST(VoxelGrid, GivesTheSameBitsFrameByFrameAndSliceBySlice) {
+  const std::vector<Point> points = random_points(5'000, 0.1f, 2);
+  const std::vector<Point> first(points.begin(), points.begin() + 2'000);
+  const std::vector<Point> second(points.begin() + 2'000, points.end());
+  TestGrid whole(5'000), sliced(5'000);
+  whole.add(TestCloud(points));
+  sliced.add(TestCloud(first), 7);
+  sliced.add(TestCloud(second), 1);
+  EXPECT_EQ(whole.written(), sliced.written(3));
+}
+
+TEST(VoxelGrid, KeepsTheFirstVoxelsWhenFullGoesOnFillingThemAndSaysSo) {
+  TestGrid test(2, 1.0f);
+  test.add(TestCloud(
+      std::vector<Point>{{0.5f, 0, 0}, {1.5f, 0, 0}, {2.5f, 0, 0}, {0.25f, 0, 0}, {-0.5f, 0, 0}}));
+  EXPECT_EQ(test.grid.reason(), Reason::cloud_full);
+  EXPECT_EQ(test.grid.dropped(), 2);
+  EXPECT_EQ(test.written(), (std::vector<Point>{{0.375f, 0, 0}, {1.5f, 0, 0}}));
+}
+
+TEST(VoxelGrid, LeavesOutAndCountsWhatIsBeyondTheGridOrNotFinite) {
+  const float infinite = std::numeric_limits<float>::infinity();
+  TestGrid test(8, 1.0f);
+  test.add(TestCloud(std::vector<Point>{{k_not_a_number, 0, 0},
+                                        {0, infinite, 0},
+                                        {0, 0, -infinite},
+                                        {1.1e6f, 0, 0},
+                                        {0, -1.1e6f, 0},
+                                        {1'048'575.0f, -1'048'575.0f, 0}}));
+  EXPECT_EQ(test.grid.out_of_range(), 5);
+  EXPECT_EQ(test.written(), (std::vector<Point>{{1'048'575.0f, -1'048'575.0f, 0}}));
+}
+
+TEST(VoxelGrid, GivesNothingOfNothingAndOnePointOfOneOrManyInOnePlace) {
+  TestGrid test(8);
+  TestCloud nothing(1);
+  EXPECT_EQ(test.grid.add(nothing.points, 0, 100), 0);
+  EXPECT_TRUE(test.written().empty());
+  test.add(TestCloud(std::vector<Point>{{-0.003f, 0.002f, 0}}));
+  EXPECT_EQ(test.written(), (std::vector<Point>{{-0.003f, 0.002f, 0}}));
+  test.grid.clear();
+  EXPECT_TRUE(test.written().empty());
+  test.add(TestCloud(std::vector<Point>(1'000, Point{0.25f, 0.5f, 0.75f})));
+  EXPECT_EQ(test.written(), (std::vector<Point>{{0.25f, 0.5f, 0.75f}}));
+}
+
+TEST(VoxelGrid, ForgetsAllWhenCleared) {
+  TestGrid test(300), fresh(300);
+  test.add(TestCloud(random_points(300, 0.1f, 3)));
+  test.grid.clear();
+  const std::vector<Point> points = random_points(300, 0.1f, 4);
+  test.add(TestCloud(points));
+  fresh.add(TestCloud(points));
+  EXPECT_EQ(test.written(), fresh.written());
+}
+
+TEST(VoxelGrid, StopsWritingWhereTheCloudIsFull) {
+  TestGrid test(10, 1.0f);
+  test.add(TestCloud(std::vector<Point>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}));
+  TestCloud two(2);
+  EXPECT_EQ(test.grid.write(0, 10, two.points), 2);
+}
+
+TEST(VoxelGrid, RefusesWhatItCannotWorkWith) {
+  TestMemory memory(VoxelGrid::bytes(10));
+  VoxelGrid grid;
+  EXPECT_EQ(grid.prepare({0.0f}, 10, memory.arena()), Reason::out_of_range);
+  EXPECT_EQ(grid.prepare({k_not_a_number}, 10, memory.arena()), Reason::out_of_range);
+  EXPECT_EQ(grid.prepare({0.01f}, 0, memory.arena()), Reason::out_of_range);
+  EXPECT_EQ(grid.prepare({0.01f}, 1'000, memory.arena()), Reason::not_prepared);
+  EXPECT_EQ(grid.reason(), Reason::not_prepared);
+  EXPECT_EQ(grid.add(TestCloud(random_points(5, 1, 5)).points, 0, 5), 5);
+  EXPECT_EQ(grid.count(), 0);
+}
+
+}  // namespace
+}  // namespace glint
