@@ -22,24 +22,18 @@ FourFloats falling(const FourFloats& t) {
 }
 
 PlaneSums plane_sums(const Neighbours& near) {
-  FourFloats x{}, y{}, z{}, xx{}, yy{}, zz{}, xy{}, xz{}, yz{};
+  FourFloats n{}, x{}, y{}, z{}, xx{}, yy{}, zz{}, xy{}, xz{}, yz{};
   for (int i = 0; i < near.count; i += 4) {
     const FourFloats px = load_four(near.x + i), py = load_four(near.y + i),
                      pz = load_four(near.z + i);
-    x += px, y += py, z += pz;
-    xx += px * px, yy += py * py, zz += pz * pz;
-    xy += px * py, xz += px * pz, yz += py * pz;
+    const FourFloats w = load_four(near.weight + i);
+    const FourFloats wx = w * px, wy = w * py, wz = w * pz;
+    n += w, x += wx, y += wy, z += wz;
+    xx += wx * px, yy += wy * py, zz += wz * pz;
+    xy += wx * py, xz += wx * pz, yz += wy * pz;
   }
-  return {static_cast<double>(near.count),
-          sum_of(x),
-          sum_of(y),
-          sum_of(z),
-          sum_of(xx),
-          sum_of(yy),
-          sum_of(zz),
-          sum_of(xy),
-          sum_of(xz),
-          sum_of(yz)};
+  return {sum_of(n),  sum_of(x),  sum_of(y),  sum_of(z),  sum_of(xx),
+          sum_of(yy), sum_of(zz), sum_of(xy), sum_of(xz), sum_of(yz)};
 }
 
 // The plane's frame at the foot of the point. Along the plane one unit is the radius.
@@ -69,7 +63,7 @@ Equations sheet_equations(const Neighbours& near, const Frame& frame, float radi
     const FourFloats u = (x * ux + y * uy) + z * uz, v = (x * vx + y * vy) + z * vz;
     const FourFloats f = ((x * nx + y * ny) + z * nz) - height;
     const FourFloats uu = u * u, vv = v * v, uv = u * v;
-    const FourFloats w = where(first_lanes(near.count - i), falling((uu + vv) + f * f));
+    const FourFloats w = load_four(near.weight + i) * falling((uu + vv) + f * f);
     const FourFloats wu = w * u, wv = w * v, wuu = w * uu, wuv = w * uv, wvv = w * vv;
     s00 += w, s10 += wu, s01 += wv, s20 += wuu, s11 += wuv, s02 += wvv;
     s30 += wuu * u, s21 += wuu * v, s12 += wvv * u, s03 += wvv * v;
@@ -122,7 +116,7 @@ Vector3 turned_up(const Vector3& n) {
 
 SurfacePoint local_surface(const Neighbours& near, float radius_m) noexcept {
   for (int i = near.count; i < near.count + k_four_spare; ++i)
-    near.x[i] = near.y[i] = near.z[i] = 0;
+    near.x[i] = near.y[i] = near.z[i] = near.weight[i] = 0;
   const FittedPlane plane = fit_plane(plane_sums(near));
   const auto [u, v] = directions_across(plane.normal);
   const Frame frame{u, v, plane.normal, plane.mean.dot(plane.normal)};

@@ -14,23 +14,26 @@ Reason MovingLeastSquares::prepare(const MovingLeastSquaresSettings& settings, i
   settings_ = settings;
   const Reason reason = grid_.prepare(points, arena);
   if (reason != Reason::none) return reason;
-  for (Column<float>* column : {&x_, &y_, &z_, &near_x_, &near_y_, &near_z_}) {
+  for (Column<float>* column :
+       {&x_, &y_, &z_, &weight_, &near_x_, &near_y_, &near_z_, &near_weight_}) {
     if (!column->reserve(settings.candidates_max + k_four_spare, arena)) {
       return Reason::not_prepared;
     }
   }
-  near_ = {near_x_.data(), near_y_.data(), near_z_.data(), 0};
+  if (!sources_.reserve(points, arena)) return Reason::not_prepared;
+  near_ = {near_x_.data(), near_y_.data(), near_z_.data(), near_weight_.data(), 0};
   prepared_ = true;
   return Reason::none;
 }
 
 void MovingLeastSquares::begin(const PointCloud& points) noexcept {
   if (!prepared_) return;
+  cloud_ = &points;
   grid_.begin(points, settings_.radius_m);
   sweep_.begin();
   at_ = 0;
   cell_ = -1;
-  dropped_ = lonely_ = flat_ = cut_ = 0;
+  appended_ = dropped_ = lonely_ = flat_ = cut_ = 0;
 }
 
 // All points of a cell have the same candidates: they are brought together once.
@@ -46,6 +49,10 @@ void MovingLeastSquares::gather_candidates(int cell) noexcept {
     std::copy_n(grid_.x() + row.begin, taken, x_.data() + candidates_);
     std::copy_n(grid_.y() + row.begin, taken, y_.data() + candidates_);
     std::copy_n(grid_.z() + row.begin, taken, z_.data() + candidates_);
+    for (int i = 0; i < taken; ++i) {
+      const bool equal = settings_.weights == NeighbourWeights::equal;
+      weight_[candidates_ + i] = equal ? 1 : cloud_->weight[grid_.place_in_cloud(row.begin + i)];
+    }
     candidates_ += taken;
   }
 }
@@ -58,6 +65,7 @@ void MovingLeastSquares::gather_neighbours(int point) noexcept {
   for (int i = 0; i < candidates_; ++i) {
     const float dx = x_[i] - x, dy = y_[i] - y, dz = z_[i] - z;
     near_.x[near] = dx, near_.y[near] = dy, near_.z[near] = dz;
+    near_.weight[near] = weight_[i];
     near += (dx * dx + dy * dy) + dz * dz <= limit ? 1 : 0;
   }
   near_.count = near;
@@ -76,12 +84,14 @@ void MovingLeastSquares::smooth(int point, PointCloud& smoothed) noexcept {
     return static_cast<float>(static_cast<double>(from) + by);
   };
   const int at = smoothed.count;
+  const float weight = cloud_->weight[grid_.place_in_cloud(point)];
   if (!smoothed.add(moved(grid_.x()[point], surface.offset_m.x()),
                     moved(grid_.y()[point], surface.offset_m.y()),
-                    moved(grid_.z()[point], surface.offset_m.z()))) {
+                    moved(grid_.z()[point], surface.offset_m.z()), weight)) {
     ++dropped_;
     return;
   }
+  sources_[appended_++] = grid_.place_in_cloud(point);
   smoothed.normal_x[at] = static_cast<float>(surface.normal.x());
   smoothed.normal_y[at] = static_cast<float>(surface.normal.y());
   smoothed.normal_z[at] = static_cast<float>(surface.normal.z());

@@ -18,9 +18,15 @@
 
 namespace glint {
 
+// What a neighbour counts: as much as any other, or as much as the measurements that it is the mean
+// of. Where many measurements make a voxel's point, those in the middle of the noise have far more
+// of them than those at its edge, and equal weights bend the surface.
+enum class NeighbourWeights : std::uint8_t { equal, by_measurements };
+
 struct MovingLeastSquaresSettings {
   float radius_m = 0.03f;
   int candidates_max = 4096;
+  NeighbourWeights weights = NeighbourWeights::by_measurements;
 };
 
 class MovingLeastSquares {
@@ -28,8 +34,8 @@ class MovingLeastSquares {
   // What prepare() takes of an arena.
   [[nodiscard]] static constexpr std::size_t bytes(const MovingLeastSquaresSettings& settings,
                                                    int points) noexcept {
-    return NeighbourGrid::bytes(points) +
-           6 * Column<float>::bytes(settings.candidates_max + k_four_spare);
+    return NeighbourGrid::bytes(points) + Column<std::int32_t>::bytes(points) +
+           8 * Column<float>::bytes(settings.candidates_max + k_four_spare);
   }
   // Reason: none; out_of_range (a setting, points); not_prepared (the arena has not enough left).
   [[nodiscard]] Reason prepare(const MovingLeastSquaresSettings& settings, int points,
@@ -39,6 +45,9 @@ class MovingLeastSquares {
   void begin(const PointCloud& points) noexcept GLINT_NONBLOCKING;
   // Goes on for at most `most` points, appending each on its surface. True when all are there.
   [[nodiscard]] bool step(int most, PointCloud& smoothed) noexcept GLINT_NONBLOCKING;
+
+  // Which point of the cloud the i-th one appended since begin() was.
+  [[nodiscard]] int source_of(int i) const noexcept { return sources_[i]; }
 
   // Points left out: `smoothed` or the grid was full; beyond the grid; with too few neighbours.
   [[nodiscard]] int dropped() const noexcept { return dropped_ + grid_.dropped(); }
@@ -58,9 +67,12 @@ class MovingLeastSquares {
   MovingLeastSquaresSettings settings_;
   NeighbourGrid grid_;
   NeighbourSweep sweep_;
-  Column<float> x_, y_, z_;                 // all candidates of one cell
-  Column<float> near_x_, near_y_, near_z_;  // neighbours of one point, relative to it
+  Column<float> x_, y_, z_, weight_;                      // all candidates of one cell
+  Column<float> near_x_, near_y_, near_z_, near_weight_;  // one point's, relative to it
   Neighbours near_;
+  const PointCloud* cloud_ = nullptr;
+  Column<std::int32_t> sources_;
+  int appended_ = 0;
   bool prepared_ = false;
   int candidates_ = 0;
   bool cell_cut_ = false;

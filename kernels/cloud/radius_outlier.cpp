@@ -19,6 +19,7 @@ Reason RadiusOutlier::prepare(const RadiusOutlierSettings& settings, int points,
 
 void RadiusOutlier::begin(const PointCloud& points) noexcept {
   if (!prepared_) return;
+  cloud_ = &points;
   grid_.begin(points, settings_.radius_m);
   sweep_.begin();
   at_ = 0;
@@ -61,7 +62,8 @@ bool RadiusOutlier::step(int most, PointCloud& kept) noexcept {
   for (; at_ < end; ++at_) {
     if (at_ == grid_.first_point(cell_ + 1)) sweep_.rows_around(grid_, ++cell_, rows_);
     if (!has_neighbours(at_)) continue;
-    if (!kept.add(grid_.x()[at_], grid_.y()[at_], grid_.z()[at_])) ++dropped_;
+    const float weight = cloud_->weight[grid_.place_in_cloud(at_)];
+    if (!kept.add(grid_.x()[at_], grid_.y()[at_], grid_.z()[at_], weight)) ++dropped_;
   }
   return at_ == grid_.count();
 }

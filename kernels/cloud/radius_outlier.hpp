@@ -50,6 +50,7 @@ class RadiusOutlier {
   NeighbourGrid grid_;
   NeighbourSweep sweep_;
   NeighbourSweep::Rows rows_{};
+  const PointCloud* cloud_ = nullptr;
   bool prepared_ = false;
   int at_ = 0, cell_ = -1;
   int dropped_ = 0, undecided_ = 0;

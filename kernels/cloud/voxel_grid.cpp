@@ -106,7 +106,7 @@ int VoxelGrid::write(int from, int most, PointCloud& to) const noexcept {
     const Voxel& sum = voxels_[i];
     const auto n = static_cast<double>(sum.points);
     if (!to.add(static_cast<float>(sum.x / n), static_cast<float>(sum.y / n),
-                static_cast<float>(sum.z / n))) {
+                static_cast<float>(sum.z / n), static_cast<float>(sum.points))) {
       return i;
     }
   }

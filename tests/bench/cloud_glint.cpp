@@ -55,6 +55,7 @@ CloudChain::CloudChain(const CloudStepSettings& s, int points)
   Kernels& k = *kernels_;
   MovingLeastSquaresSettings smooth;
   smooth.radius_m = s.smooth_radius_m;
+  smooth.weights = NeighbourWeights::equal;  // as PCL has it
   PlaneSettings plane;
   plane.gate.threshold_m = s.plane_threshold_m;
   plane.planes_max = 1;

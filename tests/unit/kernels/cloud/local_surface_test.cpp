@@ -7,7 +7,9 @@ namespace {
 
 constexpr float k_radius = 0.03f;
 
-SurfacePoint surface_of(const std::vector<Point>& relative) {
+SurfacePoint surface_of(const std::vector<Point>& relative, std::vector<float> weights = {}) {
+  weights.resize(relative.size(), 1);
+  weights.resize(relative.size() + k_four_spare, 3);
   std::array<std::vector<float>, 3> columns;
   for (const Point& p : relative) {
     for (std::size_t i = 0; i < 3; ++i) columns[i].push_back(p[i]);
@@ -40,6 +42,20 @@ TEST(LocalSurface, IsThatOfATextbookInDouble) {
     ASSERT_GT(std::abs(fast.normal.dot(plain.normal)), 1 - 1e-7) << seed;
     ASSERT_GE(fast.normal.z(), 0);
   }
+}
+
+TEST(LocalSurface, TakesANeighbourOfWeightThreeAsThreeNeighbours) {
+  std::vector<Point> near = noisy_patch(15, 1), thrice = near;
+  std::vector<float> weights(15, 1);
+  for (const std::size_t i : {2, 5, 11}) {
+    weights[i] = 3;
+    thrice.push_back(near[i]);
+    thrice.push_back(near[i]);
+  }
+  const SurfacePoint a = surface_of(near, weights), b = surface_of(thrice);
+  EXPECT_LT((a.offset_m - b.offset_m).norm(), 2e-7);
+  EXPECT_GT(a.normal.dot(b.normal), 1 - 1e-9);
+  EXPECT_GT((a.offset_m - surface_of(near).offset_m).norm(), 1e-4);
 }
 
 TEST(LocalSurface, LiesOnASheetOfOrderTwoThatAllNeighboursLieOn) {

@@ -105,6 +105,15 @@ TEST(VoxelGrid, GivesNothingOfNothingAndOnePointOfOneOrManyInOnePlace) {
   EXPECT_EQ(test.written(), (std::vector<Point>{{0.25f, 0.5f, 0.75f}}));
 }
 
+TEST(VoxelGrid, SaysHowManyMeasurementsAPointIsTheMeanOf) {
+  TestGrid test(8, 1.0f);
+  test.add(TestCloud(std::vector<Point>{{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 0, 0}}));
+  TestCloud out(8);
+  test.grid.write(0, 8, out.points);
+  EXPECT_EQ(out.points.weight[0], 3.0f);
+  EXPECT_EQ(out.points.weight[1], 1.0f);
+}
+
 TEST(VoxelGrid, ForgetsAllWhenCleared) {
   TestGrid test(300), fresh(300);
   test.add(TestCloud(random_points(300, 0.1f, 3)));

@@ -1,0 +1,133 @@
+#include "platform/mapping/depth_sequence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+
+#include "kernels/pose/best_rotation.hpp"
+#include "platform/input_error.hpp"
+#include "platform/mapping/file_text.hpp"
+#include "platform/sensors/npy.hpp"
+
+namespace glint {
+namespace {
+
+constexpr double k_not_rigid = 0.01;  // of an axis's length or the cosine between two
+constexpr int k_side_max = 4096;
+constexpr std::size_t k_frames_max = 10'000;
+
+std::vector<double> numbers_of(const FileText& opened, std::size_t count) {
+  FileText file = opened;
+  std::vector<double> numbers;
+  std::vector<std::string_view> words;
+  while (file.next_line(words)) {
+    for (const std::string_view word : words) {
+      numbers.push_back(file.number(word));
+      if (!std::isfinite(numbers.back())) file.refuse("a number that is not finite", "finite ones");
+      if (numbers.size() > count) file.refuse("more numbers", std::to_string(count));
+    }
+  }
+  if (numbers.size() < count) {
+    file.refuse(std::to_string(numbers.size()) + " numbers", std::to_string(count));
+  }
+  return numbers;
+}
+
+Pose load_pose(const std::string& path) {
+  const FileText file(path, "a pose of 16 numbers");
+  const std::vector<double> n = numbers_of(file, 16);
+  Matrix3 rotation;
+  rotation << n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10];
+  const double off = (rotation.transpose() * rotation - Matrix3::Identity()).cwiseAbs().maxCoeff();
+  if (!(off <= k_not_rigid) || rotation.determinant() < 0) {
+    file.refuse("a rotation that is not rigid by " + std::to_string(off), "an orthonormal one");
+  }
+  if (n[12] != 0 || n[13] != 0 || n[14] != 0 || n[15] != 1) {
+    file.refuse("another last row", "0 0 0 1");
+  }
+  return {best_rotation(rotation), Vector3(n[3], n[7], n[11])};
+}
+
+CameraModel load_pinhole(const std::string& path) {
+  const FileText file(path, "a pinhole's matrix of 9 numbers");
+  const std::vector<double> k = numbers_of(file, 9);
+  if (!(k[0] > 0 && k[4] > 0) || k[1] != 0 || k[8] != 1) {
+    file.refuse("another matrix", "fx 0 cx  0 fy cy  0 0 1, fx and fy above 0");
+  }
+  CameraModel camera;
+  camera.fx = k[0], camera.fy = k[4];
+  camera.cx = k[2] + 0.5, camera.cy = k[5] + 0.5;
+  return camera;
+}
+
+void check_size(const std::string& path, int width, int height) {
+  if (width >= 1 && height >= 1 && width <= k_side_max && height <= k_side_max) return;
+  throw InputError(path + ": " + std::to_string(width) + " x " + std::to_string(height) +
+                   " pixels; expected 1 to " + std::to_string(k_side_max) + " a side");
+}
+
+DepthFrame load_png(const std::string& path) {
+  const cv::Mat image = cv::imread(path, cv::IMREAD_UNCHANGED);
+  if (image.empty() || image.type() != CV_16UC1) {
+    throw InputError(path + ": is no PNG with one plane of 16 bits; expected depth in millimetres");
+  }
+  check_size(path, image.cols, image.rows);
+  DepthFrame out{image.cols, image.rows, {}, {}};
+  for (int y = 0; y < image.rows; ++y) {
+    for (int x = 0; x < image.cols; ++x) {
+      out.depth_m.push_back(1e-3f * static_cast<float>(image.at<std::uint16_t>(y, x)));
+    }
+  }
+  return out;
+}
+
+DepthFrame load_npy(const std::string& path) {
+  NpyArray array = read_npy_float32(path);
+  if (array.shape.size() != 2 || array.shape[0] > k_side_max || array.shape[1] > k_side_max) {
+    throw InputError(path + ": " + std::to_string(array.shape.size()) +
+                     " axes; expected rows and columns, at most " + std::to_string(k_side_max));
+  }
+  return {static_cast<int>(array.shape[1]),
+          static_cast<int>(array.shape[0]),
+          std::move(array.values),
+          {}};
+}
+
+}  // namespace
+
+DepthSequence load_depth_sequence(const std::string& folder) {
+  namespace fs = std::filesystem;
+  if (!fs::is_directory(folder)) throw InputError(folder + ": is no folder; expected depth frames");
+  DepthSequence out;
+  out.camera = load_pinhole((fs::path(folder) / "camera-intrinsics.txt").string());
+  std::vector<std::string> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().string();
+    if (name.ends_with(".depth.png") || name.ends_with(".depth.npy")) files.push_back(name);
+  }
+  std::sort(files.begin(), files.end());
+  if (files.empty() || files.size() > k_frames_max) {
+    throw InputError(folder + ": " + std::to_string(files.size()) +
+                     " depth pictures; expected 1 to " + std::to_string(k_frames_max) +
+                     " NAME.depth.png or .npy");
+  }
+  for (const std::string& file : files) {
+    DepthFrame frame = file.ends_with(".png") ? load_png(file) : load_npy(file);
+    if (out.frames.empty()) {
+      out.camera.width = frame.width;
+      out.camera.height = frame.height;
+    } else if (frame.width != out.camera.width || frame.height != out.camera.height) {
+      throw InputError(file + ": " + std::to_string(frame.width) + " x " +
+                       std::to_string(frame.height) + " pixels; expected the first one's " +
+                       std::to_string(out.camera.width) + " x " +
+                       std::to_string(out.camera.height));
+    }
+    const std::string stem = file.substr(0, file.size() - std::string(".depth.png").size());
+    frame.T_world_camera = load_pose(stem + ".pose.txt");
+    out.frames.push_back(std::move(frame));
+  }
+  return out;
+}
+
+}  // namespace glint

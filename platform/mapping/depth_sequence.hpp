@@ -1,0 +1,31 @@
+// Depth pictures with the camera's pose, from a folder.
+//
+// NAME.depth.png (16 bits a pixel, millimetres) or NAME.depth.npy (float32, metres), beside it
+// NAME.pose.txt (16 numbers, T_world_camera row by row), for all camera-intrinsics.txt (9 numbers,
+// a pinhole's matrix for pixels whose centres are at integers). 0: nothing was measured.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kernels/cloud/depth_points.hpp"
+
+namespace glint {
+
+struct DepthFrame {
+  int width = 0, height = 0;
+  std::vector<float> depth_m;
+  Pose T_world_camera;
+  [[nodiscard]] DepthPicture picture() const { return {width, height, depth_m}; }
+};
+
+struct DepthSequence {
+  CameraModel camera;
+  std::vector<DepthFrame> frames;  // by name
+};
+
+// Throws InputError naming what is missing, or file, line, found and expected: a pose that is not
+// rigid (beyond what printing leaves), pictures of different sizes, no picture at all.
+[[nodiscard]] DepthSequence load_depth_sequence(const std::string& folder);
+
+}  // namespace glint

@@ -1,0 +1,33 @@
+// A cloud of any size outside the kernels: what files hold.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "kernels/cloud/point_cloud.hpp"
+
+namespace glint {
+
+struct HostCloud {
+  std::vector<std::array<float, 3>> points;   // metres
+  std::vector<std::array<float, 3>> normals;  // as many, or none
+};
+
+// A kernel's cloud with memory of its own.
+class OwnedCloud {
+ public:
+  explicit OwnedCloud(int capacity);
+  [[nodiscard]] PointCloud& points() { return points_; }
+  [[nodiscard]] const PointCloud& points() const { return points_; }
+
+ private:
+  std::vector<std::byte> memory_;
+  PointCloud points_;
+};
+
+[[nodiscard]] HostCloud host_cloud_of(const PointCloud& cloud);
+// As large as the cloud, at least 1.
+[[nodiscard]] OwnedCloud owned_cloud_of(const HostCloud& cloud);
+
+}  // namespace glint

@@ -1,0 +1,60 @@
+// From depth pictures to a map: voxels, outliers, smoothing, planes; the kernels in their order.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kernels/cloud/depth_points.hpp"
+#include "kernels/cloud/moving_least_squares.hpp"
+#include "kernels/cloud/planes.hpp"
+#include "kernels/cloud/radius_outlier.hpp"
+#include "kernels/cloud/voxel_grid.hpp"
+
+namespace glint {
+
+struct MapSettings {
+  DepthPointSettings depth;
+  VoxelGridSettings voxels;
+  RadiusOutlierSettings outliers;
+  MovingLeastSquaresSettings smoothing;
+  PlaneSettings planes;
+  int voxels_max = 1 << 20;
+};
+
+struct MapCounts {
+  std::int64_t measured = 0;  // points of all pictures
+  int voxels = 0, kept = 0, smoothed = 0, on_planes = 0;
+  std::vector<std::string> notices;  // what was full or left out
+};
+
+class MapChain {
+ public:
+  // Throws InputError naming a setting that is out of range.
+  explicit MapChain(const MapSettings& settings);
+  ~MapChain();
+  MapChain(const MapChain&) = delete;
+  MapChain& operator=(const MapChain&) = delete;
+
+  void add_frame(const DepthPicture& picture, const CameraModel& camera,
+                 const Pose& T_world_camera);
+  // Voxels to planes of all frames so far; nothing is moved onto the planes yet.
+  void finish();
+  // Moves the map's points onto their planes.
+  void snap();
+
+  [[nodiscard]] const PointCloud& voxel_points() const;  // those that outliers were dropped from
+  [[nodiscard]] const PointCloud& map() const;
+  // Which of voxel_points() became the map's i-th point.
+  [[nodiscard]] int source_of(int i) const;
+  [[nodiscard]] const PlaneSearch& planes() const;
+  [[nodiscard]] const MapCounts& counts() const { return counts_; }
+
+ private:
+  struct Kernels;
+  std::unique_ptr<Kernels> kernels_;
+  MapSettings settings_;
+  MapCounts counts_;
+};
+
+}  // namespace glint
