@@ -7,6 +7,7 @@
 #include "platform/experiments/cis_pivot.hpp"
 #include "platform/experiments/clutter_experiment.hpp"
 #include "platform/experiments/f2554.hpp"
+#include "platform/experiments/map_experiment.hpp"
 #include "platform/experiments/marker_mocap.hpp"
 #include "platform/experiments/motion_experiments.hpp"
 #include "platform/experiments/noise_experiment.hpp"
@@ -37,6 +38,7 @@ std::span<const CaseExperiment> case_experiments() {
        run_bound},
       {"noise", "how often a tool is found, and wrongly, as the range noise grows", false,
        run_noise},
+      {"map", "a map of depth pictures against a second one of the same place", true, run_map},
       {"clutter", "five tools among up to 200 strays, and two tools that look alike", false,
        run_clutter},
       {"reference", "a robot found in real and simulated depth, from hundreds of rough poses", true,

@@ -1,0 +1,125 @@
+// glint map: depth pictures in, a smooth cloud with its planes out.
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "platform/cli/commands.hpp"
+#include "platform/cli/output_file.hpp"
+#include "platform/cli/progress.hpp"
+#include "platform/input_error.hpp"
+#include "platform/mapping/cloud_files.hpp"
+#include "platform/mapping/depth_sequence.hpp"
+#include "platform/mapping/map_chain.hpp"
+#include "platform/mapping/map_picture.hpp"
+
+namespace glint {
+namespace {
+
+struct MapArguments {
+  std::string data, out = "out", json;
+  double voxel_mm = 10, depth_max_m = 4;
+  int stride = 1;
+  bool keep_uneven = false;
+};
+
+nlohmann::ordered_json planes_json(const PlaneSearch& planes) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (int i = 0; i < planes.count(); ++i) {
+    const Plane& plane = planes.plane(i);
+    list.push_back({{"normal", {plane.normal.x(), plane.normal.y(), plane.normal.z()}},
+                    {"offset_m", plane.offset_m},
+                    {"rms_mm", 1e3 * plane.rms_m},
+                    {"points", plane.points}});
+  }
+  return list;
+}
+
+void print_table(const MapCounts& counts, const PlaneSearch& planes) {
+  std::printf("%-22s %12lld\n", "measured points", static_cast<long long>(counts.measured));
+  std::printf("%-22s %12d\n", "voxels", counts.voxels);
+  std::printf("%-22s %12d\n", "without outliers", counts.kept);
+  std::printf("%-22s %12d\n", "smoothed", counts.smoothed);
+  std::printf("%-22s %12d\n", "on planes", counts.on_planes);
+  for (int i = 0; i < planes.count(); ++i) {
+    const Plane& plane = planes.plane(i);
+    std::printf("plane %-16d %12d points  %.2f mm rms  normal %+.3f %+.3f %+.3f  at %+.3f m\n",
+                i + 1, plane.points, 1e3 * plane.rms_m, plane.normal.x(), plane.normal.y(),
+                plane.normal.z(), plane.offset_m);
+  }
+  for (const std::string& notice : counts.notices) std::printf("notice  %s\n", notice.c_str());
+}
+
+int make_map(const MapArguments& arguments) {
+  MapSettings settings;
+  settings.voxels.voxel_m = static_cast<float>(1e-3 * arguments.voxel_mm);
+  settings.depth.depth_max_m = static_cast<float>(arguments.depth_max_m);
+  settings.depth.stride = arguments.stride;
+  const DepthSequence sequence = load_depth_sequence(arguments.data);
+  Progress progress("map");
+  MapChain chain(settings);
+  int done = 0;
+  for (const DepthFrame& frame : sequence.frames) {
+    chain.add_frame(frame.picture(), sequence.camera, frame.T_world_camera);
+    progress.show(++done, static_cast<int>(sequence.frames.size()));
+  }
+  chain.finish();
+  if (chain.map().count == 0) {
+    throw InputError(arguments.data + ": nothing is left of " +
+                     std::to_string(chain.counts().measured) +
+                     " measured points; expected surfaces with 9 points within 5 cm of each");
+  }
+  if (!arguments.keep_uneven) chain.snap();
+  print_table(chain.counts(), chain.planes());
+  make_folder(arguments.out);
+  const auto in_folder = [&](const char* name) {
+    return (std::filesystem::path(arguments.out) / name).string();
+  };
+  const HostCloud map = host_cloud_of(chain.map());
+  for (const char* name : {"map.ply", "map.pcd"}) {
+    write_cloud(in_folder(name), map);
+    std::printf("written  %s\n", in_folder(name).c_str());
+  }
+  write_map_picture(in_folder("map.png"), chain.map(), chain.planes(), sequence.camera,
+                    sequence.frames[sequence.frames.size() / 2].T_world_camera);
+  std::printf("written  %s\n", in_folder("map.png").c_str());
+  const MapCounts& counts = chain.counts();
+  write_json(arguments.json, {{"frames", sequence.frames.size()},
+                              {"measured", counts.measured},
+                              {"voxels", counts.voxels},
+                              {"kept", counts.kept},
+                              {"smoothed", counts.smoothed},
+                              {"on_planes", counts.on_planes},
+                              {"planes", planes_json(chain.planes())},
+                              {"notices", counts.notices}});
+  return 0;
+}
+
+}  // namespace
+
+void add_map(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "map", "Make a smooth cloud with planes of depth pictures and their poses");
+  auto arguments = std::make_shared<MapArguments>();
+  command->footer(
+      "Example: glint map --data pictures --out out --json out/map.json\n"
+      "The folder holds NAME.depth.png (16 bits, mm) or NAME.depth.npy (float32, m), beside each\n"
+      "NAME.pose.txt (T_world_camera, 16 numbers), and camera-intrinsics.txt (9 numbers).\n"
+      "Written: map.ply, map.pcd (metres, with normals) and map.png.");
+  command->add_option("--data", arguments->data, "folder of the pictures")->required();
+  command->add_option("--voxel-mm", arguments->voxel_mm, "side of a voxel")
+      ->check(CLI::Range(1.0, 100.0))
+      ->capture_default_str();
+  command->add_option("--depth-max", arguments->depth_max_m, "metres; what is further is left out")
+      ->check(CLI::Range(0.2, 20.0))
+      ->capture_default_str();
+  command->add_option("--stride", arguments->stride, "every n-th pixel of every n-th row")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command->add_flag("--keep-uneven", arguments->keep_uneven, "do not move points onto planes");
+  command->add_option("--out", arguments->out, "folder of the files")->capture_default_str();
+  command->add_option("--json", arguments->json, "write the figures here");
+  command->callback([arguments, &exit_code] { exit_code = make_map(*arguments); });
+}
+
+}  // namespace glint
