@@ -15,18 +15,15 @@ constexpr int k_planes_judged = 3;
 constexpr double k_slab_m = 0.03;         // raw points this near belong to a plane
 constexpr double k_foot_m = 0.05;         // if they stand over such a square with points of its own
 constexpr double k_match_cosine = 0.985;  // 10 degrees
-constexpr double k_same_place_m = 0.015;
+// The other half's surface at a place: a plane through this many points this near, or more.
+constexpr double k_around_m = 0.05;
+constexpr double k_judges_min = 10;
 constexpr double k_across_cosine = 0.93969262;  // 20 degrees
 constexpr double k_degrees = 180 / 3.14159265358979323846;
 
 Vector3 point_of(const PointCloud& cloud, int i) {
   return {static_cast<double>(cloud.x[i]), static_cast<double>(cloud.y[i]),
           static_cast<double>(cloud.z[i])};
-}
-
-Vector3 normal_of(const PointCloud& cloud, int i) {
-  return {static_cast<double>(cloud.normal_x[i]), static_cast<double>(cloud.normal_y[i]),
-          static_cast<double>(cloud.normal_z[i])};
 }
 
 double height_over(const Plane& plane, const Vector3& point) {
@@ -132,46 +129,67 @@ PlaneAgreement judge(const DepthSequence& sequence, const MapSettings& settings,
 
 using Cell = std::array<int, 3>;
 Cell cell_of(const Vector3& point) {
-  return {static_cast<int>(std::floor(point.x() / k_same_place_m)),
-          static_cast<int>(std::floor(point.y() / k_same_place_m)),
-          static_cast<int>(std::floor(point.z() / k_same_place_m))};
+  return {static_cast<int>(std::floor(point.x() / k_around_m)),
+          static_cast<int>(std::floor(point.y() / k_around_m)),
+          static_cast<int>(std::floor(point.z() / k_around_m))};
 }
 
-// What snapping took, judged by the normals that the other half's map has there.
+// Of the map's points near a place, relative to it.
+PlaneSums sums_around(const PointCloud& map, const std::map<Cell, std::vector<int>>& cells,
+                      const Vector3& place) {
+  PlaneSums sums;
+  const Cell middle = cell_of(place);
+  for (int step = 0; step < 27; ++step) {
+    const auto found = cells.find(
+        {middle[0] + step % 3 - 1, middle[1] + step / 3 % 3 - 1, middle[2] + step / 9 - 1});
+    if (found == cells.end()) continue;
+    for (const int i : found->second) {
+      const Vector3 from_place = point_of(map, i) - place;
+      if (from_place.squaredNorm() > k_around_m * k_around_m) continue;
+      sums.add(from_place.x(), from_place.y(), from_place.z());
+    }
+  }
+  return sums;
+}
+
+struct Judgement {
+  std::int64_t judged = 0, across = 0;
+  [[nodiscard]] double part() const {
+    return judged > 0 ? static_cast<double>(across) / static_cast<double>(judged) : 0;
+  }
+};
+
+// What snapping took, judged by the surface that the other half's map has there. The map's own
+// normals have already chosen what is moved, and would find no fault.
 void judge_snapping(MapChain& mine, const MapChain& other, MapHalves& out) {
   std::map<Cell, std::vector<int>> cells;
   for (int i = 0; i < other.map().count; ++i) cells[cell_of(point_of(other.map(), i))].push_back(i);
   std::vector<Vector3> before;
   for (int i = 0; i < mine.map().count; ++i) before.push_back(point_of(mine.map(), i));
+  std::array<Judgement, k_planes_max> judgements{};
   mine.snap();
-  std::int64_t across = 0;
   for (int i = 0; i < mine.map().count; ++i) {
     const std::uint8_t on = mine.planes().plane_of(i);
     if (on == PlaneSearch::k_no_plane) continue;
     ++out.snapped;
     const Vector3& from = before[static_cast<std::size_t>(i)];
     out.moved_most_m = std::max(out.moved_most_m, (point_of(mine.map(), i) - from).norm());
-    const Cell middle = cell_of(from);
-    double least = k_same_place_m;
-    int nearest = -1;
-    for (int step = 0; step < 27; ++step) {
-      const auto found = cells.find(
-          {middle[0] + step % 3 - 1, middle[1] + step / 3 % 3 - 1, middle[2] + step / 9 - 1});
-      if (found == cells.end()) continue;
-      for (const int k : found->second) {
-        const double distance = (point_of(other.map(), k) - from).norm();
-        if (distance >= least) continue;
-        least = distance;
-        nearest = k;
-      }
-    }
-    if (nearest < 0) continue;
-    ++out.judged;
-    const Vector3 normal = normal_of(other.map(), nearest);
-    across += std::abs(normal.dot(mine.planes().plane(on).normal)) < k_across_cosine ? 1 : 0;
+    const PlaneSums around = sums_around(other.map(), cells, from);
+    if (around.n < k_judges_min) continue;
+    Judgement& on_plane = judgements[on];
+    ++on_plane.judged;
+    const Vector3 normal = fit_plane(around).normal;
+    on_plane.across +=
+        std::abs(normal.dot(mine.planes().plane(on).normal)) < k_across_cosine ? 1 : 0;
   }
-  out.swallowed_part =
-      out.judged > 0 ? static_cast<double>(across) / static_cast<double>(out.judged) : 0;
+  Judgement all;
+  for (std::size_t i = 0; i < judgements.size(); ++i) {
+    all.judged += judgements[i].judged;
+    all.across += judgements[i].across;
+    if (i < out.planes.size()) out.planes[i].swallowed_part = judgements[i].part();
+  }
+  out.judged = all.judged;
+  out.swallowed_part = all.part();
 }
 
 }  // namespace

@@ -18,12 +18,14 @@ struct PlaneAgreement {
   double smooth_rms_m = 0;    // of the same points after it
   double held_out_m = 0;      // mean height of the other half's raw points over it
   std::int64_t held_out = 0;  // how many
+  double swallowed_part = 0;  // as in MapHalves, of this plane's points
 };
 
 struct MapHalves {
   std::vector<PlaneAgreement> planes;  // the largest first, at most three
-  // Of all points moved onto planes: the furthest move; how many the other half's map has a normal
-  // for, and which part of those is more than 20 degrees from their plane's.
+  // Of all points moved onto planes: the furthest move; how many of them the other half's map has
+  // a surface at, within 50 mm, and which part of those has its normal more than 20 degrees from
+  // their plane's.
   double moved_most_m = 0;
   std::int64_t snapped = 0, judged = 0;
   double swallowed_part = 0;

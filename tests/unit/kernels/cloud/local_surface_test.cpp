@@ -16,9 +16,9 @@ SurfacePoint surface_of(const std::vector<Point>& relative, std::vector<float> w
   }
   // What lies behind the end is not to be taken for a neighbour.
   for (auto& column : columns) column.resize(relative.size() + k_four_spare, 0.02f);
-  return local_surface(
-      {columns[0].data(), columns[1].data(), columns[2].data(), static_cast<int>(relative.size())},
-      k_radius);
+  const Neighbours near{columns[0].data(), columns[1].data(), columns[2].data(), weights.data(),
+                        static_cast<int>(relative.size())};
+  return local_surface(near, k_radius);
 }
 
 std::vector<Point> noisy_patch(int count, std::uint64_t seed) {
