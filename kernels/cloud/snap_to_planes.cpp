@@ -2,10 +2,11 @@
 
 namespace glint {
 
-int snap_to_planes(const PlaneSearch& planes, int from, int most, PointCloud& points) noexcept {
+int snap_to_planes(const PlaneSearch& planes, const PlaneSupport& support, int from, int most,
+                   PointCloud& points) noexcept {
   const int end = std::min(points.count, from + std::max(most, 0));
   for (int i = from; i < end; ++i) {
-    const std::uint8_t on = planes.plane_of(i);
+    const std::uint8_t on = support.plane_of(i);
     if (on == PlaneSearch::k_no_plane) continue;
     const Plane& plane = planes.plane(on);
     const Vector3 point(static_cast<double>(points.x[i]), static_cast<double>(points.y[i]),

@@ -80,7 +80,7 @@ int make_map(const MapArguments& arguments) {
     write_cloud(in_folder(name), map);
     std::printf("written  %s\n", in_folder(name).c_str());
   }
-  write_map_picture(in_folder("map.png"), chain.map(), chain.planes(), sequence.camera,
+  write_map_picture(in_folder("map.png"), chain.map(), chain.support(), sequence.camera,
                     sequence.frames[sequence.frames.size() / 2].T_world_camera);
   std::printf("written  %s\n", in_folder("map.png").c_str());
   const MapCounts& counts = chain.counts();

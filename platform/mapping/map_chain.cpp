@@ -27,6 +27,7 @@ struct MapChain::Kernels {
   RadiusOutlier outliers;
   MovingLeastSquares smoothing;
   PlaneSearch planes;
+  PlaneSupport support;
 };
 
 MapChain::MapChain(const MapSettings& s) : kernels_(std::make_unique<Kernels>()), settings_(s) {
@@ -38,7 +39,7 @@ MapChain::MapChain(const MapSettings& s) : kernels_(std::make_unique<Kernels>())
   k.memory.resize(PointCloud::bytes(k_slice) + 3 * PointCloud::bytes(most) +
                   VoxelGrid::bytes(most) + RadiusOutlier::bytes(most) +
                   MovingLeastSquares::bytes(s.smoothing, most) + PlaneSearch::bytes(most) +
-                  Arena::k_alignment);
+                  PlaneSupport::bytes(most) + Arena::k_alignment);
   Arena arena(k.memory);
   check(k.frame.prepare(k_slice, arena), "a slice of points");
   for (PointCloud* cloud : {&k.voxel_points, &k.kept, &k.map}) {
@@ -48,6 +49,7 @@ MapChain::MapChain(const MapSettings& s) : kernels_(std::make_unique<Kernels>())
   check(k.outliers.prepare(s.outliers, most, arena), "outliers");
   check(k.smoothing.prepare(s.smoothing, most, arena), "smoothing");
   check(k.planes.prepare(s.planes, most, arena), "planes");
+  check(k.support.prepare(s.support, most, arena), "support");
 }
 
 MapChain::~MapChain() = default;
@@ -79,10 +81,13 @@ void MapChain::finish() {
   k.planes.begin(k.map);
   while (!k.planes.step(k_slice)) {
   }
+  k.support.begin(k.map, k.planes);
+  while (!k.support.step(k_slice)) {
+  }
   counts_.voxels = k.voxel_points.count;
   counts_.kept = k.kept.count;
   counts_.smoothed = k.map.count;
-  counts_.on_planes = 0;
+  counts_.on_planes = -k.support.taken_off();
   for (int i = 0; i < k.planes.count(); ++i) counts_.on_planes += k.planes.plane(i).points;
   counts_.notices.clear();
   notice(counts_, k.voxels.dropped(), "points left out: more voxels than voxels_max");
@@ -94,12 +99,13 @@ void MapChain::finish() {
 
 void MapChain::snap() {
   Kernels& k = *kernels_;
-  for (int at = 0; at < k.map.count;) at = snap_to_planes(k.planes, at, k_slice, k.map);
+  for (int at = 0; at < k.map.count;) at = snap_to_planes(k.planes, k.support, at, k_slice, k.map);
 }
 
 const PointCloud& MapChain::voxel_points() const { return kernels_->kept; }
 const PointCloud& MapChain::map() const { return kernels_->map; }
 int MapChain::source_of(int i) const { return kernels_->smoothing.source_of(i); }
 const PlaneSearch& MapChain::planes() const { return kernels_->planes; }
+const PlaneSupport& MapChain::support() const { return kernels_->support; }
 
 }  // namespace glint

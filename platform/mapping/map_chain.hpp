@@ -7,6 +7,7 @@
 
 #include "kernels/cloud/depth_points.hpp"
 #include "kernels/cloud/moving_least_squares.hpp"
+#include "kernels/cloud/plane_support.hpp"
 #include "kernels/cloud/planes.hpp"
 #include "kernels/cloud/radius_outlier.hpp"
 #include "kernels/cloud/voxel_grid.hpp"
@@ -19,6 +20,7 @@ struct MapSettings {
   RadiusOutlierSettings outliers;
   MovingLeastSquaresSettings smoothing;
   PlaneSettings planes;
+  PlaneSupportSettings support;
   int voxels_max = 1 << 20;
 };
 
@@ -48,6 +50,8 @@ class MapChain {
   // Which of voxel_points() became the map's i-th point.
   [[nodiscard]] int source_of(int i) const;
   [[nodiscard]] const PlaneSearch& planes() const;
+  // The plane that each of the map's points is on.
+  [[nodiscard]] const PlaneSupport& support() const;
   [[nodiscard]] const MapCounts& counts() const { return counts_; }
 
  private:

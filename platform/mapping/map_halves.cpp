@@ -109,7 +109,7 @@ PlaneAgreement judge(const DepthSequence& sequence, const MapSettings& settings,
   Vector3 middle = Vector3::Zero();
   double before = 0, after = 0;
   for (int i = 0; i < map.count; ++i) {
-    if (mine.planes().plane_of(i) != which) continue;
+    if (mine.support().plane_of(i) != which) continue;
     const Vector3 point = point_of(map, i);
     const double smooth = height_over(plane, point);
     const double voxel = height_over(plane, point_of(mine.voxel_points(), mine.source_of(i)));
@@ -169,7 +169,7 @@ void judge_snapping(MapChain& mine, const MapChain& other, MapHalves& out) {
   std::array<Judgement, k_planes_max> judgements{};
   mine.snap();
   for (int i = 0; i < mine.map().count; ++i) {
-    const std::uint8_t on = mine.planes().plane_of(i);
+    const std::uint8_t on = mine.support().plane_of(i);
     if (on == PlaneSearch::k_no_plane) continue;
     ++out.snapped;
     const Vector3& from = before[static_cast<std::size_t>(i)];

@@ -27,7 +27,7 @@ cv::Vec3b colour_of(std::uint8_t plane, double facing) {
 
 }  // namespace
 
-void write_map_picture(const std::string& path, const PointCloud& map, const PlaneSearch& planes,
+void write_map_picture(const std::string& path, const PointCloud& map, const PlaneSupport& planes,
                        const CameraModel& camera, const Pose& T_world_camera) {
   cv::Mat image(camera.height, camera.width, CV_8UC3, cv::Scalar(30, 30, 30));
   cv::Mat depth(camera.height, camera.width, CV_64F, std::numeric_limits<double>::infinity());

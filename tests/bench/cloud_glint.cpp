@@ -48,6 +48,7 @@ struct CloudChain::Kernels {
   RadiusOutlier outliers;
   MovingLeastSquares smoothing;
   PlaneSearch planes;
+  PlaneSupport support;
 };
 
 CloudChain::CloudChain(const CloudStepSettings& s, int points)
@@ -64,7 +65,7 @@ CloudChain::CloudChain(const CloudStepSettings& s, int points)
   outlier.neighbours_min = s.neighbours_min;
   k.memory.resize(4 * PointCloud::bytes(points) + VoxelGrid::bytes(points) +
                   RadiusOutlier::bytes(points) + MovingLeastSquares::bytes(smooth, points) +
-                  PlaneSearch::bytes(points) + Arena::k_alignment);
+                  PlaneSearch::bytes(points) + PlaneSupport::bytes(points) + Arena::k_alignment);
   Arena arena(k.memory);
   for (PointCloud* cloud : {&k.input, &k.voxel_points, &k.kept, &k.smoothed}) {
     check(cloud->prepare(points, arena));
@@ -73,6 +74,7 @@ CloudChain::CloudChain(const CloudStepSettings& s, int points)
   check(k.outliers.prepare(outlier, points, arena));
   check(k.smoothing.prepare(smooth, points, arena));
   check(k.planes.prepare(plane, points, arena));
+  check(k.support.prepare({}, points, arena));
 }
 
 CloudChain::~CloudChain() = default;
@@ -115,7 +117,11 @@ void CloudChain::run(const float* xyz, int count, CloudStepResult& result) {
   k.planes.begin(k.smoothed);
   while (!k.planes.step(k_slice)) {
   }
-  for (int at = 0; at < k.smoothed.count;) at = snap_to_planes(k.planes, at, k_slice, k.smoothed);
+  k.support.begin(k.smoothed, k.planes);
+  while (!k.support.step(k_slice)) {
+  }
+  for (int at = 0; at < k.smoothed.count;)
+    at = snap_to_planes(k.planes, k.support, at, k_slice, k.smoothed);
   lap(k_step_planes, k.planes.reason());
   result.counts[k_step_planes] = k.planes.count() > 0 ? k.planes.plane(0).points : 0;
 }

@@ -1,0 +1,61 @@
+// Takes points off a plane that only crosses what they belong to.
+//
+// What:     a plane has no end, and cuts what stands in its way: a stripe of it is near the plane,
+//           and here and there has its normal by chance. A point stays on its plane if at least
+//           part_min of the points within radius_m of it are on the plane, too.
+// Cost:     sorting (neighbour_grid.hpp), then at most candidates_max distances for each point.
+// Worst:    more than candidates_max points around one: the first ones are asked, its own row
+// first. Accuracy: of a stripe twice the plane's threshold wide a quarter has support at 5 cm; a
+// point at
+//           a plane's edge with nothing behind it has all, one at an edge between two planes half.
+// Source:   regions that must hang together: Schnabel, Wahl and Klein 2007, Computer Graphics Forum
+//           26(2), section 4.4, by a vote of neighbours instead of components of a bitmap.
+#pragma once
+
+#include "kernels/cloud/neighbour_grid.hpp"
+#include "kernels/cloud/planes.hpp"
+
+namespace glint {
+
+struct PlaneSupportSettings {
+  float radius_m = 0.05f;
+  float part_min = 0.4f;
+  int candidates_max = 4096;
+};
+
+class PlaneSupport {
+ public:
+  [[nodiscard]] static constexpr std::size_t bytes(int points) noexcept {
+    return NeighbourGrid::bytes(points) + Column<std::uint8_t>::bytes(points);
+  }
+  // Reason: none; out_of_range (a setting, points); not_prepared (the arena has not enough left).
+  [[nodiscard]] Reason prepare(const PlaneSupportSettings& settings, int points,
+                               Arena& arena) noexcept;
+
+  // Begins with the cloud that was searched, marking each point at once as on no plane; both must
+  // stay as they are until step() says true.
+  void begin(const PointCloud& points, const PlaneSearch& planes) noexcept GLINT_NONBLOCKING;
+  // Goes on for at most `most` points. True when all are judged.
+  [[nodiscard]] bool step(int most) noexcept GLINT_NONBLOCKING;
+
+  // The plane that a point is on and stays on, or PlaneSearch::k_no_plane.
+  [[nodiscard]] std::uint8_t plane_of(int point) const noexcept {
+    return point < points_ ? plane_of_[point] : PlaneSearch::k_no_plane;
+  }
+  // Points taken off their plane.
+  [[nodiscard]] int taken_off() const noexcept { return taken_off_; }
+
+ private:
+  [[nodiscard]] bool is_supported(int point, std::uint8_t plane) const noexcept;
+
+  PlaneSupportSettings settings_;
+  NeighbourGrid grid_;
+  NeighbourSweep sweep_;
+  NeighbourSweep::Rows rows_{};
+  const PlaneSearch* planes_ = nullptr;
+  Column<std::uint8_t> plane_of_;
+  bool prepared_ = false;
+  int points_ = 0, capacity_ = 0, at_ = 0, cell_ = -1, taken_off_ = 0;
+};
+
+}  // namespace glint
