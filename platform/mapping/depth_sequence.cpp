@@ -17,8 +17,7 @@ constexpr double k_not_rigid = 0.01;  // of an axis's length or the cosine betwe
 constexpr int k_side_max = 4096;
 constexpr std::size_t k_frames_max = 10'000;
 
-std::vector<double> numbers_of(const FileText& opened, std::size_t count) {
-  FileText file = opened;
+std::vector<double> numbers_of(FileText& file, std::size_t count) {
   std::vector<double> numbers;
   std::vector<std::string_view> words;
   while (file.next_line(words)) {
@@ -35,7 +34,7 @@ std::vector<double> numbers_of(const FileText& opened, std::size_t count) {
 }
 
 Pose load_pose(const std::string& path) {
-  const FileText file(path, "a pose of 16 numbers");
+  FileText file(path, "a pose of 16 numbers");
   const std::vector<double> n = numbers_of(file, 16);
   Matrix3 rotation;
   rotation << n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10];
@@ -50,7 +49,7 @@ Pose load_pose(const std::string& path) {
 }
 
 CameraModel load_pinhole(const std::string& path) {
-  const FileText file(path, "a pinhole's matrix of 9 numbers");
+  FileText file(path, "a pinhole's matrix of 9 numbers");
   const std::vector<double> k = numbers_of(file, 9);
   if (!(k[0] > 0 && k[4] > 0) || k[1] != 0 || k[8] != 1) {
     file.refuse("another matrix", "fx 0 cx  0 fy cy  0 0 1, fx and fy above 0");

@@ -86,7 +86,8 @@ TEST(CloudFiles, RefuseBadPlyByFileAndLine) {
   expect_complaint("a.ply", head + "element vertex 1\nproperty real x\n", "line 4: type \"real\"");
   expect_complaint("a.ply", head + "element vertex 1\nproperty float x\nend_header\n1\n",
                    "no field y");
-  expect_complaint("a.ply", head + "element vertex 1\n" + xyz + "end_header\n1 2\n", "2 words");
+  expect_complaint("a.ply", head + "element vertex 1\n" + xyz + "end_header\n1 2.0000\n",
+                   "line 8: 2 words; expected 3");
   expect_complaint("a.ply", head + "element vertex 1\n" + xyz + "end_header\n1 2 x3\n",
                    "line 8: \"x3\"; expected a number");
   expect_complaint("a.ply", head + "\x01\x02 what\n", "line 3: \"??\"");
@@ -104,7 +105,7 @@ TEST(CloudFiles, RefuseBadPcdByFileAndLine) {
   expect_complaint("a.pcd", "", "the file ends; expected DATA");
   expect_complaint("a.pcd", head + "DATA ascii\n", "no POINTS");
   expect_complaint("a.pcd", head + "POINTS 1\nDATA binary_compressed\n", "DATA binary_compressed");
-  expect_complaint("a.pcd", head + "POINTS 2\nDATA ascii\n1 2 3\n\n\n", "after 1 points");
+  expect_complaint("a.pcd", head + "POINTS 2\nDATA ascii\n1 2 3.0000000\n\n\n", "after 1 points");
   expect_complaint("a.pcd", head + "POINTS 2\nDATA binary\n01234567890123456789012", "23 bytes");
   expect_complaint("a.pcd", "FIELDS x y z\nSIZE 4 4\n", "line 2: 2 words behind SIZE");
   expect_complaint("a.pcd", "FIELDS x y z\nTYPE F F Q\n", "line 2: type \"Q\"");
