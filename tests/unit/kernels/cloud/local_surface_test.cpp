@@ -87,6 +87,19 @@ TEST(LocalSurface, IsThePlaneForFewNeighboursAndForThoseOnALineOrInOnePlace) {
   EXPECT_NEAR(surface_of(place).normal.norm(), 1, 1e-12);
 }
 
+// Two rings, the inner one 20 mm below: the sheet through them lies 36 mm below at their middle.
+TEST(LocalSurface, IsThePlaneWhereTheSheetLiesFurtherAwayThanTheRadius) {
+  std::vector<Point> rings;
+  for (const auto& [x, y] : {std::array{1.0f, 0.0f}, {0.0f, 1.0f}, {0.6f, 0.8f}, {0.6f, -0.8f}}) {
+    for (const float side : {1.0f, -1.0f}) {
+      rings.push_back({0.02f * side * x, 0.02f * side * y, -0.02f});
+      rings.push_back({0.03f * side * x, 0.03f * side * y, 0});
+    }
+  }
+  EXPECT_FALSE(surface_of(rings).curved);
+  EXPECT_NEAR(surface_of(rings).offset_m.z(), -0.01, 1e-6);
+}
+
 TEST(LocalSurface, NeverCarriesAPointFurtherThanTheRadius) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<float> side(-0.017f, 0.017f);
