@@ -9,7 +9,8 @@
 //           and at most scored_max passes over the sample.
 // Worst:    a cloud without planes: one search, for nothing. A plane that holds the part p of the
 //           points is missed by all tries with probability (1 - p^3)^tries: 2 % at p = 0.1.
-// Accuracy: least squares of the points within the threshold; sums in double.
+// Accuracy: least squares of the points within the threshold; sums in double. Which is the largest
+//           the sample says: planes within a few percent of each other may change places.
 // Source:   Fischler and Bolles 1981, Communications of the ACM 24(6) (the tries); normals that
 //           must agree: Schnabel, Wahl and Klein 2007, Computer Graphics Forum 26(2), section 4.
 #pragma once
