@@ -242,8 +242,9 @@ class TrackToolsInTime : public testing::Test {
           *out_);
     return out_->tracks[0];
   }
-  const Track& found() {
+  const Track& found(bool stands = true) {
     followed().reason = Reason::none;
+    followed().stands = stands;
     (*fitted_)[0].tools[0].marker_mask = 7;
     return frame();
   }
@@ -287,6 +288,19 @@ TEST_F(TrackToolsInTime, LosesAToolWhosePoseByFewMarkersIsTooUnsure) {
     EXPECT_EQ(track.marker_mask, 7);
   }
   EXPECT_FALSE(few(false).alive) << "250 ms after the last that stood";
+}
+
+TEST_F(TrackToolsInTime, CallsNoPoseMeasuredThatIsUnsureButGoesOnByIt) {
+  EXPECT_FALSE(found(false).alive) << "a first pose that is unsure";
+  EXPECT_EQ(out_->tracks[0].reason, Reason::unsure);
+  const Time sure = found().newest.time;
+  followed().estimate.pose.translation.x() = 0.01;
+  const Track& track = found(false);
+  EXPECT_TRUE(track.alive);
+  EXPECT_FALSE(track.seen_now);
+  EXPECT_EQ(track.reason, Reason::unsure);
+  EXPECT_EQ(track.newest.time, sure);
+  EXPECT_EQ(track.motion.pose.translation.x(), 0.01);
 }
 
 TEST_F(TrackToolsInTime, LosesAToolThatIsExchangedOrTakenAway) {
@@ -353,6 +367,7 @@ TEST(TrackTools, GivesWhatTheHeadsetItselfIsOffByBesideTheMotionsCovariance) {
   const auto fitted = std::make_unique<graph::Parts<FittedTools, k_tool_slices>>();
   const auto followed = std::make_unique<graph::Parts<FollowedTools, k_tool_slices>>();
   (*followed)[0].items[0].reason = Reason::none;
+  (*followed)[0].items[0].stands = true;
   (*followed)[0].items[0].estimate.pose.translation = {1, 0, 0};
   Anchor anchor;
   anchor.now.head.valid = true;

@@ -208,8 +208,8 @@ TEST(HiddenHand, OneMarkerHoldsItsPlaceCoveredByItsCovariance) {
   EXPECT_EQ(held.jumps, 0);
 }
 
-// Three strays in a cube of 160 mm are 700 in a cubic metre. What three markers say wrongly among
-// them is the search's affair; here counts what one or two do.
+// Three strays in a cube of 160 mm are 700 in a cubic metre. Three of them that agree by chance are
+// the fit's affair: RefinePose holds them to the followed motion.
 TEST(HiddenHand, StraysNearbyAreHardlyEverTakenAndNeverMakeAGrossPose) {
   Figures held, coasted;
   for (const int markers : {1, 2}) {
@@ -225,8 +225,9 @@ TEST(HiddenHand, StraysNearbyAreHardlyEverTakenAndNeverMakeAGrossPose) {
   EXPECT_GT(held.by_few.standing, held.hidden / 2);
   EXPECT_EQ(held.by_few.gross, 0);
   EXPECT_LE(held.by_few.wrong_mask, held.by_few.standing / 100);
-  EXPECT_LT(held.by_more.gross, coasted.by_more.gross / 2)
-      << "a tool that is held is not looked for far away";
+  EXPECT_LE(held.by_more.gross + coasted.by_more.gross, held.hidden / 500)
+      << "three that agree by chance are held to the motion";
+  EXPECT_LT(held.nees / held.hidden, 2.5);
 }
 
 }  // namespace

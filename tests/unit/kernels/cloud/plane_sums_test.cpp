@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <random>
+#include <vector>
 
 namespace glint {
 namespace {

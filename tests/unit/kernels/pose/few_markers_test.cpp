@@ -19,8 +19,10 @@ class FewMarkersTest : public testing::Test {
     for (int t = 0; t < 2; ++t) {
       Tool& tool = tools_[static_cast<std::size_t>(t)];
       tool.marker_count = 4;
-      tool.markers_m = {Vector3(-0.05, 0, 0), Vector3(0.05, 0, 0.01), Vector3(0, 0.06, 0),
-                        Vector3(0.01, -0.04, 0.02)};
+      tool.markers_m[0] = {-0.05, 0, 0};
+      tool.markers_m[1] = {0.05, 0, 0.01};
+      tool.markers_m[2] = {0, 0.06, 0};
+      tool.markers_m[3] = {0.01, -0.04, 0.02};
       tool.marker_radius_m = 0.005;
       EXPECT_EQ(prepare_tool(tool), Reason::none);
       ExpectedTool& expected = expected_[static_cast<std::size_t>(t)];
