@@ -236,6 +236,7 @@ class TrackToolsKernel final : public NodeKernel<TrackTools> {
       tool.reason = at_its_worst(kind) || !numbers.one_in(4) ? Reason::none : Reason::no_labeling;
       tool.T_camera_tool = any_view(numbers);
       followed_[t % k_tool_slices].items[t / k_tool_slices].reason = tool.reason;
+      followed_[t % k_tool_slices].items[t / k_tool_slices].stands = true;
     }
     anchor_.now.head = tracked_.head;
     anchor_.now.lasting = Matrix6::Identity() * 1e-6;

@@ -97,7 +97,7 @@ TEST(RayTableFile, IsRefusedByNameWithWhatWasExpected) {
       {"P5 1 1 255 x", "expected a .npy file"},
       {npy("<f8", "6, 3", small_rays()), "expected little-endian float32"},
       {npy("<f4", "5, 3", short_list), "expected 6 x 3"},
-      {npy("<f4", "6, 3", small_rays()).substr(0, 150), "expected 72 by the shape"},
+      {npy("<f4", "6, 3", small_rays()).substr(0, 150), "22 bytes of data; expected 4 for each value"},
       {npy("<f4", "6, 3", long_ray), "row 0: not a unit vector"},
       {npy("<f4", "6, 3", no_rays), "every ray is zero"},
       {npy("<f4", "6, 3", small_rays()).substr(0, 40), "longer than the file"},
