@@ -50,8 +50,8 @@ inline constexpr Reason k_last_reason = Reason::cloud_full;
       "degenerate",    "collinear",         "bad_fit",         "frame_late",   "frame_doubled",
       "frame_invalid", "head_pose_missing", "too_old",         "runs_full",    "blobs_full",
       "search_full",   "not_prepared",      "out_of_range",    "no_reference", "overrun_skipped",
-      "overrun_held",  "overrun_predicted", "overrun_stopped", "tool_changed",
-      "unsure",        "cloud_full"};
+      "overrun_held",  "overrun_predicted", "overrun_stopped", "tool_changed", "unsure",
+      "cloud_full"};
   const auto i = static_cast<std::size_t>(reason);
   return i < sizeof names / sizeof names[0] ? names[i] : "unknown";
 }

@@ -121,8 +121,8 @@ struct FollowedTool {
   NoiseScale noise;      // motion's
   ReferenceFrame base = ReferenceFrame::camera;
   std::uint32_t identity = 0;  // of the tool that it is of
-  std::uint8_t few_mask = 0;  // one or two markers moved it on in place of a pose: which; 0: none
-  bool stands = false;        // its pose is sure enough to be called measured
+  std::uint8_t few_mask = 0;   // one or two markers moved it on in place of a pose: which; 0: none
+  bool stands = false;         // its pose is sure enough to be called measured
 };
 // Of one slice: tool t is number t / k_tool_slices.
 struct FollowedTools {
