@@ -4,9 +4,8 @@
 //           differences as slopes, rotation by the normalized blend of both.
 // Cost:     no loop, one square root.
 // Worst:    opposite rotations of the middle two; neighbours a hand's motion apart never are.
-// Accuracy: position to the third order of the gap; rotation within angle^3 / 100 of SLERP, 1e-5
-// deg
-//           for neighbours one degree apart.
+// Accuracy: position to the third order of the gap; rotation within angle^3 / 100 of SLERP:
+//           1e-5 deg for neighbours one degree apart.
 // Source:   Catmull and Rom 1974, "A class of local interpolating splines", for uneven stamps.
 #pragma once
 

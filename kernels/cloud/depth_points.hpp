@@ -6,9 +6,8 @@
 // Worst:    pixels without a depth between the limits, or without a ray, are left out; a full cloud
 //           keeps the first ones.
 // Accuracy: in double, rounded to float at the end.
-// Source:   depth along the axis or along the ray: the pinhole's definition, and HoloLens 2
-// research
-//           mode's, whose depth is radial.
+// Source:   depth along the axis or along the ray: the pinhole's definition, and that of HoloLens
+//           2's research mode, whose depth is radial.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 #include "kernels/cloud/moving_least_squares.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace glint {
@@ -30,19 +31,15 @@ void MovingLeastSquares::begin(const PointCloud& points) noexcept {
   if (!prepared_) return;
   cloud_ = &points;
   grid_.begin(points, settings_.radius_m);
-  sweep_.begin();
-  at_ = 0;
-  cell_ = -1;
+  walk_.begin();
   appended_ = dropped_ = lonely_ = flat_ = cut_ = 0;
 }
 
 // All points of a cell have the same candidates: they are brought together once.
-void MovingLeastSquares::gather_candidates(int cell) noexcept {
-  NeighbourSweep::Rows rows;
-  sweep_.rows_around(grid_, cell, rows);
+void MovingLeastSquares::gather_candidates() noexcept {
   candidates_ = 0;
   cell_cut_ = false;
-  for (const NeighbourSweep::Row& row : rows) {
+  for (const NeighbourSweep::Row& row : walk_.rows()) {
     const int room = settings_.candidates_max - candidates_;
     const int taken = std::min(row.end - row.begin, room);
     cell_cut_ = cell_cut_ || taken < row.end - row.begin;
@@ -99,16 +96,8 @@ void MovingLeastSquares::smooth(int point, PointCloud& smoothed) noexcept {
 
 bool MovingLeastSquares::step(int most, PointCloud& smoothed) noexcept {
   if (!prepared_) return true;
-  if (!grid_.sorted()) {
-    grid_.sort(most);
-    return grid_.sorted() && grid_.count() == 0;
-  }
-  const int end = std::min(grid_.count(), at_ + std::max(most, 1));
-  for (; at_ < end; ++at_) {
-    if (at_ == grid_.first_point(cell_ + 1)) gather_candidates(++cell_);
-    smooth(at_, smoothed);
-  }
-  return at_ == grid_.count();
+  return walk_.step(
+      grid_, most, [&] { gather_candidates(); }, [&](int point) { smooth(point, smoothed); });
 }
 
 Reason MovingLeastSquares::reason() const noexcept {

@@ -15,6 +15,7 @@
 
 #include "kernels/cloud/local_surface.hpp"
 #include "kernels/cloud/neighbour_grid.hpp"
+#include "kernels/cloud/neighbour_walk.hpp"
 
 namespace glint {
 
@@ -60,13 +61,13 @@ class MovingLeastSquares {
   [[nodiscard]] Reason reason() const noexcept;
 
  private:
-  void gather_candidates(int cell) noexcept;
+  void gather_candidates() noexcept;
   void gather_neighbours(int point) noexcept;
   void smooth(int point, PointCloud& smoothed) noexcept;
 
   MovingLeastSquaresSettings settings_;
   NeighbourGrid grid_;
-  NeighbourSweep sweep_;
+  NeighbourWalk walk_;
   Column<float> x_, y_, z_, weight_;                      // all candidates of one cell
   Column<float> near_x_, near_y_, near_z_, near_weight_;  // one point's, relative to it
   Neighbours near_;
@@ -76,7 +77,6 @@ class MovingLeastSquares {
   bool prepared_ = false;
   int candidates_ = 0;
   bool cell_cut_ = false;
-  int at_ = 0, cell_ = -1;
   int dropped_ = 0, lonely_ = 0, flat_ = 0, cut_ = 0;
 };
 

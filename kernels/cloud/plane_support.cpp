@@ -28,16 +28,15 @@ void PlaneSupport::begin(const PointCloud& points, const PlaneSearch& planes) no
   points_ = std::min(points.count, capacity_);
   std::fill_n(plane_of_.data(), points_, PlaneSearch::k_no_plane);
   grid_.begin(points, settings_.radius_m);
-  sweep_.begin();
-  at_ = taken_off_ = 0;
-  cell_ = -1;
+  walk_.begin();
+  taken_off_ = 0;
 }
 
 bool PlaneSupport::is_supported(int point, std::uint8_t plane) const noexcept {
   const float x = grid_.x()[point], y = grid_.y()[point], z = grid_.z()[point];
   const float limit = settings_.radius_m * settings_.radius_m;
   int near = 0, on_plane = 0, left = settings_.candidates_max;
-  for (const NeighbourSweep::Row& row : rows_) {
+  for (const NeighbourSweep::Row& row : walk_.rows()) {
     const int end = std::min(row.end, row.begin + left);
     left -= std::max(end - row.begin, 0);
     for (int i = row.begin; i < end; ++i) {
@@ -52,20 +51,15 @@ bool PlaneSupport::is_supported(int point, std::uint8_t plane) const noexcept {
 
 bool PlaneSupport::step(int most) noexcept {
   if (!prepared_) return true;
-  if (!grid_.sorted()) {
-    grid_.sort(most);
-    return grid_.sorted() && grid_.count() == 0;
-  }
-  const int end = std::min(grid_.count(), at_ + std::max(most, 1));
-  for (; at_ < end; ++at_) {
-    if (at_ == grid_.first_point(cell_ + 1)) sweep_.rows_around(grid_, ++cell_, rows_);
-    const int place = grid_.place_in_cloud(at_);
-    const std::uint8_t plane = planes_->plane_of(place);
-    const bool stays = plane == PlaneSearch::k_no_plane || is_supported(at_, plane);
-    plane_of_[place] = stays ? plane : PlaneSearch::k_no_plane;
-    taken_off_ += stays ? 0 : 1;
-  }
-  return at_ == grid_.count();
+  return walk_.step(
+      grid_, most, [] {},
+      [&](int point) {
+        const int place = grid_.place_in_cloud(point);
+        const std::uint8_t plane = planes_->plane_of(place);
+        const bool stays = plane == PlaneSearch::k_no_plane || is_supported(point, plane);
+        plane_of_[place] = stays ? plane : PlaneSearch::k_no_plane;
+        taken_off_ += stays ? 0 : 1;
+      });
 }
 
 }  // namespace glint

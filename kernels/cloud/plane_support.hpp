@@ -4,15 +4,15 @@
 //           and here and there has its normal by chance. A point stays on its plane if at least
 //           part_min of the points within radius_m of it are on the plane, too.
 // Cost:     sorting (neighbour_grid.hpp), then at most candidates_max distances for each point.
-// Worst:    more than candidates_max points around one: the first ones are asked, its own row
-// first. Accuracy: of a stripe twice the plane's threshold wide a quarter has support at 5 cm; a
-// point at
-//           a plane's edge with nothing behind it has all, one at an edge between two planes half.
+// Worst:    more than candidates_max points around one: its own row is asked first.
+// Accuracy: of a stripe twice the plane's threshold wide a quarter has support at 5 cm; a point at
+//           a plane's edge with nothing behind it has all, one at an edge of two planes half.
 // Source:   regions that must hang together: Schnabel, Wahl and Klein 2007, Computer Graphics Forum
 //           26(2), section 4.4, by a vote of neighbours instead of components of a bitmap.
 #pragma once
 
 #include "kernels/cloud/neighbour_grid.hpp"
+#include "kernels/cloud/neighbour_walk.hpp"
 #include "kernels/cloud/planes.hpp"
 
 namespace glint {
@@ -50,12 +50,11 @@ class PlaneSupport {
 
   PlaneSupportSettings settings_;
   NeighbourGrid grid_;
-  NeighbourSweep sweep_;
-  NeighbourSweep::Rows rows_{};
+  NeighbourWalk walk_;
   const PlaneSearch* planes_ = nullptr;
   Column<std::uint8_t> plane_of_;
   bool prepared_ = false;
-  int points_ = 0, capacity_ = 0, at_ = 0, cell_ = -1, taken_off_ = 0;
+  int points_ = 0, capacity_ = 0, taken_off_ = 0;
 };
 
 }  // namespace glint

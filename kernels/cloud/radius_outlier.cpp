@@ -21,9 +21,7 @@ void RadiusOutlier::begin(const PointCloud& points) noexcept {
   if (!prepared_) return;
   cloud_ = &points;
   grid_.begin(points, settings_.radius_m);
-  sweep_.begin();
-  at_ = 0;
-  cell_ = -1;
+  walk_.begin();
   dropped_ = undecided_ = 0;
 }
 
@@ -35,7 +33,7 @@ bool RadiusOutlier::has_neighbours(int point) noexcept {
   const FourFloats x = all_four(xs[point]), y = all_four(ys[point]), z = all_four(zs[point]);
   const FourFloats limit = all_four(settings_.radius_m * settings_.radius_m);
   int left = settings_.candidates_max, near = 0;
-  for (const NeighbourSweep::Row& row : rows_) {
+  for (const NeighbourSweep::Row& row : walk_.rows()) {
     for (int i = row.begin; i < row.end; i += 4) {
       if (left <= 0) {
         ++undecided_;
@@ -54,18 +52,13 @@ bool RadiusOutlier::has_neighbours(int point) noexcept {
 
 bool RadiusOutlier::step(int most, PointCloud& kept) noexcept {
   if (!prepared_) return true;
-  if (!grid_.sorted()) {
-    grid_.sort(most);
-    return grid_.sorted() && grid_.count() == 0;
-  }
-  const int end = std::min(grid_.count(), at_ + std::max(most, 1));
-  for (; at_ < end; ++at_) {
-    if (at_ == grid_.first_point(cell_ + 1)) sweep_.rows_around(grid_, ++cell_, rows_);
-    if (!has_neighbours(at_)) continue;
-    const float weight = cloud_->weight[grid_.place_in_cloud(at_)];
-    if (!kept.add(grid_.x()[at_], grid_.y()[at_], grid_.z()[at_], weight)) ++dropped_;
-  }
-  return at_ == grid_.count();
+  return walk_.step(
+      grid_, most, [] {},
+      [&](int point) {
+        if (!has_neighbours(point)) return;
+        const float weight = cloud_->weight[grid_.place_in_cloud(point)];
+        if (!kept.add(grid_.x()[point], grid_.y()[point], grid_.z()[point], weight)) ++dropped_;
+      });
 }
 
 Reason RadiusOutlier::reason() const noexcept {

@@ -13,6 +13,7 @@
 #pragma once
 
 #include "kernels/cloud/neighbour_grid.hpp"
+#include "kernels/cloud/neighbour_walk.hpp"
 
 namespace glint {
 
@@ -48,11 +49,9 @@ class RadiusOutlier {
 
   RadiusOutlierSettings settings_;
   NeighbourGrid grid_;
-  NeighbourSweep sweep_;
-  NeighbourSweep::Rows rows_{};
+  NeighbourWalk walk_;
   const PointCloud* cloud_ = nullptr;
   bool prepared_ = false;
-  int at_ = 0, cell_ = -1;
   int dropped_ = 0, undecided_ = 0;
 };
 

@@ -5,12 +5,11 @@
 //           with is worth, then the lower tool index. A labeling is free while none of its markers
 //           is taken. So of two tools that are nearly equal the one that was there keeps its
 //           markers, also while the other is hidden and fits them too.
-// Cost:     a test of k_markers_per_tool_max markers for each labeling looked at. What is taken
-// stays
-//           taken, so a labeling found taken is never looked at again: each round looks once more
-//           only at each waiting tool's first one that was free.
-// Worst:    all but the last labeling of every tool hold the marker that the first round gives
-// away. Accuracy: exact; it is greedy, so the sum over all tools need not be the best possible.
+// Cost:     a test of k_markers_per_tool_max markers for each labeling looked at. A labeling found
+//           taken is never looked at again: each round looks once more only at each waiting tool's
+//           first one that was free.
+// Worst:    all but the last labeling of every tool hold the marker that goes first.
+// Accuracy: exact; it is greedy, so the sum over all tools need not be the best possible.
 #pragma once
 
 #include <span>

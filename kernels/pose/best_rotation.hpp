@@ -7,9 +7,8 @@
 //           orthogonal to u_0, R = u_0 v_0^T + u_1 v_1^T + (u_0 x u_1)(v_0 x v_1)^T. The cross
 //           products are what keeps det R = +1, so that no third singular value is needed and
 //           coplanar points are no special case.
-// Cost:     the same for every matrix: no iteration but k_eigenvalue_steps (lone_eigenvector.hpp)
-// on
-//           one number.
+// Cost:     the same for every matrix: no iteration but k_eigenvalue_steps on one
+//           number (lone_eigenvector.hpp).
 // Worst:    every input alike. Where two singular values make the rotation ambiguous (w_1 = -w_2)
 //           any of the best rotations is given.
 // Accuracy: trace(R^T C) within 1e-14 |C| of the largest over 10^5 random, coplanar, mirrored and

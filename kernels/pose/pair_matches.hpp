@@ -1,9 +1,8 @@
 // Which pairs of candidates have the distance of which pair of the tool's markers: the table that
 // the correspondence search walks.
 //
-// What:     d_R, the distance of two candidates, equals the tool's d_M if |d_R - d_M| < delta,
-// where
-//           delta follows from the noise of these two: a range error moves a marker along its ray,
+// What:     d_R, the distance of two candidates, equals the tool's d_M if |d_R - d_M| < delta.
+//           Delta follows from the noise of these two: a range error moves a marker along its ray,
 //           so a pair beside each other keeps its distance, a pair behind each other does not.
 // Cost:     candidates^2 / 2 pairs, each tested against each of the tool's distances, which is
 //           cheaper than to look up which of them might fit; and the words of the table are

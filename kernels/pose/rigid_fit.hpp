@@ -9,9 +9,8 @@
 // Accuracy: the least-squares optimum to rounding (1e-15 of the points' distance from the origin).
 //           It weighs all directions alike: where the noise is larger along the ray it is unbiased
 //           to first order, but not the most accurate fit.
-// Source:   Arun, Huang and Blostein 1987, eq. (11) to (14) (the cross-covariance); Kanatani 1994
-// and
-//           Challis 1995, eq. (13), for what keeps det R = +1.
+// Source:   Arun, Huang and Blostein 1987, eq. (11) to (14) (the cross-covariance); Kanatani
+//           1994 and Challis 1995, eq. (13), for what keeps det R = +1.
 #pragma once
 
 #include <span>

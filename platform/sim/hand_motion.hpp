@@ -3,7 +3,7 @@
 //
 // Source: a hand holding still has 0.05 mm rms at about 8 Hz, and 99 % of voluntary power lies
 // below
-//         2 Hz (see the peers' figures in the project's reference).
+//         2 Hz.
 #pragma once
 
 #include <cstdint>

@@ -7,34 +7,18 @@
 #include <limits>
 #include <vector>
 
+#include "tests/unit/kernels/pose/correspond_view.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
 
 namespace glint {
 namespace {
 
+using test::ahat;
+using test::centres;
+using test::labelings_of;
 using test::Random;
 using test::Scene;
 using test::SceneSettings;
-
-CorrespondSettings ahat() {
-  CorrespondSettings settings;
-  settings.focal_px = 253;
-  return settings;
-}
-
-Labelings labelings_of(const Markers& markers, const Tool& tool, const CorrespondSettings& settings,
-                       const Pose* prior = nullptr) {
-  Labelings labelings;
-  static CorrespondScratch scratch;
-  propose_labelings(markers, tool, settings, prior, scratch, labelings);
-  return labelings;
-}
-
-Markers centres(const Tool& tool, const std::vector<Vector3>& points) {
-  Markers markers;
-  for (const Vector3& point : points) test::add_marker(markers, tool, point);
-  return markers;
-}
 
 TEST(Correspond, NamesTheMarkersOfAPenAmongStrays) {
   const Tool pen = test::five_marker_pen();
@@ -123,64 +107,6 @@ TEST(Correspond, FindsThreeMarkersWhereTheyArePredictedAndOnlyThere) {
   EXPECT_LE(alone.found, 2);
 }
 
-TEST(Correspond, BelievesThreeMarkersOnlyWhereTheToolCanHaveGot) {
-  const Tool pen = test::five_marker_pen();
-  const Pose truth{Quaternion::Identity(), Vector3(0, 0, 0.4)};
-  const auto find = [&](int seen, double off_m, double few_gate_m) {
-    std::vector<Vector3> points;
-    for (int i = 0; i < seen; ++i) points.push_back(truth * pen.markers_m[std::size_t(i)]);
-    const Pose prior{truth.rotation, truth.translation + Vector3(off_m, 0, 0)};
-    CorrespondSettings settings = ahat();
-    settings.few_gate_m = few_gate_m;
-    return labelings_of(centres(pen, points), pen, settings, &prior).count;
-  };
-  EXPECT_EQ(find(3, 0.019, 0.02), 1);
-  EXPECT_EQ(find(3, 0.021, 0.02), 0);
-  EXPECT_GE(find(4, 0.021, 0.02), 1);  // four agree by chance far less often
-  EXPECT_EQ(find(3, 0.049, 1.0), 1);
-  EXPECT_EQ(find(3, 0.051, 1.0), 0);  // never further than where any are looked for first
-}
-
-TEST(Correspond, SaysWhatAPredictionIsWorthOnlyWhereItIsMet) {
-  const Tool pen = test::five_marker_pen();
-  const Pose truth{Quaternion::Identity(), Vector3(0, 0, 0.4)};
-  std::vector<Vector3> points;
-  for (int i = 0; i < pen.marker_count; ++i)
-    points.push_back(truth * pen.markers_m[std::size_t(i)]);
-  const Markers markers = centres(pen, points);
-  const auto worth = [&](const Pose* prior) {
-    return labelings_of(markers, pen, ahat(), prior).items[0].predicted_worth_m2;
-  };
-  const Pose far{truth.rotation, truth.translation + Vector3(0.06, 0, 0)};
-  const double sigma = ahat().range_sigma_m;
-  // In sigmas squared, 6 ln(1 m / 6 mm): where it was foretold, and so surely.
-  EXPECT_NEAR(worth(&truth), 30.7 * sigma * sigma, 1.5 * sigma * sigma);
-  const Pose near{truth.rotation, truth.translation + Vector3(0, 0.012, 0)};
-  EXPECT_NEAR(worth(&truth) - worth(&near), 4 * sigma * sigma, 1.5 * sigma * sigma);
-  EXPECT_EQ(worth(&far), 0);
-  EXPECT_EQ(worth(nullptr), 0);
-}
-
-TEST(Correspond, LooksOnlyNearAPredictionThatIsSure) {
-  const Tool pen = test::five_marker_pen();
-  const Pose truth{Quaternion::Identity(), Vector3(0, 0, 0.4)};
-  std::vector<Vector3> points;
-  for (int i = 0; i < pen.marker_count; ++i)
-    points.push_back(truth * pen.markers_m[std::size_t(i)]);
-  const Markers markers = centres(pen, points);
-  CorrespondSettings settings = ahat();
-  for (const bool sure : {false, true}) {
-    settings.only_near = sure;
-    const auto found_with_prior_off_by = [&](double off_m) {
-      const Pose prior{truth.rotation, truth.translation + Vector3(off_m, 0, 0)};
-      return labelings_of(markers, pen, settings, &prior).count > 0;
-    };
-    EXPECT_TRUE(found_with_prior_off_by(0.04));
-    EXPECT_EQ(found_with_prior_off_by(0.06), !sure);
-    EXPECT_EQ(labelings_of(markers, pen, settings).count > 0, true) << "without any";
-  }
-}
-
 TEST(Correspond, DoesNotCallStraysATool) {
   const auto pen = [](Random&) { return test::five_marker_pen(); };
   SceneSettings settings;
@@ -217,52 +143,6 @@ TEST(Correspond, TheSmallestResidualOfAllLabelingsDecidesForANearlySymmetricGrid
     }
   }
   EXPECT_EQ(several, 300);  // else the test shows nothing
-}
-
-TEST(Correspond, APredictionDecidesBetweenReadingsThatTheNoiseCannotTellApart) {
-  const Tool square = test::tool_of<4>({{0, 0, 0}, {80, 0, 0}, {80, 80, 0}, {0, 80, 0}});
-  const Vector3 ahead(0, 0, 0.5);
-  std::vector<Vector3> points;
-  for (std::size_t i = 0; i < 4; ++i) points.push_back(square.markers_m[i] + ahead);
-  points[0].x() += 0.0004;  // so that no two readings have the same residual
-  const Markers markers = centres(square, points);
-  for (int quarter = 0; quarter < 4; ++quarter) {
-    const Quaternion turn = from_rotation_vector(Vector3(0, 0, quarter * 1.5707963267948966));
-    const Vector3 middle(0.04, 0.04, 0);
-    const Pose prior{turn, ahead + middle - turn * middle};
-    const Labelings found = labelings_of(markers, square, ahat(), &prior);
-    ASSERT_GE(found.count, 4);
-    EXPECT_LT(test::angle_between(found.items[0].T_camera_tool.rotation, turn), 0.1) << quarter;
-  }
-}
-
-TEST(Correspond, APredictionDoesNotOverruleAClearResidual) {
-  const Tool pen = test::five_marker_pen();
-  Random random(7);
-  const Scene scene = test::scene_of(pen, {}, random);
-  const Pose wrong{random.rotation(), scene.T_camera_tool.translation + Vector3(0.3, 0, 0)};
-  const Labelings found = labelings_of(scene.markers, pen, ahat(), &wrong);
-  ASSERT_GE(found.count, 1);
-  EXPECT_EQ(found.items[0].marker, scene.truth);
-}
-
-TEST(Correspond, APredictionDoesNotOverruleAReadingThatFitsWorseThanNoiseExplains) {
-  const Tool plate = test::tool_of<4>({{0, 0, 0}, {80, 0, 0}, {85, 66, 0}, {0, 60, 0}});
-  std::vector<Vector3> points;
-  for (std::size_t i = 0; i < 4; ++i) points.push_back(plate.markers_m[i] + Vector3(0, 0, 0.5));
-  const CorrespondSettings settings;  // noise alike in all directions: the wide gate
-  const Quaternion half = from_rotation_vector(Vector3(0, 0, 3.14159265358979));
-  const Vector3 middle(0.041, 0.031, 0);
-  const Pose turned{half, Vector3(0, 0, 0.5) + middle - half * middle};
-  const Labelings found = labelings_of(centres(plate, points), plate, settings, &turned);
-  const bool competes = std::any_of(
-      found.items.begin(), found.items.begin() + found.count, [&](const Labeling& reading) {
-        return reading.count == 4 &&
-               test::angle_between(reading.T_camera_tool.rotation, half) < 0.1;
-      });
-  ASSERT_TRUE(competes);
-  EXPECT_LT(found.items[0].rms_m, 1e-9);
-  EXPECT_LT(found.items[0].T_camera_tool.rotation.angularDistance(Quaternion::Identity()), 1e-6);
 }
 
 TEST(Correspond, KeepsShortSidesAcrossTheRayWhoseErrorIsOfSecondOrder) {

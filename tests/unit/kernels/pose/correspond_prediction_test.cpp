@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "tests/unit/kernels/pose/correspond_view.hpp"
+
+namespace glint {
+namespace {
+
+using test::ahat;
+using test::centres;
+using test::labelings_of;
+using test::Random;
+using test::Scene;
+
+const Pose k_truth{Quaternion::Identity(), Vector3(0, 0, 0.4)};
+
+// The first `seen` markers of a tool at k_truth, as they are.
+Markers view_of(const Tool& tool, int seen) {
+  std::vector<Vector3> points;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(seen); ++i)
+    points.push_back(k_truth * tool.markers_m[i]);
+  return centres(tool, points);
+}
+
+Pose beside_truth(double off_m) {
+  return {k_truth.rotation, k_truth.translation + Vector3(off_m, 0, 0)};
+}
+
+TEST(CorrespondPrediction, BelievesThreeMarkersOnlyWhereTheToolCanHaveGot) {
+  const Tool pen = test::five_marker_pen();
+  const auto find = [&](int seen, double off_m, double few_gate_m) {
+    const Pose prior = beside_truth(off_m);
+    CorrespondSettings settings = ahat();
+    settings.few_gate_m = few_gate_m;
+    return labelings_of(view_of(pen, seen), pen, settings, &prior).count;
+  };
+  EXPECT_EQ(find(3, 0.019, 0.02), 1);
+  EXPECT_EQ(find(3, 0.021, 0.02), 0);
+  EXPECT_GE(find(4, 0.021, 0.02), 1);  // four agree by chance far less often
+  EXPECT_EQ(find(3, 0.049, 1.0), 1);
+  EXPECT_EQ(find(3, 0.051, 1.0), 0);  // never further than where any are looked for first
+}
+
+TEST(CorrespondPrediction, SaysWhatAPredictionIsWorthOnlyWhereItIsMet) {
+  const Tool pen = test::five_marker_pen();
+  const Markers markers = view_of(pen, pen.marker_count);
+  const auto worth = [&](const Pose* prior) {
+    return labelings_of(markers, pen, ahat(), prior).items[0].predicted_worth_m2;
+  };
+  const Pose near = beside_truth(0.012), far = beside_truth(0.06);
+  const double sigma = ahat().range_sigma_m;
+  // In sigmas squared, 6 ln(1 m / 6 mm): where it was foretold, and so surely.
+  EXPECT_NEAR(worth(&k_truth), 30.7 * sigma * sigma, 1.5 * sigma * sigma);
+  EXPECT_NEAR(worth(&k_truth) - worth(&near), 4 * sigma * sigma, 1.5 * sigma * sigma);
+  EXPECT_EQ(worth(&far), 0);
+  EXPECT_EQ(worth(nullptr), 0);
+}
+
+TEST(CorrespondPrediction, LooksOnlyNearAPredictionThatIsSure) {
+  const Tool pen = test::five_marker_pen();
+  const Markers markers = view_of(pen, pen.marker_count);
+  CorrespondSettings settings = ahat();
+  for (const bool sure : {false, true}) {
+    settings.only_near = sure;
+    const auto found_with_prior_off_by = [&](double off_m) {
+      const Pose prior = beside_truth(off_m);
+      return labelings_of(markers, pen, settings, &prior).count > 0;
+    };
+    EXPECT_TRUE(found_with_prior_off_by(0.04));
+    EXPECT_EQ(found_with_prior_off_by(0.06), !sure);
+    EXPECT_GT(labelings_of(markers, pen, settings).count, 0) << "without any";
+  }
+}
+
+TEST(CorrespondPrediction, APredictionDecidesBetweenReadingsThatTheNoiseCannotTellApart) {
+  const Tool square = test::tool_of<4>({{0, 0, 0}, {80, 0, 0}, {80, 80, 0}, {0, 80, 0}});
+  const Vector3 ahead(0, 0, 0.5);
+  std::vector<Vector3> points;
+  for (std::size_t i = 0; i < 4; ++i) points.push_back(square.markers_m[i] + ahead);
+  points[0].x() += 0.0004;  // so that no two readings have the same residual
+  const Markers markers = centres(square, points);
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const Quaternion turn = from_rotation_vector(Vector3(0, 0, quarter * 1.5707963267948966));
+    const Vector3 middle(0.04, 0.04, 0);
+    const Pose prior{turn, ahead + middle - turn * middle};
+    const Labelings found = labelings_of(markers, square, ahat(), &prior);
+    ASSERT_GE(found.count, 4);
+    EXPECT_LT(test::angle_between(found.items[0].T_camera_tool.rotation, turn), 0.1) << quarter;
+  }
+}
+
+TEST(CorrespondPrediction, APredictionDoesNotOverruleAClearResidual) {
+  const Tool pen = test::five_marker_pen();
+  Random random(7);
+  const Scene scene = test::scene_of(pen, {}, random);
+  const Pose wrong{random.rotation(), scene.T_camera_tool.translation + Vector3(0.3, 0, 0)};
+  const Labelings found = labelings_of(scene.markers, pen, ahat(), &wrong);
+  ASSERT_GE(found.count, 1);
+  EXPECT_EQ(found.items[0].marker, scene.truth);
+}
+
+TEST(CorrespondPrediction, APredictionDoesNotOverruleAReadingThatFitsWorseThanNoiseExplains) {
+  const Tool plate = test::tool_of<4>({{0, 0, 0}, {80, 0, 0}, {85, 66, 0}, {0, 60, 0}});
+  std::vector<Vector3> points;
+  for (std::size_t i = 0; i < 4; ++i) points.push_back(plate.markers_m[i] + Vector3(0, 0, 0.5));
+  const CorrespondSettings settings;  // noise alike in all directions: the wide gate
+  const Quaternion half = from_rotation_vector(Vector3(0, 0, 3.14159265358979));
+  const Vector3 middle(0.041, 0.031, 0);
+  const Pose turned{half, Vector3(0, 0, 0.5) + middle - half * middle};
+  const Labelings found = labelings_of(centres(plate, points), plate, settings, &turned);
+  const bool competes = std::any_of(
+      found.items.begin(), found.items.begin() + found.count, [&](const Labeling& reading) {
+        return reading.count == 4 &&
+               test::angle_between(reading.T_camera_tool.rotation, half) < 0.1;
+      });
+  ASSERT_TRUE(competes);
+  EXPECT_LT(found.items[0].rms_m, 1e-9);
+  EXPECT_LT(found.items[0].T_camera_tool.rotation.angularDistance(Quaternion::Identity()), 1e-6);
+}
+
+}  // namespace
+}  // namespace glint
