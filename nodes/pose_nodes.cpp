@@ -35,7 +35,7 @@ void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
     const Prediction& prediction = predictions.tools[i];
     gated.prior_gate_m = settings.prior_gate_m + prediction.reach_m;
     gated.prior_sigma_m = prediction.reach_m / k_reach_sigmas;
-    gated.only_near = prediction.follows_motion;
+    gated.only_near = prediction.only_near;
     gated.few_gate_m = prediction.reach_m + 3 * settings.range_sigma_m;
     gated.search_steps_max += limits.search_steps;
     const CorrespondWork work = propose_labelings(

@@ -27,6 +27,13 @@ double moved_share(double seconds, double correlation_s) {
   return correlation_s > 0 ? 2 * (1 - exponential(-seconds / correlation_s)) : 2.0;
 }
 
+bool speed_is_known(const MotionState& motion, double sigma_m_s) {
+  for (int axis = k_velocity; axis < k_velocity + 3; ++axis) {
+    if (!(motion.covariance(axis, axis) <= sigma_m_s * sigma_m_s)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 // T_camera_world: null where the head's pose is not known. Returns how far from where its motion
@@ -42,6 +49,7 @@ double PredictTracks::foretell(const Track& track, const Tool& tool, Time time,
     return 0;
   }
   ++counts_[2];
+  prediction.only_near = speed_is_known(track.motion, settings.known_speed_m_s);
   const UncertainPose later = predict_pose(track.motion, time, settings.motion, track.noise);
   const bool goes_on = time - track.motion.time <= settings.horizon;
   Pose middle = goes_on ? later.pose : track.motion.pose;

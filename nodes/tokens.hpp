@@ -51,6 +51,7 @@ struct Prediction {
   // By its followed motion, so that the covariance holds: of the middle of its markers, about the
   // camera's axes. Else the tool is held where the camera saw it.
   bool follows_motion = false;
+  bool only_near = false;  // its speed is known, too: what lies beyond reach_m is not it
   Matrix6 covariance = Matrix6::Zero();
   // The markers' box in the image with that reach about each; not where one has no pixel.
   bool in_view = false;
