@@ -41,16 +41,15 @@ void add_decisions(const GroupRunner<G>& runner, Sha256& hash) {
 
 BoardGroups::BoardGroups(const Cell& cell, Sinks& sinks, const Clock& now,
                          std::int64_t unix_offset_ns, std::size_t frames, const BoardBounds& bounds)
-    : frame_runner_(runner_settings<Tracker>(k_frame_group, cell.deadlines.frame,
+    : roster_(cell),
+      frame_runner_(runner_settings<Tracker>(k_frame_group, cell.deadlines.frame,
                                              cell.overrun.frame, cell.overrun.watch,
                                              bounds.frame_ns)),
       tick_runner_(runner_settings<Output>(k_tick_group, cell.deadlines.tick, cell.overrun.tick,
                                            cell.overrun.watch, bounds.tick_ns)),
-      frame_(cell, tool_set_, now, frame_runner_, nullptr),
+      frame_(cell, roster_.published(), now, frame_runner_, nullptr),
       tick_(cell, frame_.estimates(), robot_, now, {sinks.can(), sinks.dds(), nullptr, nullptr},
             unix_offset_ns, frames, tick_runner_, frame_.overrun_notes()) {
-  tool_set_.write_slot() = cell.tools;
-  tool_set_.publish(1, 0);
   robot_.write_slot() = declared_robot_frame(cell);
   robot_.publish(1, 0);
 }

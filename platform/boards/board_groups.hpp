@@ -11,6 +11,7 @@
 #include "platform/session/group_runner.hpp"
 #include "platform/session/sinks.hpp"
 #include "platform/session/tick_group.hpp"
+#include "platform/session/tool_roster.hpp"
 
 namespace glint {
 
@@ -26,7 +27,7 @@ class BoardGroups {
   void report(BoardResult& result) const;
 
  private:
-  graph::TripleBuffer<ToolSet> tool_set_;
+  ToolRoster roster_;
   graph::TripleBuffer<RobotFrame> robot_;
   GroupRunner<Tracker> frame_runner_;
   GroupRunner<Output> tick_runner_;

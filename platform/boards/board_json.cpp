@@ -1,6 +1,7 @@
 #include "platform/boards/board_json.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 namespace glint {
 namespace {

@@ -1,7 +1,7 @@
 // A board's figures as JSON: what was observed in a run, and the operating system's share.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "platform/boards/board_run.hpp"
 #include "platform/boards/system_share.hpp"

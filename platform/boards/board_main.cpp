@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "nodes/output.hpp"
 #include "nodes/tracker.hpp"

@@ -17,9 +17,6 @@
 namespace glint {
 namespace {
 
-// The arrival thread stands in for the camera's driver and so comes before tick and frame.
-constexpr int k_arrival_priority = k_tick_priority + 1;
-
 // From here to the first frame everything starts; its ticks are due before it.
 constexpr Duration k_lead = milliseconds(100);
 
@@ -46,6 +43,13 @@ void require_no_background(const Cell& cell) {
                    "and tick groups only");
 }
 
+void require_no_tool_changes(const Cell& cell) {
+  if (cell.tool_changes.empty()) return;
+  throw InputError(cell.file +
+                   ": has a [[tool_change]]; expected none, for a board keeps the tools that it "
+                   "starts with (absent = [..] leaves some out)");
+}
+
 // Runs `body` armed: from here on neither the heap nor a page that is not there may be touched.
 template <class Body>
 void counted(Body body) {
@@ -62,6 +66,7 @@ void counted(Body body) {
 BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& options) {
   require_same_camera(cell, loop);
   require_no_background(cell);
+  require_no_tool_changes(cell);
   cell.realtime = true;
   cell.record.file.clear();
   cell.files = {"", ""};

@@ -11,16 +11,14 @@
 namespace glint {
 namespace {
 
-constexpr int k_arrival_priority = k_tick_priority + 1;  // as in board_run.cpp
-
 // A reading of the clock that takes this many times as long as usual was interrupted.
 constexpr std::int64_t k_disturbed = 4;
 constexpr int k_undisturbed_readings = 1000;
 
-constexpr Duration k_lead = milliseconds(20);
+constexpr Duration k_settle = milliseconds(20);
 
 void sleeps(const SystemShareOptions& options, std::vector<std::int64_t>& late_ns) {
-  const Time first = monotonic_now() + k_lead;
+  const Time first = monotonic_now() + k_settle;
   for (int i = 0; i < options.wake_ups; ++i) {
     const Time due = first + options.tick_period * i;
     sleep_until(due);
@@ -30,7 +28,7 @@ void sleeps(const SystemShareOptions& options, std::vector<std::int64_t>& late_n
 
 void releases(const SystemShareOptions& options, std::vector<std::int64_t>& late_ns) {
   Release release;
-  const Time first = monotonic_now() + k_lead;
+  const Time first = monotonic_now() + k_settle;
   RealTimeThread waiting({"glint-frame", options.core, k_frame_priority}, [&] {
     for (int i = 0; i < options.wake_ups; ++i) {
       release.wait();
@@ -74,7 +72,7 @@ void interrupts(const SystemShareOptions& options, SystemShareFigures& figures) 
 }
 
 void writes(CanSink& can, const SystemShareOptions& options, std::vector<std::int64_t>& took_ns) {
-  const Time first = monotonic_now() + k_lead;
+  const Time first = monotonic_now() + k_settle;
   CanFrame frame;
   frame.identifier = 0x1A0;
   frame.length = 8;

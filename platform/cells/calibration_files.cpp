@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "kernels/angles.hpp"
 #include "kernels/elementary.hpp"
 #include "platform/cells/cell_headset.hpp"
 #include "platform/input_error.hpp"

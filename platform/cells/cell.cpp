@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "glint_default_cell.hpp"
+#include "kernels/angles.hpp"
 #include "kernels/elementary.hpp"
 #include "kernels/pose/local_rays.hpp"
 #include "kernels/wire/can_frames.hpp"
@@ -262,6 +263,7 @@ Cell cell_from_text(const std::string& text, const std::string& file, const Cell
   parser.read_camera(root.table("camera"));
   cell.ray_steps = ray_steps_needed(cell.camera.model);
   parser.read_tools(root);
+  read_tool_changes(root, cell);
   read_reference(root, cell);
   read_headset(root.table("headset"), cell);
   parser.read_simulator(root.table("simulator"));

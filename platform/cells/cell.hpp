@@ -18,6 +18,7 @@
 #include "kernels/pose/tool.hpp"
 #include "kernels/units.hpp"
 #include "platform/cells/named_file.hpp"
+#include "platform/cells/tool_changes.hpp"
 #include "platform/sensors/camera.hpp"
 
 namespace glint {
@@ -100,7 +101,9 @@ struct Cell {
   Camera camera;
   int ray_steps = k_ray_steps_max;  // of the camera's lens, found once: see set_camera()
   std::string ray_table;            // path, or empty
-  ToolSet tools;
+  ToolSet tools;                    // all that may be there
+  ToolsPresent tools_at_start = k_all_tools;
+  std::vector<ToolChange> tool_changes;  // in the order of their times
   std::vector<std::string> tool_files;
   int reference = -1;                  // the tool that does not move: its number; -1: none
   std::vector<std::string> notices;    // what its user should know, a line each

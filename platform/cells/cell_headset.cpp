@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "kernels/angles.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {

@@ -7,8 +7,6 @@
 
 namespace glint {
 
-inline constexpr double k_radians_per_degree = 3.14159265358979323846 / 180.0;
-
 // reference = "NAME": one of the tools that were read before.
 void read_reference(TomlReader& root, Cell& cell);
 

@@ -4,13 +4,15 @@
 #include <cmath>
 #include <cstdio>
 
+#include "kernels/angles.hpp"
+
 namespace glint {
 namespace {
 
-constexpr double k_degrees = 180.0 / 3.14159265358979323846;
-
 // From the smaller angle to the larger one.
-double degrees(double cosine) { return k_degrees * std::acos(std::clamp(cosine, -1.0, 1.0)); }
+double degrees(double cosine) {
+  return k_degrees_per_radian * std::acos(std::clamp(cosine, -1.0, 1.0));
+}
 
 }  // namespace
 
@@ -20,7 +22,7 @@ std::string correction_text(const BiasCorrection& correction) {
   std::snprintf(text, sizeof text,
                 "%.2f mm, %.2f deg along the %s axes, valid from %.0f to %.0f mm, %.0f to %.0f deg "
                 "off the axis, tilted by %.0f to %.0f deg",
-                1e3 * correction.shift_m.norm(), k_degrees * correction.turn_rad.norm(),
+                1e3 * correction.shift_m.norm(), k_degrees_per_radian * correction.turn_rad.norm(),
                 correction.frame == CorrectionFrame::tool ? "tool's" : "camera's",
                 1e3 * correction.range_m.from, 1e3 * correction.range_m.to,
                 degrees(correction.off_axis_cosine.to), degrees(correction.off_axis_cosine.from),

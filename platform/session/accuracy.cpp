@@ -21,7 +21,8 @@ FrameOutcome outcome_of(const Estimates& estimates) {
     const auto i = static_cast<std::size_t>(t);
     const Track& track = estimates.tracks[i];
     const bool seen = track.seen_now && estimates.verdict.usable();
-    outcome.tools[i] = {seen, track.reason, track.marker_mask, track.T_camera_tool};
+    outcome.tools[i] = {track.identity != 0, seen, track.reason, track.marker_mask,
+                        track.T_camera_tool};
   }
   return outcome;
 }
@@ -45,6 +46,7 @@ Accuracy judge(const std::vector<FrameOutcome>& outcomes, const std::vector<sim:
     for (int t = 0; t < tools.count; ++t) {
       const auto i = static_cast<std::size_t>(t);
       const ToolOutcome& tool = outcome.tools[i];
+      if (!tool.there) continue;
       const int visible = std::popcount(truth.visible_mask[i]);
       const bool recent = truth.mid_exposure - last_tracked[i] <= lost_after;
       if (visible >= 4 || (visible == 3 && recent)) {

@@ -16,6 +16,7 @@
 #include "platform/session/choices.hpp"
 #include "platform/session/pipeline.hpp"
 #include "platform/session/recorded_cell.hpp"
+#include "platform/session/tool_roster.hpp"
 #include "platform/session/tracker_executor.hpp"
 
 namespace glint {
@@ -44,12 +45,11 @@ class Replayer {
         tick_period_(tick_period),
         executor_(workers),
         lost_after_(cell.lost_after),
+        declared_(cell.tools),
         robot_(declared_robot_frame(cell)) {
     configure(cell, *tracker_);
     configure(cell, *marker_tracker_);
     configure(cell, *output_);
-    tracker_->latest<ToolSet>().set(cell.tools, 1, 0);
-    marker_tracker_->latest<ToolSet>().set(cell.tools, 1, 0);
   }
 
   void on(const HeadPose& head) { head_ = head; }
@@ -111,6 +111,7 @@ class Replayer {
                 const FrameStamp& stamp) {
     ++result_.frames;
     ++version_;
+    give_tools(tracker);
     if (!overrun.happened()) {
       executor_.activate(tracker);
       *in_time_ = tracker.template output<Estimates>();
@@ -123,6 +124,15 @@ class Replayer {
       if (substitute(overrun.policy, frame, *in_time_, *out)) estimates_[version_] = std::move(out);
     }
     run_ready();
+  }
+
+  // As that frame was given them. A frame without its choice has what the one before had.
+  template <class AnyTracker>
+  void give_tools(AnyTracker& tracker) {
+    auto& tools = tracker.template latest<ToolSet>();
+    const std::uint64_t version = std::max<std::uint64_t>(frame_choice_.versions[0], 1);
+    if (tools.version() != version)
+      tools.set(tools_present(declared_, tools_in(version)), version, 0);
   }
 
   template <class G>
@@ -203,6 +213,7 @@ class Replayer {
   Duration tick_period_;
   TrackerExecutor executor_;
   Duration lost_after_;
+  ToolSet declared_;
   ChoiceRecord frame_choice_;  // of the newest frame
   std::unique_ptr<Estimates> in_time_ = std::make_unique<Estimates>();
   std::unique_ptr<PoseSamples> samples_in_time_ = std::make_unique<PoseSamples>();

@@ -42,6 +42,8 @@ struct RunPlan {
 inline constexpr int k_tick_priority = 48;
 inline constexpr int k_frame_priority = 45;
 inline constexpr int k_background_priority = 42;
+// Of a thread that stands in for the camera's driver.
+inline constexpr int k_arrival_priority = k_tick_priority + 1;
 
 // What may be needed at worst after each node, where one worker runs them all in the graph's order.
 [[nodiscard]] std::vector<std::int64_t> remaining_in_order(

@@ -95,6 +95,7 @@ void run_live(const Cell& cell, Time epoch, SimulatedSource& source, SessionGrou
   while (!frames_done ||
          (reached_ns < (end - tick_period(cell)).nanoseconds && !stopped(options))) {
     if (options.progress) options.progress(static_cast<double>(reached_ns) * 1e-9, all_s);
+    groups.reach(Time{reached_ns});
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   frame_thread.join();
@@ -127,6 +128,7 @@ void run_in_order(const Cell& cell, Time& now, SimulatedSource& source, SessionG
   while (!stopped(options) && source.wait(arrived)) {
     tick_until(arrived.frame.arrival);
     now = last = arrived.frame.arrival;
+    groups.reach(now);
     groups.process(arrived);
     source.give_back(arrived);
     if (options.progress) {

@@ -65,15 +65,14 @@ SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, st
     : frame_runner_(runner_settings(options.plan.frame, k_frame_group, cell, options, trace)),
       tick_runner_(runner_settings(options.plan.tick, k_tick_group, cell, options, trace)),
       counters_(&sinks.overruns()),
-      frame_(cell, tool_set_, now, frame_runner_,
+      roster_(cell),
+      frame_(cell, roster_.published(), now, frame_runner_,
              sinks.recorder() != nullptr ? &sinks.recorder()->frame_lane() : nullptr,
              method_of(cell)),
       tick_(cell, frame_.estimates(), robot_, now,
             {sinks.can(), sinks.dds(), sinks.files(),
              sinks.recorder() != nullptr ? &sinks.recorder()->tick_lane() : nullptr},
             unix_offset_ns, frames, tick_runner_, frame_.overrun_notes()) {
-  tool_set_.write_slot() = cell.tools;
-  tool_set_.publish(1, 0);
   robot_.write_slot() = declared_robot_frame(cell);
   robot_.publish(1, 0);
   outcomes_.resize(frames);

@@ -13,6 +13,7 @@
 #include "platform/session/session.hpp"
 #include "platform/session/sinks.hpp"
 #include "platform/session/tick_group.hpp"
+#include "platform/session/tool_roster.hpp"
 
 namespace glint {
 
@@ -25,6 +26,9 @@ class SessionGroups {
   void process(const ArrivedFrame& arrived) noexcept;
   void tick(std::uint32_t number, Time nominal, Time woken) noexcept;
 
+  // What changes by plan, up to this time; not by a real-time thread.
+  void reach(Time now) { roster_.reach(now); }
+
   // Null where the cell has none, or where no clock runs.
   [[nodiscard]] BackgroundGroup* background() noexcept { return background_.get(); }
 
@@ -36,7 +40,7 @@ class SessionGroups {
   GroupRunner<Output> tick_runner_;
   std::unique_ptr<BackgroundGroup> background_;
   OverrunCounters* counters_;
-  graph::TripleBuffer<ToolSet> tool_set_;
+  ToolRoster roster_;
   graph::TripleBuffer<RobotFrame> robot_;
   FrameGroup frame_;
   TickGroup tick_;

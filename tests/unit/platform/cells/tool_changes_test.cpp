@@ -1,0 +1,55 @@
+// Which tools are there, as a cell file says it.
+#include <gtest/gtest.h>
+
+#include "platform/cells/cell.hpp"
+#include "tests/unit/platform/cells/complaint.hpp"
+
+namespace glint {
+namespace {
+
+using test::complaint_about;
+
+const char* const k_two = "tools = [\"pen\", \"board\"]\n";
+
+TEST(ToolChanges, AreReadInTheirOrder) {
+  const Cell cell = cell_from_text(std::string(k_two) +
+                                       "absent = [\"board\"]\n"
+                                       "[[tool_change]]\nat_s = 1.5\nadd = \"board\"\n"
+                                       "[[tool_change]]\nat_s = 2\nremove = \"pen\"\n",
+                                   "cell.toml");
+  EXPECT_EQ(cell.tools_at_start & 3, 1);
+  ASSERT_EQ(cell.tool_changes.size(), 2u);
+  EXPECT_EQ(cell.tool_changes[0].at.nanoseconds, 1'500'000'000);
+  EXPECT_EQ(cell.tool_changes[0].now_there & 3, 3);
+  EXPECT_EQ(cell.tool_changes[1].now_there & 3, 2);
+  EXPECT_EQ(default_cell().tools_at_start, k_all_tools);
+}
+
+TEST(ToolChanges, LeaveThePlaceOfAToolEmptyAndTheOthersWhereTheyAre) {
+  const Cell cell = cell_from_text(k_two, "cell.toml");
+  const ToolSet set = tools_present(cell.tools, 2);
+  EXPECT_EQ(set.count, 2);
+  EXPECT_FALSE(set.items[0].present());
+  EXPECT_EQ(set.items[0].identity, 0u);
+  EXPECT_EQ(set.items[1].identity, cell.tools.items[1].identity);
+}
+
+TEST(ToolChanges, AreRefusedByNameAndLine) {
+  EXPECT_EQ(complaint_about(std::string(k_two) + "absent = [\"hammer\"]\n"),
+            "cell.toml:2: absent: no tool is named \"hammer\"; expected the name of a listed tool: "
+            "pen, board");
+  EXPECT_EQ(
+      complaint_about(std::string(k_two) + "[[tool_change]]\nat_s = 1\nadd = \"pen\"\n"),
+      "cell.toml:3: tool_change: \"pen\" is there already; expected a change of what is there "
+      "at that time");
+  EXPECT_EQ(
+      complaint_about(std::string(k_two) + "[[tool_change]]\nat_s = 1\n"),
+      "cell.toml:3: tool_change changes nothing; expected add = \"NAME\" or remove = \"NAME\"");
+  EXPECT_EQ(complaint_about(std::string(k_two) + "[[tool_change]]\nat_s = 2\nremove = \"pen\"\n"
+                                                 "[[tool_change]]\nat_s = 2\nadd = \"pen\"\n"),
+            "cell.toml:6: tool_change: at_s is not later than the one before; expected times that "
+            "rise from 0 on");
+}
+
+}  // namespace
+}  // namespace glint

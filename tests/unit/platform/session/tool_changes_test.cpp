@@ -1,0 +1,71 @@
+// Tools that come and go while a session runs, and in its replay.
+#include "platform/session/replay.hpp"
+#include "platform/session/tool_roster.hpp"
+#include "tests/unit/platform/session/short_run.hpp"
+
+namespace glint {
+namespace {
+
+// The pen is there for a second, away for half of one, and back.
+Cell pen_goes_and_comes(const char* level) {
+  Cell cell = short_cell(2.5, level);
+  cell.tool_changes = {{Time{1'000'000'000}, 0}, {Time{1'500'000'000}, k_all_tools}};
+  return cell;
+}
+
+class ToolsThatChange : public testing::TestWithParam<const char*> {};
+
+TEST_P(ToolsThatChange, AreNotTrackedWhileTheyAreAway) {
+  TemporaryFolder folder;
+  const SessionResult run = short_run(pen_goes_and_comes(GetParam()), folder.path());
+  int away = 0, seen_before = 0, seen_after = 0;
+  for (std::size_t f = 0; f < run.outcomes.size(); ++f) {
+    const ToolOutcome& pen = run.outcomes[f].tools[0];
+    away += pen.there ? 0 : 1;
+    if (!pen.there) {
+      EXPECT_FALSE(pen.seen) << f;
+      EXPECT_EQ(pen.reason, Reason::tool_changed) << f;
+    }
+    if (pen.seen) ++(away == 0 ? seen_before : seen_after);
+  }
+  EXPECT_NEAR(away, 0.5 * 45, 2);
+  EXPECT_GT(seen_before, 35);
+  EXPECT_GT(seen_after, 35);
+}
+
+TEST_P(ToolsThatChange, AreTheSameInAReplay) {
+  TemporaryFolder folder;
+  const SessionResult run = short_run(pen_goes_and_comes(GetParam()), folder.path());
+  for (const int workers : {1, 2}) {
+    ReplayOptions options;
+    options.workers = workers;
+    const ReplayResult result = replay(run.recording_file, options);
+    EXPECT_TRUE(result.agrees()) << result.mismatches << " differ, first " << result.first_mismatch;
+    EXPECT_EQ(result.output_sha256, run.output_sha256);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AtEveryLevel, ToolsThatChange, testing::Values("full", "roi", "blobs"),
+                         [](const auto& level) { return std::string(level.param); });
+
+TEST(ToolRoster, PublishesEachChangeOnceInATellingVersion) {
+  const Cell cell = pen_goes_and_comes("roi");
+  ToolRoster roster(cell);
+  auto& published = roster.published();
+  ASSERT_TRUE(published.sample());
+  EXPECT_EQ(published.version(), tools_version(1, k_all_tools));
+  roster.reach(Time{999'999'999});
+  EXPECT_FALSE(published.sample());
+  roster.reach(Time{1'000'000'000});
+  ASSERT_TRUE(published.sample());
+  EXPECT_EQ(tools_in(published.version()), 0);
+  EXPECT_FALSE(published.value().items[0].present());
+  roster.reach(Time{3'000'000'000});
+  ASSERT_TRUE(published.sample());
+  EXPECT_EQ(published.version(), tools_version(3, k_all_tools));
+  EXPECT_TRUE(published.value().items[0].present());
+  EXPECT_EQ(tools_in(1), k_all_tools);  // of a recording from before
+}
+
+}  // namespace
+}  // namespace glint
