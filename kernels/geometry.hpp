@@ -31,4 +31,11 @@ struct Pose {
   }
 };
 
+// [v]x: times a vector, it is v's cross product with it.
+[[nodiscard]] inline Matrix3 cross_matrix(const Vector3& v) {
+  Matrix3 m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
 }  // namespace glint

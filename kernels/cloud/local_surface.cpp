@@ -37,7 +37,7 @@ PlaneSums plane_sums(const Neighbours& near) {
 }
 
 // The plane's frame at the foot of the point. Along the plane one unit is the radius.
-struct Frame {
+struct LocalFrame {
   Vector3 u, v, normal;
   double height = 0;  // of the plane over the point, metres
 };
@@ -47,7 +47,7 @@ struct Frame {
 constexpr int k_terms = 6;
 using Equations = std::array<std::array<double, k_terms + 1>, k_terms>;
 
-Equations sheet_equations(const Neighbours& near, const Frame& frame, float radius_m) {
+Equations sheet_equations(const Neighbours& near, const LocalFrame& frame, float radius_m) {
   const float scale = 1 / radius_m;
   const auto part = [scale](double axis) { return static_cast<float>(axis) * scale; };
   const FourFloats ux = all_four(part(frame.u.x())), uy = all_four(part(frame.u.y())),
@@ -119,7 +119,7 @@ SurfacePoint local_surface(const Neighbours& near, float radius_m) noexcept {
     near.x[i] = near.y[i] = near.z[i] = near.weight[i] = 0;
   const FittedPlane plane = fit_plane(plane_sums(near));
   const auto [u, v] = directions_across(plane.normal);
-  const Frame frame{u, v, plane.normal, plane.mean.dot(plane.normal)};
+  const LocalFrame frame{u, v, plane.normal, plane.mean.dot(plane.normal)};
   SurfacePoint out;
   out.offset_m = frame.height * frame.normal;
   out.normal = turned_up(frame.normal);

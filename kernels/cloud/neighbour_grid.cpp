@@ -10,7 +10,7 @@ constexpr std::uint32_t k_no_key = ~std::uint32_t{0};
 constexpr std::uint32_t k_digit_mask = (1u << k_grid_axis_bits) - 1;
 
 // The cell along one axis, from 1 on; 0 where the grid has none.
-std::uint32_t place_of(float coordinate, float inverse) {
+std::uint32_t cell_along(float coordinate, float inverse) {
   const float scaled = coordinate * inverse;
   if (!(std::abs(scaled) < static_cast<float>(k_grid_cells_half))) return 0;
   const auto toward_zero = static_cast<std::int32_t>(scaled);
@@ -19,8 +19,8 @@ std::uint32_t place_of(float coordinate, float inverse) {
 }
 
 std::uint32_t key_of(float x, float y, float z, float inverse) {
-  const std::uint32_t cx = place_of(x, inverse), cy = place_of(y, inverse),
-                      cz = place_of(z, inverse);
+  const std::uint32_t cx = cell_along(x, inverse), cy = cell_along(y, inverse),
+                      cz = cell_along(z, inverse);
   if (cx == 0 || cy == 0 || cz == 0) return k_no_key;
   return (cz << k_grid_axis_bits | cy) << k_grid_axis_bits | cx;
 }

@@ -1,11 +1,11 @@
 #include "kernels/image/blob_settings.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 namespace glint {
 namespace {
 
-constexpr double k_pi = 3.14159265358979323846;
 constexpr double k_least_visible = 0.3;  // of the disc: a marker two thirds hidden is of no use
 constexpr double k_most_visible = 1.5;   // stray light and motion during the exposure
 constexpr double k_blur_px = 1.0;        // by how much the lens widens a small disc's radius
@@ -21,8 +21,10 @@ SizeGate size_gate(double radius_m, double range_min_m, double range_max_m,
   }
   const double far_px = focal_px * radius_m / range_max_m;
   const double near_px = focal_px * radius_m / range_min_m + k_blur_px;
-  const double least = std::clamp(k_least_visible * k_pi * far_px * far_px, 1.0, k_area_max_px);
-  const double most = std::clamp(k_most_visible * k_pi * near_px * near_px, 1.0, k_area_max_px);
+  const double least =
+      std::clamp(k_least_visible * std::numbers::pi * far_px * far_px, 1.0, k_area_max_px);
+  const double most =
+      std::clamp(k_most_visible * std::numbers::pi * near_px * near_px, 1.0, k_area_max_px);
   gate.min_area_px = static_cast<std::uint32_t>(least);
   gate.max_area_px = static_cast<std::uint32_t>(most) + 1;
   return gate;

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace glint {
 namespace {
-
-constexpr double k_pi = 3.14159265358979323846;
 
 // A sharp rim's pixel that is covered by a part u lies at its own middle instead of at that of its
 // covered part: along the rim's normal it misses by u (1 - u) / 2, of variance 1/120 - 1/144 for
@@ -32,7 +31,7 @@ double squared(double x) { return x * x; }
 struct Disc {
   double area, diameter;
   explicit Disc(double area_px)
-      : area(std::max(area_px, 1.0)), diameter(std::sqrt(area * (4 / k_pi))) {}
+      : area(std::max(area_px, 1.0)), diameter(std::sqrt(area * (4 / std::numbers::pi))) {}
 
   [[nodiscard]] double missed(double rim_width) const {
     return k_rim_miss * diameter / (rim_width * rim_width * rim_width * area * area);

@@ -43,10 +43,4 @@ struct MeasuredPoint {
   Matrix3 covariance_m2 = Matrix3::Zero();
 };
 
-[[nodiscard]] inline Matrix3 cross_matrix(const Vector3& v) {
-  Matrix3 m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
 }  // namespace glint

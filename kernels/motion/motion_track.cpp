@@ -10,7 +10,7 @@
 namespace glint {
 namespace {
 
-constexpr double k_axes = 3;
+constexpr double k_point_axes = 3;
 constexpr double k_distance_max_m = 1000;
 constexpr double k_variance_max = 1e6;
 constexpr double k_unit_tolerance = 1e-6;
@@ -23,7 +23,7 @@ constexpr double k_frames_most = 4;
 
 // One factor moved by one innovation: chi square's mean is the number of axes.
 double moved(double scale, double chi_square, double frames, const AdaptationSettings& settings) {
-  const double ratio = std::min(chi_square / k_axes, settings.innovation_max);
+  const double ratio = std::min(chi_square / k_point_axes, settings.innovation_max);
   return std::clamp(scale * (1 + (ratio - 1) * frames / settings.frames), settings.floor,
                     settings.ceiling);
 }

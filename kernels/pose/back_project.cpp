@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "kernels/pose/depth_samples.hpp"
 #include "kernels/pose/local_rays.hpp"
@@ -12,7 +13,6 @@
 namespace glint {
 namespace {
 
-constexpr double k_pi = 3.14159265358979323846;
 // Where a sphere curls away the depth of a pixel says little about its own middle.
 constexpr double k_curl_part = 0.95;
 // The inner half counts as there if this part of its pixels has depth.
@@ -23,9 +23,9 @@ constexpr double k_declared_worth = 2;
 // is saturated all over, where only pixels are left that a wall behind them shares. See the header.
 constexpr double k_bias_m = 0.0001, k_ring_bias_m = 0.001, k_saturated_bias_m = 0.0035;
 // A blob is more than one marker if it is larger by this than a disc that the lens widens by
-// k_blur_px.
+// k_widening_px.
 constexpr double k_merged_part = 1.5;
-constexpr double k_blur_px = 1.0;
+constexpr double k_widening_px = 1.0;
 
 // To the front points of a sphere (radius > 0) of which the samples' pixels see other points.
 TwoDoubles fronts_of(const DepthSamples& samples, std::size_t at, double wrapped_m,
@@ -80,7 +80,7 @@ class FrontMean {
 // By what factor the blob's radius at this range misses the nominal one; 1 fits best.
 double size_misfit(const DepthView& view, double radius_m, double front_m) {
   const double steradian = view.blob.area_px * view.rays.steradian_per_pixel();
-  const double ratio = std::sqrt(steradian / k_pi) * (front_m + radius_m) / radius_m;
+  const double ratio = std::sqrt(steradian / std::numbers::pi) * (front_m + radius_m) / radius_m;
   return ratio >= 1 ? ratio : 1 / std::max(ratio, 1e-9);
 }
 
@@ -99,7 +99,7 @@ BackProjectWork measure_range(const DepthView& view, const NominalMarker& nomina
   DepthSamples samples;
   bool from_ring = false;
   if (!view.frame.depth.empty()) {
-    const double radius_px = std::sqrt(std::min<double>(view.blob.area_px, 1e6) / k_pi);
+    const double radius_px = std::sqrt(std::min<double>(view.blob.area_px, 1e6) / std::numbers::pi);
     inner_samples(view, radius_px, most.samples, samples);
     work.pixels = samples.pixels;
     from_ring = samples.count == 0 || samples.usable < k_inner_valid_part * samples.tried;
@@ -150,9 +150,9 @@ void correct_centroid(const DepthView& view, const SphereShift& shift, const Nom
     out.along_y = beside_ray(out.ray, rays.along_y);
   }
   const double radius_px = sine / std::sqrt(rays.steradian_per_pixel());
-  const double widened = radius_px + k_blur_px;
+  const double widened = radius_px + k_widening_px;
   if (out.flags & k_marker_touches_edge) return;
-  if (!(out.area_px > k_merged_part * k_pi * widened * widened)) return;
+  if (!(out.area_px > k_merged_part * std::numbers::pi * widened * widened)) return;
   out.flags |= k_marker_uneven;
   for (float& sigma : out.sigma_px) sigma += static_cast<float>(radius_px);
 }
@@ -233,7 +233,7 @@ double expected_area_px(const CameraModel& camera, const Vector2& pixel, double 
   if (!rays || !(range_m > 0)) return 0;
   const double steradian = rays.value.steradian_per_pixel();
   const double part = radius_m / range_m;
-  return steradian > 0 ? k_pi * part * part / steradian : 0;
+  return steradian > 0 ? std::numbers::pi * part * part / steradian : 0;
 }
 
 }  // namespace glint

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace glint {
 namespace {
-
-constexpr double k_pi = 3.14159265358979323846;
 
 // A sphere of radius r at range z covers pi (f r / z)^2 pixels near the axis; a disc no more than
 // that, and less when it is tilted: by up to 75 degrees, beyond which it no longer shines.
@@ -17,7 +16,7 @@ bool area_fits(const Marker& marker, double range_m, const Tool& tool,
                const CorrespondSettings& settings) {
   if (settings.focal_px <= 0 || tool.marker_radius_m <= 0 || marker.area_px == 0) return true;
   const double radius_px = settings.focal_px * tool.marker_radius_m / range_m;
-  const double expected = k_pi * radius_px * radius_px;
+  const double expected = std::numbers::pi * radius_px * radius_px;
   const double least = tool.shape == MarkerShape::disc ? k_disc_foreshortening : 1.0;
   const double area = marker.area_px;
   if (area < expected * least / settings.area_factor) {

@@ -27,12 +27,6 @@ Weighed weigh(const Markers& markers, const MarkerSights& sights, const Tool& to
   return out;
 }
 
-void add_work(const RefineWork& more, RefineWork& work) {
-  work.fits += more.fits;
-  work.steps += more.steps;
-  work.marker_steps += more.marker_steps;
-}
-
 }  // namespace
 
 DecidedLabeling decide_labeling(const Markers& markers, const MarkerSights& sights,
@@ -60,7 +54,7 @@ DecidedLabeling decide_labeling(const Markers& markers, const MarkerSights& sigh
       as_decided.left_out_max = left_out_max;
       const RefinedPose pose =
           refine_pose({weighed.items.data(), weighed.count}, tool.tip_m, prior, as_decided);
-      add_work(pose.work, out.work);
+      out.work += pose.work;
       if (pose.reason != Reason::none) continue;
       const double ahead = out.pose.chi_square - pose.chi_square;
       if (out.chosen >= 0 && ahead <= 0) {

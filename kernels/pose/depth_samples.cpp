@@ -88,7 +88,7 @@ struct Ring {
 };
 
 // All pixels nearer than that.
-struct Disc {
+struct WholeDisc {
   double outer_square;
   [[nodiscard]] int holds(double distance_square, int) const {
     return static_cast<int>(distance_square < outer_square);
@@ -219,7 +219,7 @@ void inner_samples(const DepthView& view, double radius_px, int most_samples,
                    DepthSamples& out) noexcept {
   // A pixel's centre is at most 0.71 px from any point.
   const double outer = std::clamp(k_inner_part * radius_px, 0.72, k_inner_radius_max_px);
-  sample(view, square_around(view, outer), Disc{outer * outer},
+  sample(view, square_around(view, outer), WholeDisc{outer * outer},
          std::min(most_samples, k_inner_samples_max), out);
 }
 

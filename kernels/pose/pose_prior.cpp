@@ -4,16 +4,6 @@
 #include "kernels/pose/lever_arm.hpp"
 
 namespace glint {
-namespace {
-
-Matrix3 cross_matrix(const Vector3& v) {
-  Matrix3 m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
-}  // namespace
-
 void add_prior(const PosePrior& prior, const Pose& T_camera_tool, const Vector3& mean_m,
                NormalEquations& normal) noexcept {
   const Vector3 lever = T_camera_tool.rotation * (prior.reference_m - mean_m);

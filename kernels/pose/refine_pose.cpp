@@ -118,12 +118,6 @@ bool is_explained(const RefinedPose& pose) {
          pose.chi_square <= chi_square_limit(pose.degrees_of_freedom);
 }
 
-void add_work(const RefineWork& more, RefineWork& work) {
-  work.fits += more.fits;
-  work.steps += more.steps;
-  work.marker_steps += more.marker_steps;
-}
-
 // The best fit without one of the markers that the noise explains; `all` where there is none.
 RefinedPose without_one(MarkerSpan markers, const Task& task, const RefinedPose& all) {
   RefinedPose best = all;
@@ -135,7 +129,7 @@ RefinedPose without_one(MarkerSpan markers, const Task& task, const RefinedPose&
       if (i != left_out) others[n++] = markers[i];
     }
     RefinedPose pose = refine_all({others.data(), n}, task, task.settings.left_out_steps_max);
-    add_work(pose.work, work);
+    work += pose.work;
     if (!is_explained(pose)) continue;
     if (best.left_out >= 0 && !(pose.chi_square + pose.surprise < best.chi_square + best.surprise))
       continue;

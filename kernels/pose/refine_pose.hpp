@@ -51,6 +51,12 @@ struct RefineWork {
   int fits = 0;
   int steps = 0;         // of all fits
   int marker_steps = 0;  // steps times the markers in them
+  constexpr RefineWork& operator+=(const RefineWork& more) {
+    fits += more.fits;
+    steps += more.steps;
+    marker_steps += more.marker_steps;
+    return *this;
+  }
 };
 [[nodiscard]] constexpr RefineWork refine_work_max(int markers, const RefineSettings& settings) {
   const int others =

@@ -1,6 +1,7 @@
 // What a run saw, held against what a check computed.
 #include <cstdio>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "platform/budget/check.hpp"
 #include "platform/budget/task_model_of.hpp"
@@ -9,7 +10,7 @@
 namespace glint {
 namespace {
 
-double us(std::int64_t ns) { return static_cast<double>(ns) * 1e-3; }
+double in_us(std::int64_t ns) { return static_cast<double>(ns) * 1e-3; }
 
 }  // namespace
 
@@ -38,18 +39,18 @@ void compare_observed(const std::string& summary_file, CheckResult& result) {
   };
   const nlohmann::json& seen = summary["frame_to_can_us"];
   for (const Chain& chain : result.assessment.chains) {
-    if (chain.name == "frame_to_can") compare("frame to CAN", seen, us(chain.total_ns));
+    if (chain.name == "frame_to_can") compare("frame to CAN", seen, in_us(chain.total_ns));
   }
   const GroupResponse& frame = result.assessment.groups[k_frame_group_index];
   if (frame.response_ns && seen.contains("computing")) {
-    compare("frame group", seen["computing"], us(*frame.response_ns - frame.jitter_ns));
+    compare("frame group", seen["computing"], in_us(*frame.response_ns - frame.jitter_ns));
   }
   if (summary.contains("background") &&
       result.assessment.groups.size() > k_background_group_index) {
     const auto& bound = result.assessment.groups[k_background_group_index].response_ns;
     const auto& slices = summary["background"];
     if (bound && slices.contains("response_us")) {
-      compare("background group", slices["response_us"], us(*bound));
+      compare("background group", slices["response_us"], in_us(*bound));
     }
   }
 }

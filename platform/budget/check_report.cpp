@@ -1,6 +1,7 @@
 // What a check found, as JSON for programs and as a table for people.
 #include <cstdarg>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "platform/budget/check.hpp"
 #include "platform/budget/slack_table.hpp"

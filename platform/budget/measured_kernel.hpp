@@ -22,6 +22,9 @@ enum class InputKind : std::uint8_t {
   worst,     // every loop at its declared maximum, in a few variants
   searched,  // the best that a bounded search found, starting from input `number`
 };
+[[nodiscard]] constexpr bool at_its_worst(InputKind kind) {
+  return kind == InputKind::worst || kind == InputKind::searched;
+}
 
 class MeasuredKernel {
  public:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "platform/calibrate/correlation.hpp"
@@ -15,7 +16,6 @@ namespace {
 constexpr double k_speed_window_s = 0.1;      // to both sides
 constexpr double k_inlier_chi_square = 22.5;  // of 6 components: one good sample in 1000 goes
 constexpr double k_sigma_min = 1e-9;          // metres and radians: the samples are all alike
-constexpr double k_pi = 3.14159265358979323846;
 
 Time later(Time time, double seconds) {
   return time + Duration{static_cast<std::int64_t>(std::llround(1e9 * seconds))};
@@ -122,7 +122,7 @@ ValidRange with_margin(const ValidRange& range, double margin, double most) {
 
 void take_validity(const std::vector<Sample>& samples, const BiasSettings& settings,
                    BiasResult& result) {
-  ValidRange range{1e9, 0}, off_axis{k_pi, 0}, tilt{k_pi, 0};
+  ValidRange range{1e9, 0}, off_axis{std::numbers::pi, 0}, tilt{std::numbers::pi, 0};
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!result.kept[i]) continue;
     const SeenFrom seen = seen_from(samples[i].measured);
@@ -131,8 +131,8 @@ void take_validity(const std::vector<Sample>& samples, const BiasSettings& setti
     widen(tilt, std::acos(std::clamp(seen.tilt_cosine, -1.0, 1.0)));
   }
   result.correction.range_m = with_margin(range, settings.margin_m, 1e9);
-  result.off_axis_rad = with_margin(off_axis, settings.margin_rad, k_pi);
-  result.tilt_rad = with_margin(tilt, settings.margin_rad, k_pi);
+  result.off_axis_rad = with_margin(off_axis, settings.margin_rad, std::numbers::pi);
+  result.tilt_rad = with_margin(tilt, settings.margin_rad, std::numbers::pi);
   const auto cosines = [](const ValidRange& angle) {
     return ValidRange{std::cos(angle.to), std::cos(angle.from)};
   };

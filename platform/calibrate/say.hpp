@@ -4,11 +4,10 @@
 #include <cstdio>
 #include <string>
 
+#include "kernels/angles.hpp"
 #include "kernels/geometry.hpp"
 
 namespace glint {
-
-inline constexpr double k_degrees_per_radian = 57.29577951308232;
 
 [[nodiscard]] inline std::string say(const char* format, double value) {
   char text[48];

@@ -1,6 +1,7 @@
 // glint budget check: what a plan is worth on a board, before it runs.
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "platform/budget/bus_frames.hpp"

@@ -1,6 +1,7 @@
 // glint budget curve: a frame's cost against tools and strays, beside its bound.
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "platform/budget/curve/cost_curve.hpp"

@@ -1,6 +1,7 @@
 // glint budget diff: what changed between two measurements or runs, told from noise.
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "platform/budget/compare/budget_diff.hpp"
 #include "platform/cli/budget_commands.hpp"

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "glint_build_signature.hpp"
 #include "platform/budget/expected_board.hpp"

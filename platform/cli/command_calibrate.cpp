@@ -1,6 +1,7 @@
 // glint calibrate: what a user's own tools and devices are, from measurements.
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "platform/cli/calibrate_commands.hpp"
 #include "platform/cli/commands.hpp"

@@ -1,6 +1,7 @@
 // glint experiment: how good the estimates are, case by case, beside the published method.
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "platform/cli/commands.hpp"

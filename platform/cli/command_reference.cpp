@@ -2,7 +2,9 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 
+#include "kernels/angles.hpp"
 #include "platform/calibrate/say.hpp"
 #include "platform/cli/commands.hpp"
 #include "platform/cli/output_file.hpp"

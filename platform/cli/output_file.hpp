@@ -1,7 +1,7 @@
 // Files that a command leaves behind, written whole or not at all.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace glint {

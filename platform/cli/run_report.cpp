@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <vector>
 
+#include "kernels/angles.hpp"
 #include "platform/cells/correction_text.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/report/plots.hpp"
@@ -13,8 +15,6 @@ namespace glint {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr double k_degrees = 180.0 / 3.14159265358979323846;
 
 ordered_json as_json(const LatencyFigures& figures) {
   return {{"n", figures.n},
@@ -117,7 +117,7 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
                        {"poses_gross", accuracy.gross},
                        {"tip_rms_mm", accuracy.tip_rms_m * 1e3},
                        {"tip_max_mm", accuracy.tip_max_m * 1e3},
-                       {"angle_rms_deg", accuracy.angle_rms_rad * k_degrees},
+                       {"angle_rms_deg", accuracy.angle_rms_rad * k_degrees_per_radian},
                        {"ticks", result.ticks},
                        {"ticks_late", result.ticks_late},
                        {"ticks_skipped", result.ticks_skipped},
@@ -171,7 +171,7 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
                      std::to_string(accuracy.trackable) + " trackable");
   row("tip error, rms", fixed(accuracy.tip_rms_m * 1e3, 2, "mm") + "  (largest " +
                             fixed(accuracy.tip_max_m * 1e3, 1, "mm)"));
-  row("angle error, rms", fixed(accuracy.angle_rms_rad * k_degrees, 2, "deg"));
+  row("angle error, rms", fixed(accuracy.angle_rms_rad * k_degrees_per_radian, 2, "deg"));
   const ordered_json& latency = summary.at("frame_to_can_us");
   const std::string kind = summary.at("frame_to_can_kind").get<std::string>();
   latency_row(("frame to CAN (" + kind + ")").c_str(), latency);

@@ -1,7 +1,7 @@
 // What a run says at its end: a table for a person, summary.json with the same figures, plots.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "platform/cells/cell.hpp"

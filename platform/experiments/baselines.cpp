@@ -1,14 +1,13 @@
 #include "platform/experiments/baselines.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "kernels/motion/interpolate.hpp"
 #include "kernels/motion/motion_filter.hpp"
 
 namespace glint {
 namespace {
-
-constexpr double k_two_pi = 6.283185307179586;
 
 class LastValue final : public Predictor {
  public:
@@ -36,7 +35,7 @@ class LinearSlerp final : public Predictor {
 };
 
 double share_of(double cutoff_hz, double seconds) {
-  const double r = k_two_pi * cutoff_hz * seconds;
+  const double r = 2 * std::numbers::pi * cutoff_hz * seconds;
   return r / (r + 1);
 }
 

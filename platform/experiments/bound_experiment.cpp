@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "kernels/angles.hpp"
 #include "kernels/motion/interpolate.hpp"
 #include "kernels/pose/rigid_fit.hpp"
 #include "platform/experiments/cramer_rao.hpp"
@@ -16,7 +17,6 @@ namespace {
 
 constexpr int k_samples = 10'000;
 constexpr int k_samples_quick = 400;
-constexpr double k_degree = 3.14159265358979323846 / 180;
 constexpr double k_above_bound_most = 1.05;
 constexpr double k_nees_off_most = 0.1;
 constexpr std::array k_ranges_m = {0.3, 0.5, 0.8};
@@ -92,7 +92,7 @@ ExperimentCase case_of(const BoundCase& c, const Errors& errors, bool judged) {
       {"position_above_bound", "", std::sqrt(errors.position / errors.position_bound), ratio},
       {"tip_rms", "mm", 1e3 * errors.rms(errors.tip), {}},
       {"tip_above_bound", "", std::sqrt(errors.tip / errors.tip_bound), ratio},
-      {"rotation_rms", "deg", errors.rms(errors.rotation) / k_degree, {}},
+      {"rotation_rms", "deg", errors.rms(errors.rotation) / k_radians_per_degree, {}},
       {"rotation_above_bound", "", std::sqrt(errors.rotation / errors.rotation_bound), ratio},
       {"tip_bias", "mm", 1e3 * errors.tip_mean.norm() / static_cast<double>(errors.found), {}},
       {"flipped",
@@ -119,7 +119,7 @@ struct Methods {
 void try_sample(const BoundCase& c, const Camera& camera, SampleNumbers& numbers,
                 const EstimatorSettings& settings, Methods& methods) {
   const Tool& tool = c.tool.tool;
-  const double tilt = k_degree * numbers.within(c.tilt.from_deg, c.tilt.to_deg);
+  const double tilt = k_radians_per_degree * numbers.within(c.tilt.from_deg, c.tilt.to_deg);
   const DrawnPose drawn = draw_pose(c.tool, c.range_m, tilt, numbers);
   const Pose& truth = drawn.T_camera_tool;
   PointView view;

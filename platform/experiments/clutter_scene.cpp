@@ -1,6 +1,7 @@
 #include "platform/experiments/clutter_scene.hpp"
 
 #include <memory>
+#include <numbers>
 #include <stdexcept>
 
 #include "kernels/elementary.hpp"
@@ -23,7 +24,6 @@ const Vector3 k_stray_low_m{0.25, -0.5, -0.6}, k_stray_high_m{0.9, 0.5, 0.15};
 constexpr double k_stray_radius_m = 0.0055;
 constexpr double k_swing_m = 0.13, k_swing_s = 4.0;
 constexpr double k_apart_m = 0.1;
-constexpr double k_two_pi = 6.283185307179586;
 
 // To and fro along y.
 class Swing final : public sim::Motion {
@@ -31,7 +31,8 @@ class Swing final : public sim::Motion {
   explicit Swing(double amplitude_m) : amplitude_m_(amplitude_m) {}
   [[nodiscard]] Pose pose(Time time) const override {
     const double seconds = Duration{time.nanoseconds}.seconds();
-    const double along = sine_cosine(k_two_pi * seconds / k_swing_s + 0.25 * k_two_pi).sine;
+    const double along =
+        sine_cosine(2 * std::numbers::pi * seconds / k_swing_s + 0.25 * 2 * std::numbers::pi).sine;
     return {Quaternion::Identity(), Vector3(0, amplitude_m_ * along, 0)};
   }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "kernels/angles.hpp"
 #include "kernels/motion/interpolate.hpp"
 #include "kernels/motion/tool_motion.hpp"
 #include "platform/experiments/estimator_settings.hpp"
@@ -12,9 +13,8 @@
 namespace glint {
 namespace {
 
-constexpr double k_degrees = 180 / 3.14159265358979323846;
-constexpr double k_speed_m_s = 0.5, k_turn_rad_s = 90 / k_degrees;
-constexpr double k_tilt_rad = 30 / k_degrees;
+constexpr double k_speed_m_s = 0.5, k_turn_rad_s = 90 / k_degrees_per_radian;
+constexpr double k_tilt_rad = 30 / k_degrees_per_radian;
 constexpr int k_still_frames = 90;   // 2 s
 constexpr int k_moving_frames = 28;  // 0.6 s: then it is as near to the camera as it may come
 constexpr int k_runs = 1000, k_quick_runs = 40;
@@ -65,9 +65,10 @@ Worst worst_after(const Errors& errors, double seconds, int runs) {
     if ((frame_time(frame) - Time{}).seconds() < seconds) continue;
     const auto& [sum, squares] = errors[static_cast<std::size_t>(frame)];
     worst.mean_mm = std::max(worst.mean_mm, 1000 * sum.head<3>().norm() / runs);
-    worst.mean_deg = std::max(worst.mean_deg, k_degrees * sum.tail<3>().norm() / runs);
+    worst.mean_deg = std::max(worst.mean_deg, k_degrees_per_radian * sum.tail<3>().norm() / runs);
     worst.rms_mm = std::max(worst.rms_mm, 1000 * std::sqrt(squares.head<3>().sum() / runs));
-    worst.rms_deg = std::max(worst.rms_deg, k_degrees * std::sqrt(squares.tail<3>().sum() / runs));
+    worst.rms_deg =
+        std::max(worst.rms_deg, k_degrees_per_radian * std::sqrt(squares.tail<3>().sum() / runs));
   }
   return worst;
 }

@@ -3,12 +3,13 @@
 #include <limits>
 #include <utility>
 
+#include "kernels/angles.hpp"
+
 namespace glint {
 namespace {
 
 constexpr double k_inside = 7.815;  // chi square of 3 degrees of freedom, 95 %
 constexpr double k_mm = 1000;
-constexpr double k_degrees = 180 / 3.14159265358979323846;
 
 }  // namespace
 
@@ -66,10 +67,10 @@ void MethodRecord::take_judged(const sim::SimFrame& frame, const Result<Uncertai
   }
   for (int axis = 0; axis < 3; ++axis) {
     position_mm_.push_back(error.position_m[axis] * k_mm);
-    angle_deg_.push_back(error.rotation_rad[axis] * k_degrees);
+    angle_deg_.push_back(error.rotation_rad[axis] * k_degrees_per_radian);
   }
   position_norm_mm_.push_back(error.position_m.norm() * k_mm);
-  angle_norm_deg_.push_back(error.rotation_rad.norm() * k_degrees);
+  angle_norm_deg_.push_back(error.rotation_rad.norm() * k_degrees_per_radian);
   path_m_.push_back((T_reference_world_ * pair.T_world_tip).translation);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "kernels/angles.hpp"
 #include "kernels/pose/correspond.hpp"
 #include "kernels/pose/decide_labeling.hpp"
 #include "platform/experiments/estimator_settings.hpp"
@@ -15,9 +16,8 @@ namespace {
 
 constexpr int k_frames = 100'000;
 constexpr int k_frames_quick = 500;
-constexpr double k_degree = 3.14159265358979323846 / 180;
 constexpr double k_pixel_sigma_px = 0.1;
-constexpr double k_gross_m = 0.02, k_gross_rad = 15 * k_degree;
+constexpr double k_gross_m = 0.02, k_gross_rad = 15 * k_radians_per_degree;
 constexpr std::array k_noises_m = {0.0, 0.001, 0.002, 0.003, 0.005};
 
 enum class Knowledge { nothing, prior };

@@ -1,18 +1,18 @@
 #include "platform/experiments/noisy_frame.hpp"
 
+#include "kernels/angles.hpp"
 #include "kernels/motion/interpolate.hpp"
 
 namespace glint {
 namespace {
 
-constexpr double k_degree = 3.14159265358979323846 / 180;
 constexpr double k_range_m = 0.5;
 constexpr double k_tilt_most_deg = 45;
 constexpr double k_stray_box_m = 0.5;
 // Of each axis: 10 mm and 5 degrees are the rms of the whole error.
 constexpr double k_per_axis = 0.5773502691896258;
 constexpr double k_prior_sigma_m = 0.01 * k_per_axis;
-constexpr double k_prior_sigma_rad = 5 * k_degree * k_per_axis;
+constexpr double k_prior_sigma_rad = 5 * k_radians_per_degree * k_per_axis;
 constexpr int k_stray_trials = 20;
 
 // Two spheres whose images touch would be one blob.
@@ -42,7 +42,7 @@ Vector3 draw_stray(const NoisyFrame& frame, const Vector3& middle, const Tool& t
 void draw_frame(const NoisyScene& scene, const Camera& camera, SampleNumbers& numbers,
                 NoisyFrame& frame) {
   const Tool& tool = scene.tool.tool;
-  const double tilt = k_degree * numbers.within(0, k_tilt_most_deg);
+  const double tilt = k_radians_per_degree * numbers.within(0, k_tilt_most_deg);
   frame.truth = draw_pose(scene.tool, k_range_m, tilt, numbers).T_camera_tool;
   const Vector3 mean = marker_mean(tool);
   frame.view.clear();

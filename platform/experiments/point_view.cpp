@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <utility>
 
@@ -11,8 +12,7 @@
 namespace glint {
 namespace {
 
-constexpr double k_pi = 3.14159265358979323846;
-constexpr double k_off_axis_rad = 25 * k_pi / 180;
+constexpr double k_off_axis_rad = 25 * std::numbers::pi / 180;
 constexpr double k_tip_beyond_m = 0.15;
 constexpr double k_ndi_radius_m = 0.00575;
 
@@ -90,7 +90,7 @@ int SampleNumbers::below(int n) { return std::min(static_cast<int>(within(0, n))
 
 DrawnPose draw_pose(const PointTool& tool, double range_m, double tilt_rad,
                     SampleNumbers& numbers) {
-  const double full = 2 * k_pi;
+  const double full = 2 * std::numbers::pi;
   const double side = numbers.within(0, full), off = k_off_axis_rad * numbers.within(0, 1);
   const double tilt_axis = numbers.within(0, full), spin = numbers.within(0, full);
   const Vector3 sight =

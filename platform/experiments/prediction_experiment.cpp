@@ -2,6 +2,7 @@
 #include <array>
 #include <string>
 
+#include "kernels/angles.hpp"
 #include "platform/experiments/baselines.hpp"
 #include "platform/experiments/estimator_settings.hpp"
 #include "platform/experiments/glint_predictor.hpp"
@@ -12,7 +13,6 @@
 namespace glint {
 namespace {
 
-constexpr double k_degrees = 180 / 3.14159265358979323846;
 constexpr std::array<const char*, 2> k_ahead = {"25 ms", "50 ms"};
 const std::vector<Duration> k_horizons = {milliseconds(25), milliseconds(50)};
 
@@ -44,7 +44,7 @@ ExperimentCase case_of(const char* recording, std::size_t h, const std::string& 
           method,
           errors[h].n,
           {{"position_rms", "mm", 1000 * errors[h].position_rms_m, {}},
-           {"rotation_rms", "deg", k_degrees * errors[h].rotation_rms_rad, {}}}};
+           {"rotation_rms", "deg", k_degrees_per_radian * errors[h].rotation_rms_rad, {}}}};
 }
 
 void add_ratios(ExperimentCase& glint, const Shares& shares, const PredictionError& own,

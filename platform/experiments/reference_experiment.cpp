@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/angles.hpp"
 #include "kernels/elementary.hpp"
 #include "platform/experiments/robot_scenes.hpp"
 #include "platform/reference/find_reference.hpp"
@@ -11,7 +12,6 @@
 namespace glint {
 namespace {
 
-constexpr double k_degrees = 57.29577951308232;
 constexpr int k_seeds = 200, k_seeds_quick = 3;
 constexpr int k_simulated = 60, k_simulated_quick = 3;
 
@@ -23,8 +23,9 @@ struct Apart {
 };
 
 Apart apart(const Pose& a, const Pose& b) {
-  return {1e3 * (a.translation - b.translation).norm(),
-          k_degrees * 2 * arc_cosine(std::min(1.0, std::abs(a.rotation.dot(b.rotation))))};
+  return {
+      1e3 * (a.translation - b.translation).norm(),
+      k_degrees_per_radian * 2 * arc_cosine(std::min(1.0, std::abs(a.rotation.dot(b.rotation))))};
 }
 
 double median(std::vector<double> values) {
@@ -38,7 +39,7 @@ Pose seed_about(const Pose& truth, double shift_m, double degrees, std::uint64_t
                 std::uint64_t number) {
   const sim::RandomKey key{seed, sim::Stream::reference, number};
   const auto draw = [&](std::uint64_t i) { return 2 * sim::uniform(key, i) - 1; };
-  const double radians = degrees / k_degrees;
+  const double radians = degrees / k_degrees_per_radian;
   const Pose turn =
       pose_of_seed({0, 0, 0, radians * draw(3), radians * draw(4), radians * draw(5)});
   return {(turn.rotation * truth.rotation).normalized(),
@@ -64,7 +65,7 @@ struct Tally {
     mm.push_back(off.mm);
     degrees.push_back(off.degrees);
     sigma_mm.push_back(1e3 * std::sqrt(alignment.covariance.topLeftCorner<3, 3>().trace()));
-    sigma_degrees.push_back(k_degrees *
+    sigma_degrees.push_back(k_degrees_per_radian *
                             std::sqrt(alignment.covariance.bottomRightCorner<3, 3>().trace()));
   }
   [[nodiscard]] double right_refused_share() const {

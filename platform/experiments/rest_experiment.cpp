@@ -2,6 +2,7 @@
 #include <cmath>
 #include <string>
 
+#include "kernels/angles.hpp"
 #include "kernels/motion/interpolate.hpp"
 #include "kernels/motion/tool_motion.hpp"
 #include "platform/experiments/estimator_settings.hpp"
@@ -12,8 +13,7 @@
 namespace glint {
 namespace {
 
-constexpr double k_degrees = 180 / 3.14159265358979323846;
-constexpr double k_stroke_m = 0.1, k_stroke_rad = 40 / k_degrees, k_stroke_s = 0.7;
+constexpr double k_stroke_m = 0.1, k_stroke_rad = 40 / k_degrees_per_radian, k_stroke_s = 0.7;
 constexpr double k_stop_s = 1.0;
 constexpr std::array<double, 2> k_after_s = {0.5, 2.0};
 constexpr int k_frames = 138;  // to just over 2 s after the stop
@@ -35,7 +35,9 @@ struct Sums {
     rotation += error.tail<3>().squaredNorm();
   }
   [[nodiscard]] double position_mm(int n) const { return 1000 * std::sqrt(position / n); }
-  [[nodiscard]] double rotation_deg(int n) const { return k_degrees * std::sqrt(rotation / n); }
+  [[nodiscard]] double rotation_deg(int n) const {
+    return k_degrees_per_radian * std::sqrt(rotation / n);
+  }
 };
 
 struct Results {
@@ -80,8 +82,8 @@ CaseList run_rest(const CaseOptions& options) {
   for (const Bars& bars : k_cases) {
     Results results;
     for (int run = 0; run < runs; ++run) {
-      one_rest(model, bars.tilt_deg / k_degrees, {1, options.seed, static_cast<std::uint64_t>(run)},
-               results);
+      one_rest(model, bars.tilt_deg / k_degrees_per_radian,
+               {1, options.seed, static_cast<std::uint64_t>(run)}, results);
       if (options.progress) options.progress(++done, runs * static_cast<int>(k_cases.size()));
     }
     const std::string name =

@@ -1,6 +1,7 @@
 #include "platform/experiments/robot_scenes.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 #include "kernels/elementary.hpp"
 #include "kernels/registration/render_depth.hpp"
@@ -12,7 +13,6 @@ namespace glint {
 namespace {
 
 constexpr int k_scan_frames = 5;
-constexpr double k_pi = 3.14159265358979323846;
 
 // The published pose has x forward, y left, z up; a camera's picture z forward, x right, y down.
 Pose published_pose(const std::string& path) {
@@ -137,7 +137,7 @@ SimulatedScene simulate_scene(const RobotModel& robot, const SimulationSettings&
   }
   const Vector3 target = (0.5f * (low + high)).cast<double>();
   const Pinhole camera{320, 288, 252, 252, 160, 144};
-  const double azimuth = draw(-k_pi, k_pi), elevation = draw(0.2, 0.8);
+  const double azimuth = draw(-std::numbers::pi, std::numbers::pi), elevation = draw(0.2, 0.8);
 
   SimulatedScene scene;
   Pose T_base_first;

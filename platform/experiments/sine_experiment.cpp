@@ -1,6 +1,7 @@
 #include <cmath>
 #include <string>
 
+#include "kernels/angles.hpp"
 #include "kernels/elementary.hpp"
 #include "platform/experiments/baselines.hpp"
 #include "platform/experiments/estimator_settings.hpp"
@@ -11,8 +12,7 @@
 namespace glint {
 namespace {
 
-constexpr double k_degrees = 180 / 3.14159265358979323846;
-constexpr double k_tilt_rad = 25 / k_degrees;
+constexpr double k_tilt_rad = 25 / k_degrees_per_radian;
 constexpr double k_swing_rad_s = 2 * 6.283185307179586;
 constexpr Duration k_ahead = milliseconds(25);
 constexpr int k_frames = 225, k_first_judged = 45;

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "kernels/angles.hpp"
 #include "platform/mapping/host_cloud.hpp"
 
 namespace glint {
@@ -19,7 +20,6 @@ constexpr double k_match_cosine = 0.985;  // 10 degrees
 constexpr double k_around_m = 0.05;
 constexpr double k_judges_min = 10;
 constexpr double k_across_cosine = 0.93969262;  // 20 degrees
-constexpr double k_degrees = 180 / 3.14159265358979323846;
 
 Vector3 point_of(const PointCloud& cloud, int i) {
   return {static_cast<double>(cloud.x[i]), static_cast<double>(cloud.y[i]),
@@ -75,7 +75,8 @@ void match(const Plane& plane, const Vector3& middle, const PlaneSearch& others,
     out.matched = true;
     out.offset_m = offset;
     // The sine tells small angles apart that the cosine does not.
-    out.angle_deg = std::asin(std::min(plane.normal.cross(other.normal).norm(), 1.0)) * k_degrees;
+    out.angle_deg =
+        std::asin(std::min(plane.normal.cross(other.normal).norm(), 1.0)) * k_degrees_per_radian;
   }
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 using Words = std::vector<std::string_view>;
 
-constexpr std::size_t k_fields_max = 256;
+constexpr std::size_t k_words_max = 256;
 constexpr std::size_t k_field_count_max = 1024;
 
 void expect_one_each(const FileText& file, const Words& words, std::size_t fields) {
@@ -36,7 +36,7 @@ void take_line(const FileText& file, const Words& words, std::vector<PointField>
                std::size_t& points) {
   const std::string_view name = words[0];
   if (name == "FIELDS") {
-    if (words.size() > k_fields_max) file.refuse("too many fields", "at most 255");
+    if (words.size() > k_words_max) file.refuse("too many fields", "at most 255");
     for (std::size_t i = 1; i < words.size(); ++i) fields.push_back({std::string(words[i])});
   } else if (name == "SIZE" || name == "TYPE" || name == "COUNT") {
     expect_one_each(file, words, fields.size());

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "kernels/elementary.hpp"
 #include "kernels/motion/interpolate.hpp"
@@ -10,7 +11,6 @@
 namespace glint::sim {
 namespace {
 
-constexpr double k_two_pi = 6.283185307179586;
 constexpr std::size_t k_waves = 5;
 
 // Three axes, each a sum of waves whose amplitude falls with their frequency, as a hand's does.
@@ -24,8 +24,8 @@ class Wander {
         Wave& wave = waves_[axis][i];
         const std::uint64_t index = 2 * (axis * k_waves + i);
         const double place = (static_cast<double>(i) + uniform(key, index)) / double{k_waves};
-        wave.radians_per_s = k_two_pi * slowest_hz * exponential(octaves * place);
-        wave.phase = k_two_pi * uniform(key, index + 1);
+        wave.radians_per_s = 2 * std::numbers::pi * slowest_hz * exponential(octaves * place);
+        wave.phase = 2 * std::numbers::pi * uniform(key, index + 1);
         wave.amplitude = 1.0 / wave.radians_per_s;
         power += 0.5 * wave.amplitude * wave.amplitude;
       }

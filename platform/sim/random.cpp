@@ -1,15 +1,12 @@
 #include "platform/sim/random.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "kernels/elementary.hpp"
 
 namespace glint::sim {
-namespace {
-
-constexpr double k_two_pi = 6.283185307179586;
-
-}  // namespace
+namespace {}  // namespace
 
 double uniform(const RandomKey& key, std::uint64_t index) {
   return (static_cast<double>(key.bits(index) >> 11) + 0.5) * 0x1p-53;
@@ -18,7 +15,7 @@ double uniform(const RandomKey& key, std::uint64_t index) {
 double gaussian(const RandomKey& key, std::uint64_t index) {
   const double u = uniform(key, 2 * index);
   const double v = uniform(key, 2 * index + 1);
-  return std::sqrt(-2.0 * logarithm(u)) * sine_cosine(k_two_pi * v).cosine;
+  return std::sqrt(-2.0 * logarithm(u)) * sine_cosine(2 * std::numbers::pi * v).cosine;
 }
 
 Vector3 gaussian_vector(const RandomKey& key, std::uint64_t index) {

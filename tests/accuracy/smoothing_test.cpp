@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -14,7 +15,6 @@
 namespace glint {
 namespace {
 
-constexpr double k_pi = 3.14159265358979323846;
 constexpr double k_points_per_m2 = 2e5;  // long throw at 1 m: ten frames of 6 mm a pixel
 constexpr double k_rms_part_most = 0.30;
 constexpr double k_bias_most_m = 0.0006;
@@ -35,16 +35,16 @@ std::vector<Surface> surfaces() {
        [](const Vector3&) { return Vector3(Vector3::UnitZ()); },
        [](const Vector3& p) { return p.z(); },
        [](const Vector3& p) { return std::abs(p.x()) < 0.27 && std::abs(p.y()) < 0.27; }},
-      {"sphere of 10 cm", 4 * k_pi * 0.01,
+      {"sphere of 10 cm", 4 * std::numbers::pi * 0.01,
        [](double s, double t) {
-         const double z = 2 * s - 1, r = std::sqrt(1 - z * z), angle = 2 * k_pi * t;
+         const double z = 2 * s - 1, r = std::sqrt(1 - z * z), angle = 2 * std::numbers::pi * t;
          return Vector3(0.1 * r * std::cos(angle), 0.1 * r * std::sin(angle), 0.1 * z);
        },
        [](const Vector3& p) { return Vector3(p.normalized()); },
        [](const Vector3& p) { return p.norm() - 0.1; }, [](const Vector3&) { return true; }},
-      {"cylinder of 5 cm", 2 * k_pi * 0.05 * 0.6,
+      {"cylinder of 5 cm", 2 * std::numbers::pi * 0.05 * 0.6,
        [](double s, double t) {
-         const double angle = 2 * k_pi * t;
+         const double angle = 2 * std::numbers::pi * t;
          return Vector3(0.05 * std::cos(angle), 0.05 * std::sin(angle), 0.6 * s - 0.3);
        },
        [around_z](const Vector3& p) { return Vector3(around_z(p).normalized()); },

@@ -1,7 +1,7 @@
 // What changed between two measurements or two runs, told from noise.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

@@ -10,10 +10,6 @@
 namespace glint::inputs {
 namespace {
 
-bool at_its_worst(InputKind kind) {
-  return kind == InputKind::worst || kind == InputKind::searched;
-}
-
 class AssignKernel final : public NodeKernel<AssignMarkers> {
  public:
   AssignKernel() : NodeKernel("AssignMarkers") {}

@@ -9,10 +9,6 @@
 namespace glint::inputs {
 namespace {
 
-bool at_its_worst(InputKind kind) {
-  return kind == InputKind::worst || kind == InputKind::searched;
-}
-
 class PredictToolsKernel final : public NodeKernel<PredictTools> {
  public:
   PredictToolsKernel() : NodeKernel("PredictTools") {

@@ -12,10 +12,6 @@
 namespace glint::inputs {
 namespace {
 
-bool at_its_worst(InputKind kind) {
-  return kind == InputKind::worst || kind == InputKind::searched;
-}
-
 class StampKernel final : public NodeKernel<StampFrame> {
  public:
   StampKernel() : NodeKernel("StampFrame"), pixel_(1) {}

@@ -1,7 +1,7 @@
 // One measurement as a board file and as figures.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "platform/budget/measure/cost_fit.hpp"
 

@@ -6,8 +6,6 @@
 namespace glint {
 namespace {
 
-constexpr std::size_t k_frame_group = 0;
-
 double microseconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-3; }
 
 std::vector<Activation> activations_of(const TraceFile& trace, std::size_t group) {
@@ -79,7 +77,7 @@ RunObservations observe(const TraceFile& trace) {
   for (std::size_t group = 0; group < trace.groups.size(); ++group) {
     seen.groups.push_back(activations_of(trace, group));
   }
-  if (!seen.groups.empty()) seen.frames = latencies_of(trace, seen.groups[k_frame_group]);
+  if (!seen.groups.empty()) seen.frames = latencies_of(trace, seen.groups[k_frames_of_trace]);
   return seen;
 }
 

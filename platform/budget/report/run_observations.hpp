@@ -2,6 +2,7 @@
 // and each frame's way to the bus. Observed, every one of them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -9,6 +10,8 @@
 #include "platform/budget/export/trace_file.hpp"
 
 namespace glint {
+
+inline constexpr std::size_t k_frames_of_trace = 0;  // of a trace's groups
 
 struct Activation {
   std::uint64_t number = 0;

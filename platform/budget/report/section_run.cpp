@@ -9,7 +9,6 @@ namespace glint {
 namespace {
 
 const char* k_run_command = "glint run --out DIR --json DIR/summary.json";
-constexpr std::size_t k_frame_group = 0;
 
 GanttStrip plan_strip(const JsonView& check, const std::string& group) {
   GanttStrip strip{"Plan of " + group + ": every node at its bound", NumberKind::bound, {}};
@@ -146,7 +145,7 @@ Section worst_frames_section(const ReportSources& sources, std::size_t frames) {
     return section;
   }
   std::vector<const Activation*> order;
-  for (const Activation& a : sources.run.groups[k_frame_group]) order.push_back(&a);
+  for (const Activation& a : sources.run.groups[k_frames_of_trace]) order.push_back(&a);
   std::sort(order.begin(), order.end(), [](const Activation* a, const Activation* b) {
     return a->response_us() > b->response_us();
   });

@@ -1,19 +1,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "kernels/image/blob_settings.hpp"
 
 namespace glint {
 namespace {
 
-constexpr double k_pi = 3.14159265358979;
-
 TEST(SizeGate, HoldsTheDiscOfEveryRangeBetween) {
   for (const double radius : {0.003, 0.006, 0.010}) {
     const SizeGate gate = size_gate(radius, 0.2, 1.0, 253);
     for (double range = 0.2; range <= 1.0; range += 0.05) {
-      const double disc = k_pi * std::pow(253 * radius / range, 2);
+      const double disc = std::numbers::pi * std::pow(253 * radius / range, 2);
       EXPECT_LE(gate.min_area_px, disc) << radius << " at " << range;
       EXPECT_GE(gate.max_area_px, disc) << radius << " at " << range;
     }
@@ -22,7 +21,7 @@ TEST(SizeGate, HoldsTheDiscOfEveryRangeBetween) {
 
 TEST(SizeGate, ShutsOutWhatIsMuchLargerThanTheNearestMarker) {
   const SizeGate gate = size_gate(0.006, 0.2, 1.0, 253);
-  EXPECT_LT(gate.max_area_px, 4 * k_pi * std::pow(253 * 0.006 / 0.2, 2));
+  EXPECT_LT(gate.max_area_px, 4 * std::numbers::pi * std::pow(253 * 0.006 / 0.2, 2));
   const SizeGate large = size_gate(0.012, 0.2, 0.5, 253);
   EXPECT_GT(large.min_area_px, 8u);
   EXPECT_GT(large.max_area_px, 2 * gate.max_area_px);

@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/unit/kernels/pose/scene.hpp"
 
 namespace glint {
 namespace {
-
-constexpr double k_pi = 3.14159265358979323846;
 
 Quaternion turned(const Vector3& axis, double angle) {
   return from_rotation_vector(angle * axis.normalized());
@@ -60,12 +59,12 @@ TEST(Slerp, OfEqualOrNearlyEqualRotationsIsThatRotation) {
 }
 
 TEST(Slerp, OfAHalfTurnStaysAUnitQuaternionOnTheWay) {
-  const Quaternion half = turned(Vector3::UnitY(), k_pi);
+  const Quaternion half = turned(Vector3::UnitY(), std::numbers::pi);
   for (const double u : {0.0, 0.25, 0.5, 1.0, 1.5}) {
     const Quaternion q = slerp(Quaternion::Identity(), half, u);
     EXPECT_NEAR(q.norm(), 1.0, 1e-15);
-    EXPECT_NEAR(test::angle_between(q, Quaternion::Identity()), u <= 1 ? u * k_pi : 0.5 * k_pi,
-                1e-14);
+    EXPECT_NEAR(test::angle_between(q, Quaternion::Identity()),
+                u <= 1 ? u * std::numbers::pi : 0.5 * std::numbers::pi, 1e-14);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "platform/budget/check.hpp"
 #include "platform/budget/plan_file.hpp"

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "platform/budget/bus_frames.hpp"
 #include "platform/budget/plan_file.hpp"

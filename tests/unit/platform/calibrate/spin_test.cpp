@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "expect_message.hpp"
 #include "turned_poses.hpp"
@@ -10,12 +11,12 @@
 namespace glint {
 namespace {
 
-constexpr double k_pi = 3.14159265358979323846;
 const Vector3 k_axis = Vector3(0.05, -0.08, 1).normalized();
 const Vector3 k_foot(0.004, -0.003, -0.00044);  // across the axis
 
 // Rolled to and fro by a full turn, sliding along the axis.
-std::vector<StampedPose> rolled_poses(int count, double noise_rad, double turn_rad = 2 * k_pi,
+std::vector<StampedPose> rolled_poses(int count, double noise_rad,
+                                      double turn_rad = 2 * std::numbers::pi,
                                       std::uint64_t seed = 1) {
   const sim::RandomKey key{seed, sim::Stream::hand, 3};
   const Quaternion held = from_rotation_vector({0.4, 0.7, -0.2});
@@ -51,7 +52,8 @@ TEST(Spin, KnowsHowSureItIs) {
   constexpr int k_runs = 60;
   for (int run = 0; run < k_runs; ++run) {
     const SpinResult result = calibrate_spin(
-        rolled_poses(150, 0.01, 2 * k_pi, static_cast<std::uint64_t>(run + 1)), {}, "noise");
+        rolled_poses(150, 0.01, 2 * std::numbers::pi, static_cast<std::uint64_t>(run + 1)), {},
+        "noise");
     const double off = angle_between(result.axis, k_axis);
     const Vector3 across = (k_axis - result.axis * result.axis.dot(k_axis)).normalized();
     sum += off * off / across.dot(result.axis_covariance_rad2 * across);

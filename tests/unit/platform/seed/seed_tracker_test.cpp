@@ -2,12 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "kernels/angles.hpp"
 #include "painted_frame.hpp"
 
 namespace glint {
 namespace {
-
-constexpr double k_degree = 3.14159265358979323846 / 180;
 
 const Pose k_pose = turned(0.4, -0.3, 1.1, {0.05, -0.02, 0.45});
 
@@ -50,7 +49,8 @@ TEST_P(SeedOnBothCameras, GivesThePoseOfACleanFrame) {
   EXPECT_EQ(result.marker_count, 5);
   EXPECT_FALSE(result.from_roi);
   EXPECT_LT((result.T_camera_tool.translation - k_pose.translation).norm(), 0.0015);
-  EXPECT_LT(result.T_camera_tool.rotation.angularDistance(k_pose.rotation), 1.0 * k_degree);
+  EXPECT_LT(result.T_camera_tool.rotation.angularDistance(k_pose.rotation),
+            1.0 * k_radians_per_degree);
 }
 
 TEST_P(SeedOnBothCameras, LooksAroundThePredictionAndThenEverywhere) {
@@ -100,7 +100,8 @@ TEST(Seed, GoesOnBetweenFramesAtConstantVelocity) {
     const Result<Pose> pose = tracker.pose_at(time);
     ASSERT_TRUE(pose) << step;
     EXPECT_NEAR(pose.value.translation.x(), at(step).translation.x(), 0.002) << step;
-    EXPECT_LT(pose.value.rotation.angularDistance(at(step).rotation), 1.5 * k_degree) << step;
+    EXPECT_LT(pose.value.rotation.angularDistance(at(step).rotation), 1.5 * k_radians_per_degree)
+        << step;
   }
   EXPECT_EQ(tracker.pose_at(Time{400'000'000}).reason, Reason::too_old);
 }

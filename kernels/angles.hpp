@@ -1,0 +1,11 @@
+// Inside Glint angles are radians; degrees are for people.
+#pragma once
+
+#include <numbers>
+
+namespace glint {
+
+inline constexpr double k_radians_per_degree = std::numbers::pi / 180;
+inline constexpr double k_degrees_per_radian = 180 / std::numbers::pi;
+
+}  // namespace glint
