@@ -84,8 +84,7 @@ class SeedTrackers {
     for (std::size_t t = 0; t < trackers_.size(); ++t) {
       const SeedResult found = trackers_[t].process(frame, head);
       // It does not say which markers it used: a pose is judged by all of them.
-      outcome.tools[t] = {true, found.reason == Reason::none, found.reason, 0xFF,
-                          found.T_camera_tool};
+      outcome.tools[t] = {found.reason == Reason::none, found.reason, 0xFF, found.T_camera_tool};
     }
     return outcome;
   }

@@ -21,8 +21,8 @@ FrameOutcome outcome_of(const Estimates& estimates) {
     const auto i = static_cast<std::size_t>(t);
     const Track& track = estimates.tracks[i];
     const bool seen = track.seen_now && estimates.verdict.usable();
-    outcome.tools[i] = {track.identity != 0, seen, track.reason, track.marker_mask,
-                        track.T_camera_tool};
+    outcome.tools[i] = {seen, track.reason, track.marker_mask, track.T_camera_tool,
+                        track.identity != 0};
   }
   return outcome;
 }

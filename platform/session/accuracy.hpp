@@ -15,11 +15,11 @@ namespace glint {
 
 // What a frame gave for one tool, kept small so that a whole run fits into memory set aside.
 struct ToolOutcome {
-  bool there = true;  // false: taken out of the set, so that nobody can expect it
   bool seen = false;
   Reason reason = Reason::none;
   std::uint8_t marker_mask = 0;
   Pose T_camera_tool;
+  bool there = true;  // false: taken out of the set, so that nobody can expect it
 };
 struct FrameOutcome {
   Reason verdict = Reason::none;  // why the frame itself was refused
