@@ -42,8 +42,10 @@ SeenMarkers weigh(const Tool& tool, int marker_count, const Markers& markers,
 constexpr double k_noise_stretch_most = 16;
 
 // What three markers agree on, or what had to be forgiven to agree, may be strays: it counts only
-// where the followed motion explains it, too.
+// where the followed motion explains it, too, and the less it was expected, the less it counts
+// (Birge again): strays that agree time after time would else lead the motion away with them.
 constexpr std::size_t k_agree_by_chance_most = 3;
+constexpr double k_surprise_usual = 6;
 constexpr double k_surprise_most = chi_square_limit(6);
 
 }  // namespace
@@ -71,10 +73,13 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
   Matrix6 covariance = pose.covariance;
   if (stretched) covariance *= pose.chi_square / pose.degrees_of_freedom;
   const bool weak = stretched || pose.left_out >= 0 || seen.count <= k_agree_by_chance_most;
-  if (weak && prediction.follows_motion &&
-      surprise_of(expected, pose.T_camera_tool, covariance, tool.tip_m) > k_surprise_most) {
-    out.reason = Reason::bad_fit;
-    return;
+  if (weak && prediction.follows_motion) {
+    const double surprise = surprise_of(expected, pose.T_camera_tool, covariance, tool.tip_m);
+    if (surprise > k_surprise_most) {
+      out.reason = Reason::bad_fit;
+      return;
+    }
+    covariance *= std::max(1.0, surprise / k_surprise_usual);
   }
   out.covariance = covariance;
   double squares = 0;
