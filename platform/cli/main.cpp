@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   glint::add_calibrate(app, exit_code);
   glint::add_map(app, exit_code);
   glint::add_reference(app, exit_code);
+  glint::add_path(app, exit_code);
   glint::add_inspect(app, exit_code);
   glint::add_budget(app, exit_code);
   try {

@@ -219,4 +219,16 @@ std::optional<DroppedInput> read_dropped(MessageBytes bytes) {
   return input;
 }
 
+std::optional<ButtonEvent> read_button(MessageBytes bytes) {
+  CdrReader from(bytes);
+  skip_header(from);
+  ButtonEvent event;
+  event.time.nanoseconds = from.get<std::int64_t>();
+  const auto button = from.get<std::uint8_t>();
+  event.pressed = from.get<bool>();
+  if (from.failed() || button >= k_button_count) return std::nullopt;
+  event.button = static_cast<Button>(button);
+  return event;
+}
+
 }  // namespace glint

@@ -100,6 +100,14 @@ void write_message(CdrWriter& to, const DroppedInput& input, Duration unix_offse
   to.put(static_cast<std::uint8_t>(input.reason));
 }
 
+void write_message(CdrWriter& to, const ButtonEvent& event, Duration unix_offset) {
+  to.begin();
+  put_header(to, event.time + unix_offset, "");
+  to.put(event.time.nanoseconds);
+  to.put(static_cast<std::uint8_t>(event.button));
+  to.put(event.pressed);
+}
+
 void write_output_message(CdrWriter& to, const PoseSample& sample,
                           std::span<const std::uint8_t> record, Duration unix_offset) {
   to.begin();

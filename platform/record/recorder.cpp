@@ -13,7 +13,15 @@
 namespace glint {
 namespace {
 
-enum Kind : std::uint32_t { k_frame, k_head_pose, k_markers, k_choice, k_output, k_dropped };
+enum Kind : std::uint32_t {
+  k_frame,
+  k_head_pose,
+  k_markers,
+  k_choice,
+  k_output,
+  k_dropped,
+  k_button
+};
 
 struct OutputOffer {
   PoseSample sample;
@@ -33,6 +41,8 @@ template <>
 constexpr Kind k_kind_of<OutputOffer> = k_output;
 template <>
 constexpr Kind k_kind_of<DroppedInput> = k_dropped;
+template <>
+constexpr Kind k_kind_of<ButtonEvent> = k_button;
 
 // Short against the seconds that the rings hold, long against a wake-up's cost.
 constexpr auto k_look_again = std::chrono::microseconds(500);
@@ -97,6 +107,7 @@ bool RecorderLane::offer_choice(const ChoiceRecord& choice) noexcept {
 bool RecorderLane::offer_dropped(const DroppedInput& input) noexcept {
   return !keeps_inputs(level_) || offer(input);
 }
+bool RecorderLane::offer_button(const ButtonEvent& event) noexcept { return offer(event); }
 
 bool RecorderLane::offer_output(const PoseSample& sample,
                                 std::span<const std::uint8_t> record) noexcept {
@@ -185,6 +196,9 @@ void Recorder::write_item(const OfferSlot& offer) {
     }
     case k_dropped:
       writer_.write_dropped(item_in<DroppedInput>(offer));
+      break;
+    case k_button:
+      writer_.write_button(item_in<ButtonEvent>(offer));
       break;
   }
 }

@@ -44,6 +44,7 @@ class RecorderLane {
   // record: at most k_offered_record_bytes_max, else dropped.
   bool offer_output(const PoseSample& sample, std::span<const std::uint8_t> record) noexcept;
   bool offer_dropped(const DroppedInput& input) noexcept;
+  bool offer_button(const ButtonEvent& event) noexcept;  // at every level
 
  private:
   friend class Recorder;

@@ -16,6 +16,7 @@
 #include "kernels/pose/marker.hpp"
 #include "kernels/reason.hpp"
 #include "kernels/units.hpp"
+#include "platform/record/button_event.hpp"
 #include "platform/record/choice_record.hpp"
 #include "platform/sensors/frame_buffer.hpp"
 
@@ -79,8 +80,8 @@ struct OutputMessage {
   std::vector<std::uint8_t> record;
 };
 
-using RecordedMessage =
-    std::variant<FrameMessage, HeadPose, MarkerFrame, ChoiceRecord, OutputMessage, DroppedInput>;
+using RecordedMessage = std::variant<FrameMessage, HeadPose, MarkerFrame, ChoiceRecord,
+                                     OutputMessage, DroppedInput, ButtonEvent>;
 
 // How a recording ended.
 struct RecordingOutcome {

@@ -84,6 +84,9 @@ constexpr std::array k_definitions{
     Definition{"glint_msgs/Dropped",
                "std_msgs/Header header\nint64 mid_exposure_ns\nint64 arrival_ns\n"
                "uint32 sequence\nuint8 reason\n"},
+    Definition{"glint_msgs/Button",
+               "uint8 DRAW=0\nuint8 DELETE_LAST=1\nuint8 UNDO=2\nuint8 FINISH=3\n"
+               "std_msgs/Header header\nint64 time_ns\nuint8 button\nbool pressed\n"},
 };
 
 const Definition& definition(std::string_view name) {

@@ -54,6 +54,7 @@ class Replayer {
 
   void on(const HeadPose& head) { head_ = head; }
   void on(const DroppedInput&) {}  // said beside the frame, which is there as well
+  void on(const ButtonEvent&) {}   // a path is made of it, no pose
 
   void on(const FrameMessage& frame) {
     const Frame view = frame.view();

@@ -1,0 +1,1 @@
+target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/resample_stroke.cpp)

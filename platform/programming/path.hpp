@@ -1,0 +1,26 @@
+// A path drawn with the pen, in the robot's frame: waypoints and strokes, one after the other.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kernels/motion/motion_state.hpp"
+
+namespace glint {
+
+enum class PathKind : std::uint8_t { waypoint, stroke };
+
+struct PathElement {
+  PathKind kind = PathKind::waypoint;
+  std::vector<UncertainPose> points;  // T_robot_tip; a waypoint has one, a stroke two or more
+};
+
+using DrawnPath = std::vector<PathElement>;
+
+[[nodiscard]] inline std::size_t point_count(const DrawnPath& path) {
+  std::size_t count = 0;
+  for (const PathElement& element : path) count += element.points.size();
+  return count;
+}
+
+}  // namespace glint

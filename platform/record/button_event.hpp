@@ -1,0 +1,26 @@
+// A button of the pen went down or up: what a user says beside where the pen is.
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/units.hpp"
+
+namespace glint {
+
+enum class Button : std::uint8_t {
+  draw = 0,         // held: the tip draws; a click: a waypoint
+  delete_last = 1,  // pressed: the last waypoint or stroke goes
+  undo = 2,         // pressed: the last change is taken back
+  finish = 3,       // pressed: the path is done
+};
+inline constexpr int k_button_count = 4;
+
+struct ButtonEvent {
+  Time time;
+  Button button = Button::draw;
+  bool pressed = false;
+
+  bool operator==(const ButtonEvent&) const = default;
+};
+
+}  // namespace glint
