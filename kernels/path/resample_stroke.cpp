@@ -160,7 +160,8 @@ StrokeResampler::Next StrokeResampler::last_point(UncertainPose& point) noexcept
   const double way = (end.pose.translation - last_.pose.translation).norm();
   const double turn = angle_between(end.pose.rotation, last_.pose.rotation);
   const bool near = way < 0.5 * settings_.spacing_m && turn < 0.5 * settings_.turn_rad;
-  return near && points_ > 1 ? Next::last_moves : Next::point;
+  if (!near) return Next::point;
+  return points_ > 1 ? Next::last_moves : Next::none;
 }
 
 }  // namespace glint

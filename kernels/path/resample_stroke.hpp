@@ -1,7 +1,8 @@
 // A stroke of a hand-held tip as points a declared distance apart, with their covariances.
 //
 // What:     a point where the stroke begins, one each time it has gone `spacing_m` or turned
-//           `turn_rad` since the last, and one where it ends. A point lies between two samples, at
+//           `turn_rad` since the last, and one where it ends (a stroke that goes nowhere has its
+//           beginning alone). A point lies between two samples, at
 //           a share u of their time; its covariance is (1 - u) Ca + u Cb and what a hand's
 //           acceleration may have done between them. Where it lies is decided by the mean of each
 //           sample's neighbours within 20 ms without itself: decided by the samples, a slow

@@ -34,7 +34,7 @@ double largest_sigma_m(const DrawnPath& path) {
   return std::sqrt(most);
 }
 
-void print_table(const RecordedPath& drawn) {
+void print_table(const RecordedPath& drawn, double spacing_m) {
   const CaptureCounts& counts = drawn.counts;
   int number = 0;
   for (const PathElement& element : drawn.path) {
@@ -47,6 +47,12 @@ void print_table(const RecordedPath& drawn) {
   std::printf("poses while held %lld, taken %lld; largest sigma an axis %.2f mm\n",
               static_cast<long long>(counts.poses), static_cast<long long>(counts.taken),
               1e3 * largest_sigma_m(drawn.path));
+  if (spacing_m < 2 * largest_sigma_m(drawn.path)) {
+    std::printf(
+        "notice  points are %.2f mm apart, less than twice their sigma: some follow the "
+        "noise, not the hand; a wider --spacing, or a reference body in view\n",
+        1e3 * spacing_m);
+  }
   const auto notice = [](std::int64_t count, const char* what) {
     if (count > 0) std::printf("notice  %lld %s\n", static_cast<long long>(count), what);
   };
@@ -88,7 +94,7 @@ int make_path(PathArguments& arguments) {
   // Both texts before either file: what is refused leaves nothing behind.
   const std::string csv = path_csv(drawn.path);
   const std::string script = ur_script(drawn.path, arguments.script);
-  print_table(drawn);
+  print_table(drawn, arguments.options.capture.stroke.spacing_m);
   const auto write = [](const std::string& file, const std::string& text) {
     if (file.empty()) return;
     write_text(file, text);

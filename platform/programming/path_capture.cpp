@@ -115,7 +115,7 @@ void PathCapture::begin_stroke() {
   (void)resampler_.begin(settings_.stroke);  // its settings were checked at the start
   first_point_ = static_cast<int>(points_.size());
   samples_ = 0;
-  left_reach_ = false;
+  left_reach_ = cut_ = false;
 }
 
 void PathCapture::end_stroke() {
@@ -134,12 +134,13 @@ void PathCapture::take_points() {
   for (;;) {
     const StrokeResampler::Next next = resampler_.next(point);
     if (next == StrokeResampler::Next::none) return;
-    if (next == StrokeResampler::Next::last_moves && counts_.points_left_out == 0) {
-      points_.back() = point;
+    if (next == StrokeResampler::Next::last_moves) {
+      if (!cut_) points_.back() = point;
     } else if (static_cast<int>(points_.size()) < settings_.points_max) {
       points_.push_back(point);
     } else {
       ++counts_.points_left_out;
+      cut_ = true;
     }
   }
 }

@@ -91,6 +91,7 @@ class PathCapture {
   std::int64_t samples_ = 0;
   Vector3 began_ = Vector3::Zero();
   bool left_reach_ = false;
+  bool cut_ = false;            // points of it found no room
   bool pieces_before_ = false;  // a gap ended one under the same press
 };
 

@@ -151,6 +151,15 @@ void add_inputs(Sample& sample) {
                  {"reason", static_cast<int>(Reason::frame_doubled)}});
 }
 
+void add_button(Sample& sample, const ButtonEvent& event) {
+  sample.writer.write_button(event);
+  sample.expect("/glint/button", event.time,
+                {{"header", sample.header(event.time, "")},
+                 {"time_ns", number(event.time.nanoseconds)},
+                 {"button", static_cast<int>(event.button)},
+                 {"pressed", event.pressed}});
+}
+
 void add_output(Sample& sample, const PoseSample& output) {
   const auto record = record_of(output);
   sample.writer.write_output(output, record);
@@ -206,6 +215,7 @@ void make(const std::string& folder, RecordingLevel level) {
     output.tool = i % 5 == 4 ? 1 : 0;
     if (i % 2 == 0) output.frame = ReferenceFrame::world;
     add_output(sample, output);
+    add_button(sample, {output.tick, Button::undo, i % 2 == 0});
   }
   const RecordingOutcome outcome = sample.writer.close();
   json attachments = json::array();

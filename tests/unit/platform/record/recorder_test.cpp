@@ -146,6 +146,7 @@ TEST(Recorder, OffersWithoutTouchingTheHeap) {
     recorder.tick_lane().offer_choice(sample_choice(1));
     recorder.tick_lane().offer_output(sample, record);
     recorder.input_lane().offer_dropped({});
+    recorder.input_lane().offer_button({{1}, Button::draw, true});
   }
   EXPECT_EQ(counter.count(), 0u);
   const std::vector<int> seen(3);

@@ -190,6 +190,33 @@ TEST(Recording, KeepsOutputsAloneAtLevelOutputs) {
   EXPECT_TRUE(std::holds_alternative<OutputMessage>(messages[1]));
 }
 
+TEST(Recording, KeepsThePensButtonsAtEveryLevel) {
+  for (const RecordingLevel level : {RecordingLevel::full, RecordingLevel::roi,
+                                     RecordingLevel::blobs, RecordingLevel::outputs}) {
+    const TemporaryFolder folder;
+    const ButtonEvent down{{12'345}, Button::draw, true}, up{{99'999}, Button::undo, false};
+    {
+      RecordingWriter writer(folder.file("run.mcap"), sample_info(level));
+      writer.write_button(down);
+      writer.write_button(up);
+    }
+    RecordingReader reader(folder.file("run.mcap"));
+    const auto messages = all_messages(reader);
+    ASSERT_EQ(messages.size(), 2U);
+    EXPECT_EQ(std::get<ButtonEvent>(messages[0]), down);
+    EXPECT_EQ(std::get<ButtonEvent>(messages[1]), up);
+  }
+}
+
+TEST(Recording, RefusesAButtonThatIsNotInTheList) {
+  CdrWriter writer;
+  write_message(writer, ButtonEvent{{1}, Button::finish, true}, {});
+  EXPECT_TRUE(read_button(writer.bytes()).has_value());
+  EXPECT_FALSE(read_button(writer.bytes().first(writer.bytes().size() - 1)).has_value());
+  write_message(writer, ButtonEvent{{1}, static_cast<Button>(k_button_count), true}, {});
+  EXPECT_FALSE(read_button(writer.bytes()).has_value());
+}
+
 TEST(Recording, SaysTheHashOfItsOutputRecords) {
   const TemporaryFolder folder;
   const auto outcome = write_sample(folder.file("run.mcap"), RecordingLevel::roi);
