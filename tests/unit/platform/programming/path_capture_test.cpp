@@ -202,7 +202,8 @@ TEST(PathCapture, GivesAStrokeBackWithinItsCovariance) {
       capture.add(sample);
     }
     capture.add(up(1500));
-    for (const UncertainPose& point : capture.path().at(0).points) {
+    const DrawnPath path = capture.path();
+    for (const UncertainPose& point : path.at(0).points) {
       const Pose there = truth(static_cast<double>(point.time.nanoseconds) * 1e-6);
       Eigen::Matrix<double, 6, 1> error;
       error << point.pose.translation - there.translation,
