@@ -13,15 +13,17 @@
 #include "platform/mapping/depth_sequence.hpp"
 #include "platform/mapping/map_chain.hpp"
 #include "platform/mapping/map_picture.hpp"
+#include "platform/mapping/occupancy.hpp"
 
 namespace glint {
 namespace {
 
 struct MapArguments {
-  std::string data, out = "out", json;
+  std::string data, out = "out", json, octomap;
   double voxel_mm = 10, depth_max_m = 4;
   int stride = 1;
   bool keep_uneven = false;
+  OccupancySettings occupancy;
 };
 
 nlohmann::ordered_json planes_json(const PlaneSearch& planes) {
@@ -51,6 +53,31 @@ void print_table(const MapCounts& counts, const PlaneSearch& planes) {
   for (const std::string& notice : counts.notices) std::printf("notice  %s\n", notice.c_str());
 }
 
+void print_table(const OccupancyCounts& counts) {
+  std::printf("%-22s %12lld\n", "rays", static_cast<long long>(counts.rays));
+  const auto notice = [](std::int64_t count, const char* what) {
+    if (count > 0) std::printf("notice  %lld %s\n", static_cast<long long>(count), what);
+  };
+  notice(counts.out_of_range, "points left out of the octomap: beyond its range");
+  notice(counts.rays_left_out + counts.points_left_out, "rays and points left out: octomap full");
+}
+
+// Frames were added to the map; the same pixels show what is free.
+std::unique_ptr<Occupancy> occupancy_of(const MapArguments& arguments,
+                                        const DepthSequence& sequence,
+                                        const DepthPointSettings& depth, const PointCloud& map) {
+  if (arguments.octomap.empty()) return nullptr;
+  Progress progress("octomap");
+  auto occupancy = std::make_unique<Occupancy>(arguments.occupancy);
+  int done = 0;
+  for (const DepthFrame& frame : sequence.frames) {
+    occupancy->add_view(frame.picture(), sequence.camera, frame.T_world_camera, depth);
+    progress.show(++done, static_cast<int>(sequence.frames.size()));
+  }
+  occupancy->add_surface(map);
+  return occupancy;
+}
+
 int make_map(const MapArguments& arguments) {
   MapSettings settings;
   settings.voxels.voxel_m = static_cast<float>(1e-3 * arguments.voxel_mm);
@@ -71,7 +98,10 @@ int make_map(const MapArguments& arguments) {
                      " measured points; expected surfaces with 9 points within 5 cm of each");
   }
   if (!arguments.keep_uneven) chain.snap();
+  const std::unique_ptr<Occupancy> occupancy =
+      occupancy_of(arguments, sequence, settings.depth, chain.map());
   print_table(chain.counts(), chain.planes());
+  if (occupancy != nullptr) print_table(occupancy->counts());
   make_folder(arguments.out);
   const auto in_folder = [&](const char* name) {
     return (std::filesystem::path(arguments.out) / name).string();
@@ -84,6 +114,10 @@ int make_map(const MapArguments& arguments) {
   write_map_picture(in_folder("map.png"), chain.map(), chain.support(), sequence.camera,
                     sequence.frames[sequence.frames.size() / 2].T_world_camera);
   std::printf("written  %s\n", in_folder("map.png").c_str());
+  if (occupancy != nullptr) {
+    write_text(arguments.octomap, occupancy->file_bytes());
+    std::printf("written  %s\n", arguments.octomap.c_str());
+  }
   const MapCounts& counts = chain.counts();
   write_json(arguments.json, {{"frames", sequence.frames.size()},
                               {"measured", counts.measured},
@@ -103,7 +137,8 @@ void add_map(CLI::App& app, int& exit_code) {
       "map", "Make a smooth cloud with planes of depth pictures and their poses");
   auto arguments = std::make_shared<MapArguments>();
   command->footer(
-      "Example: glint map --data pictures --out out --json out/map.json\n"
+      "Examples:\n  glint map --data pictures --out out --json out/map.json\n"
+      "  glint map --data pictures --out out --octomap out/map.bt --resolution 0.02\n"
       "The folder holds NAME.depth.png (16 bits, mm) or NAME.depth.npy (float32, m), beside each\n"
       "NAME.pose.txt (T_world_camera, 16 numbers), and camera-intrinsics.txt (9 numbers).\n"
       "Written: map.ply, map.pcd (metres, with normals) and map.png.");
@@ -118,6 +153,11 @@ void add_map(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   command->add_flag("--keep-uneven", arguments->keep_uneven, "do not move points onto planes");
+  command->add_option("--octomap", arguments->octomap,
+                      "write what is occupied, free and unknown here (.bt)");
+  command->add_option("--resolution", arguments->occupancy.resolution_m, "metres; of the octomap")
+      ->check(CLI::Range(0.002, 1.0))
+      ->capture_default_str();
   command->add_option("--out", arguments->out, "folder of the files")->capture_default_str();
   command->add_option("--json", arguments->json, "write the figures here");
   command->callback([arguments, &exit_code] { exit_code = make_map(*arguments); });
