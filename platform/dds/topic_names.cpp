@@ -17,6 +17,10 @@ std::string ros_name(std::string_view text) {
   return name.empty() || is_digit(name.front()) ? "tool_" + name : name;
 }
 
+std::string topic_under(std::string_view prefix, std::string_view name) {
+  return "rt/" + ros_name(prefix) + "/" + ros_name(name);
+}
+
 ToolTopics topics_of(std::string_view prefix, std::string_view tool) {
   const std::string base = ros_name(prefix), name = ros_name(tool);
   const std::string topic = "rt/" + base + "/" + name;

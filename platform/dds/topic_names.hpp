@@ -24,4 +24,10 @@ inline constexpr const char* k_tf_topic = "rt/tf";
 inline constexpr const char* k_tf_static_topic = "rt/tf_static";
 inline constexpr const char* k_diagnostics_topic = "rt/diagnostics";
 
+// Under a prefix as tools' topics are: rt/PREFIX/NAME.
+[[nodiscard]] std::string topic_under(std::string_view prefix, std::string_view name);
+inline constexpr const char* k_map_points_name = "map_points";
+inline constexpr const char* k_octomap_name = "octomap";
+inline constexpr const char* k_path_name = "path";
+
 }  // namespace glint

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "platform/dds/messages.hpp"
+#include "platform/dds/topic_types.hpp"
 #include "platform/record/sha256.hpp"
 
 namespace glint {
@@ -19,9 +20,9 @@ namespace {
 
 // type_description_interfaces/msg/FieldType: a plain type's number; an unbounded sequence of it is
 // 144 more, a fixed array 48 more.
-const std::map<std::string, int> plain_types = {{"uint8", 3},  {"int32", 6},   {"uint32", 7},
-                                                {"uint64", 9}, {"double", 11}, {"bool", 15},
-                                                {"byte", 16},  {"string", 17}};
+const std::map<std::string, int> plain_types = {{"int8", 2},   {"uint8", 3},  {"int32", 6},
+                                                {"uint32", 7}, {"uint64", 9}, {"double", 11},
+                                                {"bool", 15},  {"byte", 16},  {"string", 17}};
 constexpr int k_nested = 1, k_array = 48, k_sequence = 144;
 
 using Definitions = std::map<std::string, std::string>;  // type name to its definition
@@ -42,6 +43,18 @@ Definitions ros_definitions() {
        "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation"},
       {"geometry_msgs/TransformStamped",
        "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform"},
+      {"std_msgs/Bool", "bool data"},
+      {"std_msgs/String", "string data"},
+      {"sensor_msgs/PointField", "string name\nuint32 offset\nuint8 datatype\nuint32 count"},
+      {"sensor_msgs/PointCloud2",
+       "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\n"
+       "bool is_bigendian\nuint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense"},
+      {"sensor_msgs/JointState",
+       "std_msgs/Header header\nstring[] name\ndouble[] position\ndouble[] velocity\n"
+       "double[] effort"},
+      {"nav_msgs/Path", "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses"},
+      {"octomap_msgs/Octomap",
+       "std_msgs/Header header\nbool binary\nstring id\ndouble resolution\nint8[] data"},
       {"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms"},
       {"diagnostic_msgs/KeyValue", "string key\nstring value"},
       {"diagnostic_msgs/DiagnosticStatus",
@@ -108,6 +121,12 @@ TEST(TypeHashes, AreThoseOfTheMessageDefinitions) {
   EXPECT_EQ(pose_covariance_type().type_hash, rihs01("geometry_msgs/PoseWithCovarianceStamped"));
   EXPECT_EQ(tf_type().type_hash, rihs01("tf2_msgs/TFMessage"));
   EXPECT_EQ(diagnostics_type().type_hash, rihs01("diagnostic_msgs/DiagnosticArray"));
+  EXPECT_EQ(cloud_type().type_hash, rihs01("sensor_msgs/PointCloud2"));
+  EXPECT_EQ(octomap_type().type_hash, rihs01("octomap_msgs/Octomap"));
+  EXPECT_EQ(path_type().type_hash, rihs01("nav_msgs/Path"));
+  EXPECT_EQ(joint_state_type().type_hash, rihs01("sensor_msgs/JointState"));
+  EXPECT_EQ(text_type().type_hash, rihs01("std_msgs/String"));
+  EXPECT_EQ(bool_type().type_hash, rihs01("std_msgs/Bool"));
   EXPECT_EQ(status_type().type_hash, rihs01("glint_msgs/TrackStatus"));
 }
 
