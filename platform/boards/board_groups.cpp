@@ -50,6 +50,7 @@ BoardGroups::BoardGroups(const Cell& cell, Sinks& sinks, const Clock& now,
       frame_(cell, roster_.published(), now, frame_runner_, nullptr),
       tick_(cell, frame_.estimates(), robot_, now, {sinks.can(), sinks.dds(), nullptr, nullptr},
             unix_offset_ns, frames, tick_runner_, frame_.overrun_notes()) {
+  frame_.tell_head_to(sinks.dds());
   robot_.write_slot() = declared_robot_frame(cell);
   robot_.publish(1, 0);
 }

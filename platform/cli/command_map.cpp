@@ -8,6 +8,7 @@
 #include "platform/cli/commands.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/progress.hpp"
+#include "platform/cli/publishing.hpp"
 #include "platform/input_error.hpp"
 #include "platform/mapping/cloud_files.hpp"
 #include "platform/mapping/depth_sequence.hpp"
@@ -24,6 +25,7 @@ struct MapArguments {
   int stride = 1;
   bool keep_uneven = false;
   OccupancySettings occupancy;
+  PublishOptions publish;
 };
 
 nlohmann::ordered_json planes_json(const PlaneSearch& planes) {
@@ -78,6 +80,19 @@ std::unique_ptr<Occupancy> occupancy_of(const MapArguments& arguments,
   return occupancy;
 }
 
+void publish(const MapArguments& arguments, const HostCloud& map, const Occupancy* occupancy) {
+  if (arguments.publish.seconds <= 0) return;
+  SurroundingsPublisher publisher(arguments.publish.settings);
+  const Time now = publishing_time();
+  if (const std::size_t left = publisher.publish_cloud(map.points, map.normals, now); left > 0) {
+    std::printf("notice  %zu points not published: too many; a larger --voxel-mm\n", left);
+  }
+  if (occupancy != nullptr) {
+    publisher.publish_octomap(occupancy->message_bytes(), occupancy->resolution_m(), now);
+  }
+  keep_publishing(publisher, arguments.publish);
+}
+
 int make_map(const MapArguments& arguments) {
   MapSettings settings;
   settings.voxels.voxel_m = static_cast<float>(1e-3 * arguments.voxel_mm);
@@ -127,6 +142,7 @@ int make_map(const MapArguments& arguments) {
                               {"on_planes", counts.on_planes},
                               {"planes", planes_json(chain.planes())},
                               {"notices", counts.notices}});
+  publish(arguments, map, occupancy.get());
   return 0;
 }
 
@@ -141,7 +157,8 @@ void add_map(CLI::App& app, int& exit_code) {
       "  glint map --data pictures --out out --octomap out/map.bt --resolution 0.02\n"
       "The folder holds NAME.depth.png (16 bits, mm) or NAME.depth.npy (float32, m), beside each\n"
       "NAME.pose.txt (T_world_camera, 16 numbers), and camera-intrinsics.txt (9 numbers).\n"
-      "Written: map.ply, map.pcd (metres, with normals) and map.png.");
+      "Written: map.ply, map.pcd (metres, with normals) and map.png.\n"
+      "--dds: rt/glint/map_points and, with --octomap, rt/glint/octomap, in frame hmd_world.");
   command->add_option("--data", arguments->data, "folder of the pictures")->required();
   command->add_option("--voxel-mm", arguments->voxel_mm, "side of a voxel")
       ->check(CLI::Range(1.0, 100.0))
@@ -158,6 +175,7 @@ void add_map(CLI::App& app, int& exit_code) {
   command->add_option("--resolution", arguments->occupancy.resolution_m, "metres; of the octomap")
       ->check(CLI::Range(0.002, 1.0))
       ->capture_default_str();
+  add_publish_options(*command, arguments->publish);
   command->add_option("--out", arguments->out, "folder of the files")->capture_default_str();
   command->add_option("--json", arguments->json, "write the figures here");
   command->callback([arguments, &exit_code] { exit_code = make_map(*arguments); });

@@ -6,9 +6,11 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "platform/cli/commands.hpp"
 #include "platform/cli/output_file.hpp"
+#include "platform/cli/publishing.hpp"
 #include "platform/input_error.hpp"
 #include "platform/programming/path_csv.hpp"
 #include "platform/programming/press_times.hpp"
@@ -22,6 +24,7 @@ struct PathArguments {
   std::string recording, button, csv, urscript, json;
   RecordedPathOptions options;
   UrScriptSettings script;
+  PublishOptions publish;
 };
 
 double largest_sigma_m(const DrawnPath& path) {
@@ -88,6 +91,17 @@ nlohmann::ordered_json figures(const RecordedPath& drawn) {
           {"strokes_left_out", counts.strokes_left_out}};
 }
 
+void publish(const RecordedPath& drawn, const PublishOptions& options) {
+  if (options.seconds <= 0) return;
+  std::vector<UncertainPose> points;
+  for (const PathElement& element : drawn.path) {
+    points.insert(points.end(), element.points.begin(), element.points.end());
+  }
+  SurroundingsPublisher publisher(options.settings);
+  publisher.publish_path(points, drawn.unix_offset, publishing_time());
+  keep_publishing(publisher, options);
+}
+
 int make_path(PathArguments& arguments) {
   if (!arguments.button.empty()) arguments.options.presses = press_times(arguments.button);
   const RecordedPath drawn = recorded_path(arguments.recording, arguments.options);
@@ -103,6 +117,7 @@ int make_path(PathArguments& arguments) {
   write(arguments.csv, csv);
   write(arguments.urscript, script);
   write_json(arguments.json, figures(drawn));
+  publish(drawn, arguments.publish);
   return 0;
 }
 
@@ -125,7 +140,8 @@ void add_path(CLI::App& app, int& exit_code) {
   command->footer(
       "Examples:\n  glint path out/run.mcap --csv path.csv --urscript path.script\n"
       "  glint path out/run.mcap --button 1.0..2.5,3.0..4.2 --spacing 2mm --csv path.csv\n"
-      "A button held draws a stroke, clicked it sets a waypoint. Reachability is not checked.");
+      "A button held draws a stroke, clicked it sets a waypoint. Reachability is not checked.\n"
+      "--dds: nav_msgs/Path on rt/glint/path, in the robot's frame.");
   command->add_option("recording", arguments->recording, "a recording of `glint run`")->required();
   command->add_option("--tool", arguments->options.tool, "the pen's name; default: the first tool");
   command->add_option("--button", arguments->button,
@@ -150,6 +166,7 @@ void add_path(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1e-2, 10.0))
       ->capture_default_str();
   add_length(command, "--blend", script.blend_m, "largest blend radius", 0, 0.1);
+  add_publish_options(*command, arguments->publish);
   command->add_flag("--allow-truncated", arguments->options.tolerance.truncated,
                     "read a file that was cut short up to its last whole chunk");
   command->add_flag("--allow-incomplete", arguments->options.tolerance.incomplete,

@@ -87,7 +87,13 @@ void DdsSink::run() {
   }
 }
 
+std::shared_ptr<Participant> DdsSink::participant() const {
+  return publisher_ != nullptr ? publisher_->participant() : nullptr;
+}
+
 void DdsSink::write_waiting() {
+  HeadPose head;
+  while (heads_.pop(head)) publisher_->write_head(head);
   PoseSample sample;
   while (ring_.pop(sample)) {
     if (!publisher_->write(sample)) {

@@ -12,11 +12,13 @@
 #include <thread>
 
 #include "graph/ring.hpp"
+#include "kernels/pose/head_pose.hpp"
 #include "kernels/wire/pose_sample.hpp"
 #include "platform/dds/dds_settings.hpp"
 
 namespace glint {
 
+class Participant;
 class PosePublisher;
 
 struct DdsCounts {
@@ -30,6 +32,7 @@ struct DdsCounts {
 class DdsSink {
  public:
   static constexpr int k_ring_capacity = 1024;  // 4 s of one tool at 250 Hz
+  static constexpr int k_head_capacity = 64;    // 1.4 s of frames
 
   // Joins the domain. Throws MissingDevice when the network interface is not there or has no IPv4
   // address, InputError when a setting is out of range or the domain is already open in this
@@ -49,6 +52,14 @@ class DdsSink {
   // From one thread only. False: the sample was dropped and counted. A tool's ticks must advance.
   bool offer(const PoseSample& sample) noexcept;
 
+  // From one other thread only: where the headset is, for tf. False: no room, and the next one will
+  // say it again.
+  bool offer_head(const HeadPose& head) noexcept { return heads_.push(head); }
+
+  // The domain's participant, for readers of this process; empty after stop(). A reader that holds
+  // it keeps the domain open.
+  [[nodiscard]] std::shared_ptr<Participant> participant() const;
+
   // Writes what is in the ring, tells readers that the stream ends, waits for their receipts (at
   // most 2 s) and leaves the domain. Call it when the offering thread has ended.
   void stop();
@@ -62,6 +73,7 @@ class DdsSink {
 
   using Counter = std::atomic<std::uint64_t>;
   graph::Ring<PoseSample, k_ring_capacity> ring_;
+  graph::Ring<HeadPose, k_head_capacity> heads_;
   Counter offered_{0}, refused_{0}, written_{0}, write_failed_{0}, poses_written_{0};
   std::atomic<bool> accepting_{true};
   std::atomic<bool> stopping_{false};

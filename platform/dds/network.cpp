@@ -78,7 +78,9 @@ std::string cyclone_configuration(const DdsSettings& settings) {
          "<MaxAutoParticipantIndex>" +
          k_participant_index_max + "</MaxAutoParticipantIndex>" +
          (peers.empty() ? "" : "<Peers>" + peers + "</Peers>") +
-         "</Discovery><Tracing><Verbosity>severe</Verbosity></Tracing></Domain></CycloneDDS>";
+         "</Discovery><Internal><MaxSampleSize>" + std::to_string(k_message_bytes_max) +
+         "B</MaxSampleSize></Internal><Tracing><Verbosity>severe</Verbosity></Tracing></Domain></"
+         "CycloneDDS>";
 }
 
 }  // namespace glint

@@ -43,21 +43,22 @@ void check(const DdsSettings& settings) {
 }  // namespace
 
 PosePublisher::PosePublisher(const DdsSettings& settings)
-    : settings_((check(settings), settings)), participant_(settings) {
+    : settings_((check(settings), settings)),
+      participant_(std::make_shared<Participant>(settings)) {
   for (const std::string& name : settings_.tool_names) {
     ToolStream stream;
     stream.name = name;
     stream.topics = topics_of(settings_.topic_prefix, name);
-    stream.status = participant_.writer(status_type(), stream.topics.status, k_status_quality);
-    stream.pose = participant_.writer(pose_stamped_type(), stream.topics.pose, k_pose_quality);
+    stream.status = participant_->writer(status_type(), stream.topics.status, k_status_quality);
+    stream.pose = participant_->writer(pose_stamped_type(), stream.topics.pose, k_pose_quality);
     stream.pose_covariance =
-        participant_.writer(pose_covariance_type(), stream.topics.pose_covariance, k_pose_quality);
+        participant_->writer(pose_covariance_type(), stream.topics.pose_covariance, k_pose_quality);
     streams_.push_back(std::move(stream));
   }
-  tf_ = participant_.writer(tf_type(), k_tf_topic, k_tf_quality);
-  tf_static_ = participant_.writer(tf_type(), k_tf_static_topic, k_tf_static_quality);
+  tf_ = participant_->writer(tf_type(), k_tf_topic, k_tf_quality);
+  tf_static_ = participant_->writer(tf_type(), k_tf_static_topic, k_tf_static_quality);
   diagnostics_ =
-      participant_.writer(diagnostics_type(), k_diagnostics_topic, k_diagnostics_quality);
+      participant_->writer(diagnostics_type(), k_diagnostics_topic, k_diagnostics_quality);
   write_static_transforms();
 }
 
@@ -125,6 +126,17 @@ void PosePublisher::write_pose(const ToolStream& stream, const PoseSample& sampl
   // Their success is not counted: the status is what a reader counts by.
   dds_write(stream.pose, &pose);
   dds_write(stream.pose_covariance, &covariance);
+  dds_write(tf_, &tf);
+}
+
+void PosePublisher::write_head(const HeadPose& head) {
+  if (!head.valid) return;
+  TransformMessage transform =
+      transform_message(header_message(unix_time(head.time), settings_.frames.world.c_str()),
+                        settings_.frames.camera.c_str(), head.T_world_camera);
+  TfMessage tf{};
+  tf.transforms._length = tf.transforms._maximum = 1;
+  tf.transforms._buffer = &transform;
   dds_write(tf_, &tf);
 }
 

@@ -1,9 +1,11 @@
 // Writes pose samples to their topics, in the caller's thread. The sink's thread is its only user.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "kernels/pose/head_pose.hpp"
 #include "platform/dds/messages.hpp"
 #include "platform/dds/participant.hpp"
 #include "platform/dds/topic_names.hpp"
@@ -26,9 +28,15 @@ class PosePublisher {
   // How many readers the tool's status topic has found, the smallest over all tools.
   [[nodiscard]] int readers() const;
 
+  // For readers of the same process; a domain is opened once.
+  [[nodiscard]] const std::shared_ptr<Participant>& participant() const { return participant_; }
+
   // The status, and where there is a pose the pose, its covariance and tf. False: DDS did not take
   // the status, or the tick does not follow the tool's last one; then nothing is written.
   bool write(const PoseSample& sample);
+
+  // tf: world to the camera, where the head's pose is known.
+  void write_head(const HeadPose& head);
 
   void write_diagnostics(const SinkFigures& figures);
 
@@ -55,7 +63,7 @@ class PosePublisher {
   [[nodiscard]] const char* frame_name(ReferenceFrame frame) const;
 
   DdsSettings settings_;
-  Participant participant_;
+  std::shared_ptr<Participant> participant_;
   std::vector<ToolStream> streams_;
   dds_entity_t tf_ = 0, tf_static_ = 0, diagnostics_ = 0;
 };

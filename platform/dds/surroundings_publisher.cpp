@@ -5,8 +5,10 @@
 #include <stdexcept>
 
 #include "platform/dds/messages.hpp"
+#include "platform/dds/network.hpp"
 #include "platform/dds/topic_names.hpp"
 #include "platform/dds/topic_types.hpp"
+#include "platform/input_error.hpp"
 
 namespace glint {
 namespace {
@@ -96,6 +98,10 @@ std::size_t SurroundingsPublisher::publish_cloud(FloatTriples points, FloatTripl
 
 void SurroundingsPublisher::publish_octomap(std::span<const std::int8_t> data, double resolution_m,
                                             Time unix_time) {
+  if (data.size() + k_heading_bytes > k_message_bytes_max) {
+    throw InputError("octomap: " + std::to_string(data.size()) +
+                     " bytes; expected at most 16 MiB in one message: a coarser resolution");
+  }
   const dds_entity_t writer =
       add_writer(octomap_type(), topic_under(settings_.topic_prefix, k_octomap_name), 1);
   std::vector<std::int8_t> bytes(data.begin(), data.end());

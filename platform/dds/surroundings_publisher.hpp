@@ -32,7 +32,7 @@ class SurroundingsPublisher {
   std::size_t publish_cloud(FloatTriples points, FloatTriples normals, Time unix_time);
 
   // octomap_msgs/Octomap on rt/PREFIX/octomap; `data` as Occupancy::message_bytes() has it. In one
-  // message, however large: the type cannot be divided. Once.
+  // message: the type cannot be divided. Throws InputError beyond 16 MiB. Once.
   void publish_octomap(std::span<const std::int8_t> data, double resolution_m, Time unix_time);
 
   // nav_msgs/Path on rt/PREFIX/path: T_robot_tip with each point's own time. Once.

@@ -43,6 +43,7 @@ void FrameGroup::process(const ArrivedFrame& arrived) noexcept {
   if (method_ != nullptr) {
     newest_ = &method_->process(arrived);
     publish(*newest_);
+    if (dds_ != nullptr) (void)dds_->offer_head(arrived.head);
     if (lane_ != nullptr) record(arrived);
     return;
   }
@@ -58,6 +59,7 @@ void FrameGroup::process(const ArrivedFrame& arrived) noexcept {
   }
   runner_->settle(*tracker_);
   if (!overrun_.happened()) *in_time_ = *newest_;
+  if (dds_ != nullptr) (void)dds_->offer_head(arrived.head);
   if (lane_ != nullptr) record(arrived);
 }
 

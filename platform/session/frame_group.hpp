@@ -9,6 +9,7 @@
 #include "graph/rate_group.hpp"
 #include "nodes/tracker.hpp"
 #include "platform/cells/cell.hpp"
+#include "platform/dds/dds_sink.hpp"
 #include "platform/record/recorder.hpp"
 #include "platform/session/choices.hpp"
 #include "platform/session/frame_method.hpp"
@@ -25,6 +26,9 @@ class FrameGroup {
   FrameGroup(const Cell& cell, graph::TripleBuffer<ToolSet>& tool_set, Clock now,
              GroupRunner<Tracker>& runner, RecorderLane* lane,
              std::unique_ptr<FrameMethod> method = nullptr);
+
+  // Where the headset is goes there, too, after each frame's estimates; null: nowhere.
+  void tell_head_to(DdsSink* dds) noexcept { dds_ = dds; }
 
   // Estimates are published before anything is offered: latency first. Of a frame that was not in
   // time, what the policy says is published.
@@ -50,6 +54,7 @@ class FrameGroup {
   Clock now_;
   GroupRunner<Tracker>* runner_;
   RecorderLane* lane_;
+  DdsSink* dds_ = nullptr;
   Duration lost_after_;
   graph::OverrunDecision overrun_;  // of the last frame
   std::unique_ptr<Estimates> in_time_ = std::make_unique<Estimates>();

@@ -76,6 +76,7 @@ SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, st
   robot_.write_slot() = declared_robot_frame(cell);
   robot_.publish(1, 0);
   outcomes_.resize(frames);
+  frame_.tell_head_to(sinks.dds());
   if (cell.realtime && options.plan.background) {
     background_ = std::make_unique<BackgroundGroup>(cell, *options.plan.background, trace);
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "platform/can/can_sink.hpp"
+#include "platform/dds/dds_inputs.hpp"
 #include "platform/dds/dds_sink.hpp"
 #include "platform/dds/reader_result.hpp"
 #include "platform/record/recording.hpp"
@@ -22,6 +23,7 @@ struct SinkOutcome {
   CanSinkCounts can;
   double can_bus_load = 0;  // computed, of the bus that the cell declares
   DdsCounts dds;
+  HeardCounts heard;  // over DDS
   ReaderResult dds_reader;
   bool dds_was_read = false;
   std::uint64_t files_dropped = 0;  // samples that TUM and CSV files lack

@@ -102,6 +102,11 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     if (options.with_reader) {
       reader_ = std::make_unique<ReaderProcess>(settings, in_folder(out_, "dds_reader.json"));
     }
+    const auto record_button = [recorder = recorder_.get()](const ButtonEvent& event) {
+      if (recorder != nullptr) (void)recorder->input_lane().offer_button(event);
+    };
+    inputs_ = std::make_unique<DdsInputs>(dds_->participant(), settings, record_button);
+    inputs_->start();
     dds_->start();
     if (reader_ != nullptr && !dds_->wait_for_readers(1, k_reader_limit)) {
       throw MissingDevice("the DDS reader did not find the topics on interface " +
@@ -116,6 +121,11 @@ void Sinks::close(SinkOutcome& result) {
   result.can_bus_load = can_bus_load_;
   can_.reset();
   if (!can_file_.empty()) result.files.push_back(can_file_);
+  if (inputs_ != nullptr) {
+    inputs_->stop();
+    result.heard = inputs_->counts();
+    inputs_.reset();  // the sink leaves the domain when nobody else holds it
+  }
   if (dds_ != nullptr) {
     dds_->stop();
     result.dds = dds_->counts();

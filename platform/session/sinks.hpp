@@ -6,6 +6,7 @@
 
 #include "platform/can/can_sink.hpp"
 #include "platform/cells/cell.hpp"
+#include "platform/dds/dds_inputs.hpp"
 #include "platform/dds/dds_sink.hpp"
 #include "platform/dds/reader_process.hpp"
 #include "platform/record/recorder.hpp"
@@ -23,6 +24,8 @@ class Sinks {
 
   [[nodiscard]] CanSink* can() noexcept { return can_.get(); }
   [[nodiscard]] DdsSink* dds() noexcept { return dds_.get(); }
+  // What comes in over the same domain; null where there is none.
+  [[nodiscard]] DdsInputs* inputs() noexcept { return inputs_.get(); }
   [[nodiscard]] Recorder* recorder() noexcept { return recorder_.get(); }
   [[nodiscard]] FileSink* files() noexcept { return files_.get(); }
 
@@ -39,6 +42,7 @@ class Sinks {
   std::unique_ptr<CanSink> can_;
   std::unique_ptr<ReaderProcess> reader_;  // started before the sink, ended after it
   std::unique_ptr<DdsSink> dds_;
+  std::unique_ptr<DdsInputs> inputs_;
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<FileSink> files_;
   std::string recording_file_, can_file_, tum_file_, csv_file_;

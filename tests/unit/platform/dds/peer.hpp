@@ -75,6 +75,26 @@ class Peer {
     return reader;
   }
 
+  dds_entity_t writer(const TopicType& type, const std::string& topic, Reliability reliability,
+                      Durability durability, int depth) {
+    dds_qos_t* qos = dds_create_qos();
+    dds_qset_reliability(qos,
+                         reliability == Reliability::reliable ? DDS_RELIABILITY_RELIABLE
+                                                              : DDS_RELIABILITY_BEST_EFFORT,
+                         DDS_MSECS(100));
+    dds_qset_durability(qos, durability == Durability::transient_local
+                                 ? DDS_DURABILITY_TRANSIENT_LOCAL
+                                 : DDS_DURABILITY_VOLATILE);
+    dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, depth);
+    const dds_data_representation_id_t xcdr1 = DDS_DATA_REPRESENTATION_XCDR1;
+    dds_qset_data_representation(qos, 1, &xcdr1);
+    const dds_entity_t entity =
+        dds_create_topic(participant_, type.descriptor, topic.c_str(), nullptr, nullptr);
+    const dds_entity_t writer = dds_create_writer(participant_, entity, qos, nullptr);
+    dds_delete_qos(qos);
+    return writer;
+  }
+
   // Each side has found the other's endpoints. A sink learns of readers in the order in which they
   // were made, so it knows them all when it knows the last one, a reader of the last tool's status.
   [[nodiscard]] bool meets(const DdsSink& sink) {

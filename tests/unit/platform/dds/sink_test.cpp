@@ -91,6 +91,32 @@ TEST_F(Sinks, PublishTheTipAsATransformOfTheFrameThePoseIsIn) {
             1u);
 }
 
+TEST_F(Sinks, PublishWhereTheHeadsetIsWhileItKnows) {
+  DdsSink sink(test_settings());
+  Peer peer(test_settings());
+  const dds_entity_t reader =
+      peer.reader(tf_type(), k_tf_topic, Reliability::reliable, Durability::volatile_data, 100);
+  ASSERT_TRUE(peer.meets(sink));
+  sink.start();
+  HeadPose head{Time{} + milliseconds(30), false, {Quaternion::Identity(), Vector3(9, 9, 9)}};
+  EXPECT_TRUE(sink.offer_head(head));
+  head.valid = true;
+  head.T_world_camera = {Quaternion(0.5, -0.5, 0.5, 0.5), Vector3(1, 2, 3)};
+  EXPECT_TRUE(sink.offer_head(head));
+  EXPECT_EQ(take<TfMessage>(reader, 1,
+                            [&](const TfMessage& message) {
+                              ASSERT_EQ(message.transforms._length, 1u);
+                              const TransformMessage& seen = message.transforms._buffer[0];
+                              EXPECT_STREQ(seen.header.frame_id, "hmd_world");
+                              EXPECT_STREQ(seen.child_frame_id, "hmd_tof_optical");
+                              EXPECT_EQ(unix_ns(seen.header.stamp),
+                                        k_board_start.nanoseconds + 30'000'000);
+                              EXPECT_EQ(seen.transform.translation.z, 3);
+                              EXPECT_EQ(seen.transform.rotation.x, -0.5);
+                            }),
+            1u);
+}
+
 TEST_F(Sinks, PublishAStatusAndNoPoseForALostTool) {
   DdsSink sink(test_settings());
   Peer peer(test_settings());

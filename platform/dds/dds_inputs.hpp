@@ -1,0 +1,82 @@
+// What comes in: joint states, the robot's description, a guess of where it stands, and the pen's
+// buttons, read by a thread of its own.
+//
+// Values of which the newest counts are handed over in triple buffers, as Latest<> reads them; a
+// button's changes go one by one to whoever records them, for each of them counts. Every message is
+// bounded before it is unpacked; what is too large or makes no sense is refused and counted.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <thread>
+
+#include "graph/latest.hpp"
+#include "platform/dds/heard.hpp"
+#include "platform/dds/participant.hpp"
+#include "platform/record/button_event.hpp"
+
+namespace glint {
+
+struct HeardCounts {
+  std::uint64_t joints = 0, descriptions = 0, guesses = 0, buttons = 0;  // messages taken
+  std::uint64_t refused = 0;
+};
+
+class DdsInputs {
+ public:
+  using OnButton = std::function<void(const ButtonEvent&)>;
+
+  // `on_button`, which may be empty, is called from the reading thread with each change. Throws as
+  // Participant does.
+  DdsInputs(std::shared_ptr<Participant> participant, const DdsSettings& settings,
+            OnButton on_button);
+  ~DdsInputs();  // stop()
+  DdsInputs(const DdsInputs&) = delete;
+  DdsInputs& operator=(const DdsInputs&) = delete;
+
+  void start();
+  void stop();
+  // Without a thread: waits for messages, at most `limit`, and takes all that are there.
+  void read(Duration limit);
+
+  // Each has one reader at most.
+  [[nodiscard]] graph::TripleBuffer<HeardJoints>& joints() noexcept { return *joints_; }
+  [[nodiscard]] graph::TripleBuffer<HeardGuess>& guess() noexcept { return *guess_; }
+  [[nodiscard]] graph::TripleBuffer<HeardDescription>& description() noexcept {
+    return *description_;
+  }
+
+  // From any thread.
+  [[nodiscard]] HeardCounts counts() const noexcept;
+
+ private:
+  struct ButtonReader {
+    dds_entity_t reader = 0;
+    bool pressed = false;
+  };
+
+  dds_entity_t add_reader(const TopicType& type, const std::string& topic, const Quality& quality);
+  void take_joints();
+  void take_descriptions();
+  void take_guesses();
+  void take_button(Button button);
+  [[nodiscard]] Time now() const;
+
+  std::shared_ptr<Participant> participant_;
+  Duration unix_minus_board_;
+  OnButton on_button_;
+  dds_entity_t waitset_ = 0, joints_reader_ = 0, description_reader_ = 0, guess_reader_ = 0;
+  std::array<ButtonReader, k_button_count> buttons_;
+  std::unique_ptr<graph::TripleBuffer<HeardJoints>> joints_;
+  std::unique_ptr<graph::TripleBuffer<HeardGuess>> guess_;
+  std::unique_ptr<graph::TripleBuffer<HeardDescription>> description_;
+  using Counter = std::atomic<std::uint64_t>;
+  Counter joints_count_{0}, description_count_{0}, guess_count_{0}, button_count_{0}, refused_{0};
+  std::atomic<bool> stopping_{false};
+  std::thread thread_;
+};
+
+}  // namespace glint

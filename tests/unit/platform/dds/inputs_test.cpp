@@ -1,0 +1,204 @@
+// Joint states, a description, a guess and buttons from another participant over the network.
+#include "platform/dds/dds_inputs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "platform/dds/dds_sink.hpp"
+#include "tests/unit/platform/dds/inputs.hpp"
+#include "tests/unit/platform/dds/isolated_network.hpp"
+#include "tests/unit/platform/dds/peer.hpp"
+#include "tests/unit/platform/dds/samples.hpp"
+
+namespace glint {
+namespace {
+
+using Inputs = DdsTest;
+
+bool found(dds_entity_t writer) {
+  return comes_true([&] {
+    dds_publication_matched_status_t status{};
+    dds_get_publication_matched_status(writer, &status);
+    return status.current_count > 0;
+  });
+}
+
+// Both ends, in domains of their own.
+struct Ends {
+  std::vector<ButtonEvent> events;  // of the reading thread: this one
+  DdsInputs inputs;
+  Peer peer;
+
+  Ends()
+      : inputs(std::make_shared<Participant>(test_settings()), test_settings(),
+               [this](const ButtonEvent& event) { events.push_back(event); }),
+        peer(test_settings()) {}
+
+  // Writes and reads until `done`.
+  template <class Done>
+  bool read_until(Done done) {
+    return comes_true([&] {
+      inputs.read(milliseconds(2));
+      return done();
+    });
+  }
+};
+
+TEST_F(Inputs, HandOverTheNewestJointStateOfABestEffortDriver) {
+  Ends ends;
+  const dds_entity_t writer =
+      ends.peer.writer(joint_state_type(), "rt/joint_states", Reliability::best_effort,
+                       Durability::volatile_data, 5);
+  ASSERT_TRUE(found(writer));
+  double angle = 0;
+  EXPECT_TRUE(ends.read_until([&] {
+    JointText text({"shoulder", "elbow"}, {angle += 0.1, 2});
+    const JointStateMessage message = text.message();
+    dds_write(writer, &message);
+    return ends.inputs.counts().joints >= 3;
+  }));
+  ASSERT_TRUE(ends.inputs.joints().sample());
+  const HeardJoints& joints = ends.inputs.joints().value();
+  EXPECT_EQ(joints.count, 2);
+  EXPECT_STREQ(joints.names[0].data(), "shoulder");
+  EXPECT_GT(joints.positions[0], 0.25);
+  EXPECT_EQ(ends.inputs.joints().version(), ends.inputs.counts().joints);
+}
+
+TEST_F(Inputs, HearADescriptionThatWasPublishedBefore) {
+  Peer peer(test_settings());
+  const dds_entity_t writer = peer.writer(text_type(), "rt/robot_description",
+                                          Reliability::reliable, Durability::transient_local, 1);
+  std::string urdf = "<robot name=\"arm\">" + std::string(200'000, ' ') + "</robot>";
+  const TextMessage message{urdf.data()};
+  ASSERT_EQ(dds_write(writer, &message), DDS_RETCODE_OK);
+  DdsInputs inputs(std::make_shared<Participant>(test_settings()), test_settings(), {});
+  EXPECT_TRUE(comes_true([&] {
+    inputs.read(milliseconds(2));
+    return inputs.description().sample();
+  }));
+  EXPECT_EQ(inputs.description().value().urdf, urdf);
+}
+
+TEST_F(Inputs, TakeRvizsGuess) {
+  Ends ends;
+  const dds_entity_t writer =
+      ends.peer.writer(pose_covariance_type(), "rt/initialpose", Reliability::reliable,
+                       Durability::volatile_data, 10);
+  ASSERT_TRUE(found(writer));
+  std::string frame = "hmd_world";
+  const PoseCovarianceMessage message = guess_message(frame);
+  dds_write(writer, &message);
+  EXPECT_TRUE(ends.read_until([&] { return ends.inputs.guess().sample(); }));
+  EXPECT_EQ(ends.inputs.guess().value().pose.translation, Vector3(1, 2, 3));
+}
+
+TEST_F(Inputs, GiveEachChangeOfAButtonOnce) {
+  Ends ends;
+  const dds_entity_t draw = ends.peer.writer(bool_type(), "rt/glint/button", Reliability::reliable,
+                                             Durability::volatile_data, 64);
+  const dds_entity_t undo = ends.peer.writer(bool_type(), "rt/glint/button_undo",
+                                             Reliability::reliable, Durability::volatile_data, 64);
+  ASSERT_TRUE(found(draw) && found(undo));
+  const Time before = Time{dds_time()} - k_board_start;
+  for (const bool down : {false, true, true, true, false, true}) {
+    const BoolMessage message{down};
+    dds_write(draw, &message);
+  }
+  const BoolMessage pressed{true};
+  dds_write(undo, &pressed);
+  EXPECT_TRUE(ends.read_until([&] { return ends.inputs.counts().buttons == 7; }));
+  ASSERT_EQ(ends.events.size(), 4u);
+  std::vector<bool> states;
+  int undone = 0;
+  for (const ButtonEvent& event : ends.events) {
+    EXPECT_GE(event.time, before);
+    EXPECT_LE(event.time, Time{dds_time()} - k_board_start);
+    if (event.button == Button::draw) states.push_back(event.pressed);
+    undone += event.button == Button::undo ? 1 : 0;
+  }
+  EXPECT_EQ(states, (std::vector<bool>{true, false, true}));
+  EXPECT_EQ(undone, 1);
+}
+
+// Too many joints, lengths that differ, and a description of 5 MB, far beyond what is unpacked; a
+// good one in between arrives all the same.
+TEST_F(Inputs, RefuseAndCountWhatIsTooLargeOrMakesNoSense) {
+  Ends ends;
+  const dds_entity_t joints = ends.peer.writer(
+      joint_state_type(), "rt/joint_states", Reliability::reliable, Durability::volatile_data, 64);
+  const dds_entity_t text = ends.peer.writer(text_type(), "rt/robot_description",
+                                             Reliability::reliable, Durability::transient_local, 1);
+  ASSERT_TRUE(found(joints) && found(text));
+  const auto send = [&](JointText hostile) {
+    const std::uint64_t refused = ends.inputs.counts().refused;
+    // Best effort readers may miss one: it is said again until it came.
+    return ends.read_until([&] {
+      const JointStateMessage message = hostile.message();
+      dds_write(joints, &message);
+      return ends.inputs.counts().refused > refused;
+    });
+  };
+  EXPECT_TRUE(send({std::vector<std::string>(65, "j"), std::vector<double>(65, 1)}));
+  EXPECT_TRUE(send({{"a", "b"}, {1}}));
+  EXPECT_TRUE(send({std::vector<std::string>(4000, "joint"), std::vector<double>(4000, 1)}));
+  EXPECT_EQ(ends.inputs.counts().joints, 0u);
+  const std::uint64_t refused = ends.inputs.counts().refused;
+  std::string huge(5 << 20, 'x');
+  const TextMessage huge_message{huge.data()};
+  dds_write(text, &huge_message);
+  EXPECT_TRUE(ends.read_until([&] { return ends.inputs.counts().refused > refused; }));
+  std::string small = "<robot/>";
+  const TextMessage small_message{small.data()};
+  dds_write(text, &small_message);
+  EXPECT_TRUE(ends.read_until([&] { return ends.inputs.description().sample(); }));
+  EXPECT_EQ(ends.inputs.description().value().urdf, "<robot/>");
+  EXPECT_EQ(ends.inputs.counts().descriptions, 1u);
+}
+
+// Beyond 16 MB nothing reaches the reader; what comes after it does.
+TEST_F(Inputs, NeverSeeAMessageLargerThanTheDomainTakes) {
+  Ends ends;
+  const dds_entity_t text = ends.peer.writer(text_type(), "rt/robot_description",
+                                             Reliability::reliable, Durability::volatile_data, 8);
+  const dds_entity_t transient = ends.peer.writer(
+      text_type(), "rt/robot_description", Reliability::reliable, Durability::transient_local, 1);
+  ASSERT_TRUE(found(transient));
+  std::string huge(20 << 20, 'x');
+  const TextMessage huge_message{huge.data()};
+  EXPECT_NE(dds_write(transient, &huge_message), DDS_RETCODE_BAD_PARAMETER);
+  std::string small = "<robot/>";
+  const TextMessage small_message{small.data()};
+  dds_write(transient, &small_message);
+  EXPECT_TRUE(ends.read_until([&] { return ends.inputs.description().sample(); }));
+  EXPECT_EQ(ends.inputs.counts().refused, 0u);
+  (void)text;
+}
+
+TEST_F(Inputs, ReadInAThreadBesideASinkInOneDomain) {
+  DdsSink sink(test_settings());
+  std::mutex mutex;
+  std::vector<ButtonEvent> events;
+  DdsInputs inputs(sink.participant(), test_settings(), [&](const ButtonEvent& event) {
+    const std::lock_guard lock(mutex);
+    events.push_back(event);
+  });
+  inputs.start();
+  Peer peer(test_settings());
+  const dds_entity_t draw = peer.writer(bool_type(), "rt/glint/button", Reliability::reliable,
+                                        Durability::volatile_data, 64);
+  ASSERT_TRUE(found(draw));
+  const BoolMessage pressed{true};
+  dds_write(draw, &pressed);
+  EXPECT_TRUE(comes_true([&] { return inputs.counts().buttons == 1; }));
+  inputs.stop();
+  const std::lock_guard lock(mutex);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_TRUE(events[0].pressed);
+}
+
+}  // namespace
+}  // namespace glint
