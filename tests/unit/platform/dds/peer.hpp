@@ -44,6 +44,8 @@ class Peer {
     const std::string before = "<Discovery>";
     text.insert(text.find(before) + before.size(),
                 "<ExternalDomainId>" + std::to_string(settings.domain) + "</ExternalDomainId>");
+    const std::size_t internal = text.find("<Internal>"), behind = text.find("</Internal>");
+    text.erase(internal, behind + std::string("</Internal>").size() - internal);  // Glint's limits
     constexpr dds_domainid_t own_id = 200;  // of this Cyclone domain; on the wire the sink's
     domain_ = dds_create_domain(own_id, text.c_str());
     participant_ = dds_create_participant(own_id, nullptr, nullptr);

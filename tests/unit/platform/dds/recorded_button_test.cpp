@@ -1,0 +1,63 @@
+// From a button's topic into the recording that `glint path` reads.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "platform/cells/cell.hpp"
+#include "platform/record/recording_reader.hpp"
+#include "platform/session/sinks.hpp"
+#include "tests/unit/platform/dds/isolated_network.hpp"
+#include "tests/unit/platform/dds/peer.hpp"
+#include "tests/unit/platform/dds/samples.hpp"
+#include "tests/unit/platform/record/recording_samples.hpp"
+
+namespace glint {
+namespace {
+
+using RecordedButton = DdsTest;
+
+TEST_F(RecordedButton, StandsInARunsRecordingAtItsTime) {
+  const TemporaryFolder folder;
+  const Cell cell = default_cell();
+  SinkOptions options;
+  options.out = folder.file("");
+  options.with_reader = false;
+  SinkOutcome outcome;
+  Time before, after;
+  {
+    Sinks sinks(cell, options, k_board_start.nanoseconds);
+    Peer peer(test_settings());
+    const dds_entity_t button = peer.writer(bool_type(), "rt/glint/button", Reliability::reliable,
+                                            Durability::volatile_data, 64);
+    ASSERT_TRUE(comes_true([&] {
+      dds_publication_matched_status_t status{};
+      dds_get_publication_matched_status(button, &status);
+      return status.current_count > 0;
+    }));
+    before = Time{dds_time()} - k_board_start;
+    for (const bool down : {true, false}) {
+      const BoolMessage message{down};
+      dds_write(button, &message);
+    }
+    EXPECT_TRUE(comes_true([&] { return sinks.inputs()->counts().buttons == 2; }));
+    after = Time{dds_time()} - k_board_start;
+    sinks.close(outcome);
+  }
+  EXPECT_EQ(outcome.heard.buttons, 2u);
+  EXPECT_TRUE(outcome.recording.complete());
+  RecordingReader reader(outcome.recording_file);
+  std::vector<ButtonEvent> events;
+  while (const auto message = reader.next()) {
+    if (const auto* event = std::get_if<ButtonEvent>(&*message)) events.push_back(*event);
+  }
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_TRUE(events[0].pressed);
+  EXPECT_FALSE(events[1].pressed);
+  EXPECT_GE(events[0].time, before);
+  EXPECT_LE(events[1].time, after);
+}
+
+}  // namespace
+}  // namespace glint
