@@ -42,6 +42,9 @@ nlohmann::ordered_json planes_json(const PlaneSearch& planes) {
 
 void print_table(const MapCounts& counts, const PlaneSearch& planes) {
   std::printf("%-22s %12lld\n", "measured points", static_cast<long long>(counts.measured));
+  if (counts.left_out > 0) {
+    std::printf("%-22s %12lld\n", "in pen and hands", static_cast<long long>(counts.left_out));
+  }
   std::printf("%-22s %12d\n", "voxels", counts.voxels);
   std::printf("%-22s %12d\n", "without outliers", counts.kept);
   std::printf("%-22s %12d\n", "smoothed", counts.smoothed);
@@ -73,7 +76,8 @@ std::unique_ptr<Occupancy> occupancy_of(const MapArguments& arguments,
   auto occupancy = std::make_unique<Occupancy>(arguments.occupancy);
   int done = 0;
   for (const DepthFrame& frame : sequence.frames) {
-    occupancy->add_view(frame.picture(), sequence.camera, frame.T_world_camera, depth);
+    occupancy->add_view(frame.picture(), sequence.camera, frame.T_world_camera, depth,
+                        frame.left_out);
     progress.show(++done, static_cast<int>(sequence.frames.size()));
   }
   occupancy->add_surface(map);
@@ -103,7 +107,7 @@ int make_map(const MapArguments& arguments) {
   MapChain chain(settings);
   int done = 0;
   for (const DepthFrame& frame : sequence.frames) {
-    chain.add_frame(frame.picture(), sequence.camera, frame.T_world_camera);
+    chain.add_frame(frame.picture(), sequence.camera, frame.T_world_camera, frame.left_out);
     progress.show(++done, static_cast<int>(sequence.frames.size()));
   }
   chain.finish();
@@ -136,6 +140,7 @@ int make_map(const MapArguments& arguments) {
   const MapCounts& counts = chain.counts();
   write_json(arguments.json, {{"frames", sequence.frames.size()},
                               {"measured", counts.measured},
+                              {"left_out", counts.left_out},
                               {"voxels", counts.voxels},
                               {"kept", counts.kept},
                               {"smoothed", counts.smoothed},
@@ -157,6 +162,7 @@ void add_map(CLI::App& app, int& exit_code) {
       "  glint map --data pictures --out out --octomap out/map.bt --resolution 0.02\n"
       "The folder holds NAME.depth.png (16 bits, mm) or NAME.depth.npy (float32, m), beside each\n"
       "NAME.pose.txt (T_world_camera, 16 numbers), and camera-intrinsics.txt (9 numbers).\n"
+      "NAME.left_out.txt, where it is there: pen and hands as lines of x y z  x y z  radius.\n"
       "Written: map.ply, map.pcd (metres, with normals) and map.png.\n"
       "--dds: rt/glint/map_points and, with --octomap, rt/glint/octomap, in frame hmd_world.");
   command->add_option("--data", arguments->data, "folder of the pictures")->required();

@@ -138,6 +138,12 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
                        {"dds_missed", result.dds_reader.missed},
                        {"dds_poses_written", result.dds.poses_written},
                        {"dds_poses_received", result.dds_reader.poses_received},
+                       {"dds_heard",
+                        {{"joint_states", result.heard.joints},
+                         {"robot_descriptions", result.heard.descriptions},
+                         {"initial_poses", result.heard.guesses},
+                         {"buttons", result.heard.buttons},
+                         {"refused", result.heard.refused}}},
                        {"recording", result.recording_file},
                        {"recording_complete", result.recording.complete()},
                        {"recording_ended_early", result.recording.ended_early},
@@ -213,6 +219,13 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
                  std::to_string(result.dds_reader.received) + " received, " +
                  std::to_string(result.dds_reader.missed) + " missed, " +
                  std::to_string(result.dds.ring_dropped) + " dropped");
+  if (const HeardCounts& heard = result.heard; heard.any()) {
+    row("heard over DDS", std::to_string(heard.joints) + " joint states, " +
+                              std::to_string(heard.descriptions) + " descriptions, " +
+                              std::to_string(heard.guesses) + " guesses, " +
+                              std::to_string(heard.buttons) + " buttons; " +
+                              std::to_string(heard.refused) + " refused");
+  }
   row("output_sha256", result.output_sha256);
   for (const std::string& file : result.files) row("written", file);
   if (!result.recording.reason.empty()) row("recording", result.recording.reason);

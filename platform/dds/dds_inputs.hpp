@@ -23,6 +23,7 @@ namespace glint {
 struct HeardCounts {
   std::uint64_t joints = 0, descriptions = 0, guesses = 0, buttons = 0;  // messages taken
   std::uint64_t refused = 0;
+  [[nodiscard]] bool any() const { return joints + descriptions + guesses + buttons + refused > 0; }
 };
 
 class DdsInputs {

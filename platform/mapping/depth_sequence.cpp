@@ -1,6 +1,7 @@
 #include "platform/mapping/depth_sequence.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
@@ -72,7 +73,7 @@ DepthFrame load_png(const std::string& path) {
     throw InputError(path + ": is no PNG with one plane of 16 bits; expected depth in millimetres");
   }
   check_size(path, image.cols, image.rows);
-  DepthFrame out{image.cols, image.rows, {}, {}};
+  DepthFrame out{image.cols, image.rows, {}, {}, {}};
   for (int y = 0; y < image.rows; ++y) {
     for (int x = 0; x < image.cols; ++x) {
       out.depth_m.push_back(1e-3f * static_cast<float>(image.at<std::uint16_t>(y, x)));
@@ -90,7 +91,31 @@ DepthFrame load_npy(const std::string& path) {
   return {static_cast<int>(array.shape[1]),
           static_cast<int>(array.shape[0]),
           std::move(array.values),
+          {},
           {}};
+}
+
+std::vector<LeftOut> load_left_out(const std::string& path) {
+  std::vector<LeftOut> out;
+  if (!std::filesystem::exists(path)) return out;
+  const std::string expected = "x y z  x y z  radius of a thick line, finite, the radius above 0";
+  FileText file(path, expected);
+  std::vector<std::string_view> words;
+  while (file.next_line(words)) {
+    if (words.empty()) continue;
+    if (words.size() != 7) file.refuse(std::to_string(words.size()) + " numbers", expected);
+    std::array<double, 7> n{};
+    for (std::size_t i = 0; i < n.size(); ++i) {
+      n[i] = file.number(words[i]);
+      if (!std::isfinite(n[i])) file.refuse("a number that is not finite", expected);
+    }
+    if (!(n[6] > 0)) file.refuse("no radius", expected);
+    if (static_cast<int>(out.size()) == k_left_out_max) {
+      file.refuse("one more", "at most " + std::to_string(k_left_out_max) + " lines");
+    }
+    out.push_back({{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, n[6]});
+  }
+  return out;
 }
 
 }  // namespace
@@ -124,6 +149,7 @@ DepthSequence load_depth_sequence(const std::string& folder) {
     }
     const std::string stem = file.substr(0, file.size() - std::string(".depth.png").size());
     frame.T_world_camera = load_pose(stem + ".pose.txt");
+    frame.left_out = load_left_out(stem + ".left_out.txt");
     out.frames.push_back(std::move(frame));
   }
   return out;

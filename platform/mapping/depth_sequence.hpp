@@ -3,12 +3,15 @@
 // NAME.depth.png (16 bits a pixel, millimetres) or NAME.depth.npy (float32, metres), beside it
 // NAME.pose.txt (16 numbers, T_world_camera row by row), for all camera-intrinsics.txt (9 numbers,
 // a pinhole's matrix for pixels whose centres are at integers). 0: nothing was measured.
+// NAME.left_out.txt, which need not be there: a line for each thick line (pen, arm) whose points
+// are not to be mapped: x y z of its one end, of its other, and its radius, metres, in the world.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "kernels/cloud/depth_points.hpp"
+#include "kernels/cloud/leave_out_capsules.hpp"
 
 namespace glint {
 
@@ -16,6 +19,7 @@ struct DepthFrame {
   int width = 0, height = 0;
   std::vector<float> depth_m;
   Pose T_world_camera;
+  std::vector<LeftOut> left_out;  // the tracked pen and hands as this picture was taken, world
   [[nodiscard]] DepthPicture picture() const { return {width, height, depth_m}; }
 };
 

@@ -55,7 +55,7 @@ MapChain::MapChain(const MapSettings& s) : kernels_(std::make_unique<Kernels>())
 MapChain::~MapChain() = default;
 
 void MapChain::add_frame(const DepthPicture& picture, const CameraModel& camera,
-                         const Pose& T_world_camera) {
+                         const Pose& T_world_camera, std::span<const LeftOut> left_out) {
   Kernels& k = *kernels_;
   const int pixels = pixels_of(picture, settings_.depth.stride);
   for (int at = 0; at < pixels;) {
@@ -63,6 +63,7 @@ void MapChain::add_frame(const DepthPicture& picture, const CameraModel& camera,
     k.frame.count = 0;
     at = add_depth_points(picture, camera, T_world_camera, settings_.depth, at, k_slice, k.frame,
                           dropped);
+    counts_.left_out += leave_out_capsules(left_out, 0, k.frame);
     k.voxels.add(k.frame, 0, k.frame.count);
     counts_.measured += k.frame.count;
   }

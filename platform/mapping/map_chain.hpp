@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "kernels/cloud/depth_points.hpp"
+#include "kernels/cloud/leave_out_capsules.hpp"
 #include "kernels/cloud/moving_least_squares.hpp"
 #include "kernels/cloud/plane_support.hpp"
 #include "kernels/cloud/planes.hpp"
@@ -26,6 +28,7 @@ struct MapSettings {
 
 struct MapCounts {
   std::int64_t measured = 0;  // points of all pictures
+  std::int64_t left_out = 0;  // not among these: within the pen and the hands
   int voxels = 0, kept = 0, smoothed = 0, on_planes = 0;
   std::vector<std::string> notices;  // what was full or left out
 };
@@ -38,8 +41,8 @@ class MapChain {
   MapChain(const MapChain&) = delete;
   MapChain& operator=(const MapChain&) = delete;
 
-  void add_frame(const DepthPicture& picture, const CameraModel& camera,
-                 const Pose& T_world_camera);
+  void add_frame(const DepthPicture& picture, const CameraModel& camera, const Pose& T_world_camera,
+                 std::span<const LeftOut> left_out = {});
   // Voxels to planes of all frames so far; nothing is moved onto the planes yet.
   void finish();
   // Moves the map's points onto their planes.

@@ -54,7 +54,7 @@ class Half {
       : chain_(settings) {
     for (std::size_t i = first; i < sequence.frames.size(); i += 2) {
       const DepthFrame& frame = sequence.frames[i];
-      chain_.add_frame(frame.picture(), sequence.camera, frame.T_world_camera);
+      chain_.add_frame(frame.picture(), sequence.camera, frame.T_world_camera, frame.left_out);
     }
     chain_.finish();
   }

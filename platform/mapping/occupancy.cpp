@@ -61,7 +61,8 @@ bool Occupancy::full() const {
 }
 
 void Occupancy::add_view(const DepthPicture& picture, const CameraModel& camera,
-                         const Pose& T_world_camera, const DepthPointSettings& settings) {
+                         const Pose& T_world_camera, const DepthPointSettings& settings,
+                         std::span<const LeftOut> left_out) {
   Tree& t = *tree_;
   t.seen.clear();
   t.free.clear();
@@ -72,6 +73,7 @@ void Occupancy::add_view(const DepthPicture& picture, const CameraModel& camera,
     int dropped = 0;
     t.slice.count = 0;
     at = add_depth_points(picture, camera, T_world_camera, settings, at, k_slice, t.slice, dropped);
+    (void)leave_out_capsules(left_out, 0, t.slice);
     for (int i = 0; i < t.slice.count; ++i) {
       const Vector3 point(t.slice.x[i], t.slice.y[i], t.slice.z[i]);
       octomap::OcTreeKey key;

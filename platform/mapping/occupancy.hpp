@@ -8,10 +8,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "kernels/cloud/depth_points.hpp"
+#include "kernels/cloud/leave_out_capsules.hpp"
 
 namespace glint {
 
@@ -38,9 +40,9 @@ class Occupancy {
   Occupancy(const Occupancy&) = delete;
   Occupancy& operator=(const Occupancy&) = delete;
 
-  // What one picture saw through; the pixels that `settings` takes.
+  // What one picture saw through; the pixels that `settings` takes, but for points in `left_out`.
   void add_view(const DepthPicture& picture, const CameraModel& camera, const Pose& T_world_camera,
-                const DepthPointSettings& settings);
+                const DepthPointSettings& settings, std::span<const LeftOut> left_out = {});
   // The map's points, after the views.
   void add_surface(const PointCloud& map);
 

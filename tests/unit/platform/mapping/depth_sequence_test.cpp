@@ -101,6 +101,55 @@ TEST(MapChain, MakesAWallFlatAndSaysWhatItDid) {
   }
 }
 
+TEST(DepthSequence, ReadsWhatIsLeftOutAndRefusesAWrongLine) {
+  const auto read = [](const std::string& lines) {
+    const TemporaryFolder folder;
+    folder.write("camera-intrinsics.txt", k_pinhole);
+    folder.write("a.depth.npy", flat_picture(8, 8, 1));
+    folder.write("a.pose.txt", k_pose);
+    folder.write("a.left_out.txt", lines);
+    return load_depth_sequence(folder.path("")).frames[0].left_out;
+  };
+  const auto left_out = read("0 0 1  0 0.2 1  0.03\n\n1 2 3 1 2 3 0.1\n");
+  ASSERT_EQ(left_out.size(), 2u);
+  EXPECT_EQ(left_out[0].to, Vector3(0, 0.2, 1));
+  EXPECT_EQ(left_out[1].radius_m, 0.1);
+  std::string many;
+  for (int i = 0; i < 65; ++i) many += "0 0 0 0 0 0 1\n";
+  for (const auto& [lines, what] :
+       {std::pair<std::string, std::string>{"0 0 1 0", "line 1: 4 numbers"},
+        {"0 0 0 0 0 0 1\n0 0 0 0 0 0 0", "line 2: no radius"},
+        {"0 0 nan 0 0 0 1", "line 1: a number that is not finite"},
+        {many, "line 65: one more"}}) {
+    const std::string complaint = complaint_of([&] { (void)read(lines); });
+    EXPECT_NE(complaint.find(what), std::string::npos) << complaint;
+  }
+}
+
+// A pen before a wall: with its capsule nothing of it is in the map, and the wall is all there.
+TEST(MapChain, LeavesOutThePen) {
+  CameraModel camera;
+  camera.width = 200, camera.height = 150;
+  camera.fx = camera.fy = 150, camera.cx = 100, camera.cy = 75;
+  std::vector<float> depth(200 * 150, 1.0f);
+  for (std::size_t y = 60; y < 90; ++y) {
+    for (std::size_t x = 80; x < 120; ++x) depth[y * 200 + x] = 0.6f;
+  }
+  const std::vector<LeftOut> pen = {{{-0.08, 0, 0.6}, {0.08, 0, 0.6}, 0.07}};
+  MapSettings settings;
+  settings.voxels_max = 1 << 16;
+  for (const bool told : {false, true}) {
+    MapChain chain(settings);
+    chain.add_frame({200, 150, depth}, camera, Pose{}, told ? pen : std::vector<LeftOut>{});
+    chain.finish();
+    int near = 0, far = 0;
+    for (int i = 0; i < chain.map().count; ++i) ++(chain.map().z[i] < 0.8f ? near : far);
+    EXPECT_EQ(near == 0, told);
+    EXPECT_GT(far, 5000);
+    EXPECT_EQ(chain.counts().left_out, told ? 30 * 40 : 0);
+  }
+}
+
 TEST(MapChain, SaysWhatWasLeftOutAndRefusesSettingsOutOfRange) {
   CameraModel camera;
   camera.width = 64, camera.height = 48;

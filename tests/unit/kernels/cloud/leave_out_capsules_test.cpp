@@ -1,0 +1,85 @@
+#include "kernels/cloud/leave_out_capsules.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "clouds.hpp"
+#include "tests/unit/kernels/pose/scene.hpp"
+
+namespace glint {
+namespace {
+
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+
+// The least of many places on the line.
+double plain_distance(const LeftOut& capsule, const Vector3& point) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= 2000; ++i) {
+    const Vector3 place = capsule.from + (capsule.to - capsule.from) * (i / 2000.0);
+    least = std::min(least, (point - place).norm());
+  }
+  return least;
+}
+
+TEST(LeaveOutCapsules, TakesOffWhatIsWithinTheirRadiusAndKeepsTheOrder) {
+  test::Random random(4);
+  const std::vector<LeftOut> capsules = {{{0, 0, 0}, {0.5, 0.1, 0}, 0.15},
+                                         {{-0.3, 0.2, 0.1}, {-0.3, 0.2, 0.1}, 0.2}};
+  TestCloud cloud(3000);
+  std::vector<Point> expected;
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3 p = random.in_box(1.6);
+    const Point point = {static_cast<float>(p.x()), static_cast<float>(p.y()),
+                         static_cast<float>(p.z())};
+    const Vector3 rounded(point[0], point[1], point[2]);
+    double least = 1;  // beyond the nearest surface
+    for (const LeftOut& capsule : capsules) {
+      least = std::min(least, plain_distance(capsule, rounded) - capsule.radius_m);
+    }
+    if (std::abs(least) < 1e-3) continue;
+    ASSERT_TRUE(cloud.points.add(point[0], point[1], point[2]));
+    if (least > 0) expected.push_back(point);
+  }
+  const int count = cloud.points.count;
+  const int gone = leave_out_capsules(capsules, 0, cloud.points);
+  EXPECT_EQ(cloud.all(), expected);
+  EXPECT_EQ(gone, count - static_cast<int>(expected.size()));
+  EXPECT_GT(gone, 20);
+}
+
+TEST(LeaveOutCapsules, LeavesWhatStandsBeforeTheFirst) {
+  TestCloud cloud(3);
+  for (const float x : {0.0f, 0.1f, 5.0f}) ASSERT_TRUE(cloud.points.add(x, 0, 0));
+  const std::vector<LeftOut> ball = {{{0, 0, 0}, {0, 0, 0}, 1}};
+  EXPECT_EQ(leave_out_capsules(ball, 1, cloud.points), 1);
+  ASSERT_EQ(cloud.points.count, 2);
+  EXPECT_EQ(cloud.points.x[0], 0.0f);
+  EXPECT_EQ(cloud.points.x[1], 5.0f);
+  EXPECT_EQ(leave_out_capsules(ball, 7, cloud.points), 0);
+  EXPECT_EQ(cloud.points.count, 2);
+}
+
+TEST(LeaveOutCapsules, TakesNothingOffByWhatIsNoCapsule) {
+  TestCloud cloud(2);
+  ASSERT_TRUE(cloud.points.add(0, 0, 0));
+  ASSERT_TRUE(cloud.points.add(std::nanf(""), 0, 0));
+  const Vector3 zero = Vector3::Zero(), none(k_nan, 0, 0);
+  const std::vector<LeftOut> wrong = {
+      {zero, zero, 0}, {zero, zero, -1}, {zero, zero, k_nan}, {none, zero, 1}, {zero, none, 1}};
+  EXPECT_EQ(leave_out_capsules(wrong, 0, cloud.points), 0);
+  EXPECT_EQ(leave_out_capsules({}, 0, cloud.points), 0);
+}
+
+TEST(LeaveOutCapsules, LooksAtTheFirstOnesOnly) {
+  TestCloud cloud(1);
+  ASSERT_TRUE(cloud.points.add(0, 0, 0));
+  std::vector<LeftOut> many(k_left_out_max, {Vector3(9, 9, 9), Vector3(9, 9, 9), 1});
+  many.push_back({Vector3::Zero(), Vector3::Zero(), 1});
+  EXPECT_EQ(leave_out_capsules(many, 0, cloud.points), 0);
+  EXPECT_EQ(leave_out_capsules(std::span(many).last(1), 0, cloud.points), 1);
+}
+
+}  // namespace
+}  // namespace glint
