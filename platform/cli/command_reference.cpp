@@ -122,7 +122,9 @@ void add_reference(CLI::App& app, int& exit_code) {
                    "joint positions, a file for each depth picture: .npy, or text")
       ->required();
   command
-      ->add_option("--depth", arguments->scene.depth, "depth pictures: .npy (m), .png (16 bit, mm)")
+      ->add_option(
+          "--depth", arguments->scene.depth,
+          "depth: pictures .npy (m), .png (16 bit, mm); clouds .pcd, .ply in the camera's frame")
       ->required();
   command->add_option("--camera", arguments->scene.camera, "ROS camera_info, YAML")->required();
   command->add_option("--mask", arguments->scene.masks,

@@ -1,12 +1,14 @@
 #include "platform/reference/depth_picture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
 #include "platform/input_error.hpp"
+#include "platform/mapping/cloud_files.hpp"
 #include "platform/sensors/npy.hpp"
 
 namespace glint {
@@ -84,7 +86,7 @@ DepthImage read_depth(const std::string& path, const CameraModel& camera) {
       }
     }
   } else {
-    throw InputError(path + ": expected depth as .npy or .png");
+    throw InputError(path + ": expected depth as .npy, .png, .pcd or .ply");
   }
   if (std::all_of(out.z_m.begin(), out.z_m.end(), [](float z) { return z == 0; })) {
     throw InputError(path + ": no pixel has a depth between 0 and " +
@@ -93,24 +95,25 @@ DepthImage read_depth(const std::string& path, const CameraModel& camera) {
   return out;
 }
 
-DepthImage depth_of_points(std::span<const Vector3f> points, const CameraModel& camera) {
-  const auto pixels =
-      static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
-  DepthImage out{camera.width, camera.height, std::vector<float>(pixels, 0.0f)};
-  for (const Vector3f& point : points) {
-    const float z = depth_of(static_cast<double>(point.z()));
-    if (z == 0 || !point.allFinite()) continue;
-    const Result<Vector2> at = project(camera, point.cast<double>());
-    if (!at || !(at.value.x() >= 0 && at.value.y() >= 0 && at.value.x() < camera.width &&
-                 at.value.y() < camera.height)) {
-      continue;
-    }
-    float& pixel =
-        out.z_m[static_cast<std::size_t>(at.value.y()) * static_cast<std::size_t>(camera.width) +
-                static_cast<std::size_t>(at.value.x())];
-    if (pixel == 0 || z < pixel) pixel = z;
+std::vector<Vector3f> read_depth_points(const std::string& path) {
+  std::vector<Vector3f> points;
+  const HostCloud cloud = read_cloud(path);
+  for (const std::array<float, 3>& p : cloud.points) {
+    const Vector3f point(p[0], p[1], p[2]);
+    if (point.allFinite() && depth_of(static_cast<double>(p[2])) > 0) points.push_back(point);
   }
-  return out;
+  if (points.empty()) {
+    throw InputError(path + ": of " + std::to_string(cloud.points.size()) +
+                     " points none is finite and less than " +
+                     std::to_string(static_cast<int>(k_depth_max_m)) +
+                     " m before the camera; expected metres in the camera's frame");
+  }
+  return points;
+}
+
+bool is_cloud_file(const std::string& path) {
+  const std::string kind = kind_of(path);
+  return kind == ".pcd" || kind == ".ply";
 }
 
 MaskPicture read_mask(const std::string& path, const CameraModel& camera) {

@@ -1,8 +1,7 @@
-// Depth pictures and masks from files.
+// Depth pictures, clouds and masks from files.
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -23,10 +22,12 @@ inline constexpr float k_depth_max_m = 20;
 // camera's, no depth at all.
 [[nodiscard]] DepthImage read_depth(const std::string& path, const CameraModel& camera);
 
-// Points in the camera's frame, metres, in its picture: the nearest of a pixel counts; those that
-// are not finite, or have no pixel, do not.
-[[nodiscard]] DepthImage depth_of_points(std::span<const Vector3f> points,
-                                         const CameraModel& camera);
+// Whether a file's ending is a cloud's: .pcd or .ply.
+[[nodiscard]] bool is_cloud_file(const std::string& path);
+
+// The points of a cloud in the camera's frame (z forward), metres: those that are finite and
+// before the camera, k_depth_max_m away at most. Throws InputError: no such points.
+[[nodiscard]] std::vector<Vector3f> read_depth_points(const std::string& path);
 
 struct MaskPicture {
   int width = 0, height = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "platform/input_error.hpp"
 #include "platform/reference/camera_info.hpp"
@@ -41,34 +42,96 @@ float merged(std::vector<float>& values, std::size_t block) {
   return static_cast<float>(sum / count);
 }
 
+int pixels_a_side(const CameraModel& camera) {
+  return (camera.width + k_working_width - 1) / k_working_width;
+}
+
+// Without depth yet.
+SceneFrame empty_frame(const MaskPicture* mask, const CameraModel& camera) {
+  SceneFrame frame;
+  const int scale = pixels_a_side(camera);
+  frame.camera = {camera.width / scale, camera.height / scale, camera.fx / scale,
+                  camera.fy / scale,    camera.cx / scale,     camera.cy / scale};
+  if (mask == nullptr) return frame;
+  for (int y = 0; y < frame.camera.height; ++y) {
+    for (int x = 0; x < frame.camera.width; ++x) {
+      int on = 0;
+      for (int j = 0; j < scale; ++j) {
+        for (int i = 0; i < scale; ++i) {
+          const int at = source_pixel(camera, x * scale + i + 0.5, y * scale + j + 0.5);
+          if (at >= 0) on += mask->on[static_cast<std::size_t>(at)];
+        }
+      }
+      frame.mask.push_back(2 * on >= scale * scale ? 1 : 0);
+    }
+  }
+  return frame;
+}
+
 }  // namespace
 
 SceneFrame scene_frame(const DepthImage& depth, const MaskPicture* mask,
                        const CameraModel& camera) {
-  SceneFrame frame;
-  const int scale = (camera.width + k_working_width - 1) / k_working_width;
-  frame.camera = {camera.width / scale, camera.height / scale, camera.fx / scale,
-                  camera.fy / scale,    camera.cx / scale,     camera.cy / scale};
+  SceneFrame frame = empty_frame(mask, camera);
+  const int scale = pixels_a_side(camera);
   std::vector<float> values;
   for (int y = 0; y < frame.camera.height; ++y) {
     for (int x = 0; x < frame.camera.width; ++x) {
       values.clear();
-      int on = 0;
       for (int j = 0; j < scale; ++j) {
         for (int i = 0; i < scale; ++i) {
           const int at = source_pixel(camera, x * scale + i + 0.5, y * scale + j + 0.5);
           if (at < 0) continue;
           const float z = depth.z_m[static_cast<std::size_t>(at)];
           if (z > 0) values.push_back(z);
-          if (mask != nullptr) on += mask->on[static_cast<std::size_t>(at)];
         }
       }
       frame.depth_m.push_back(merged(values, static_cast<std::size_t>(scale) * scale));
-      if (mask != nullptr) frame.mask.push_back(2 * on >= scale * scale ? 1 : 0);
     }
   }
   return frame;
 }
+
+SceneFrame scene_frame(std::span<const Vector3f> points, const MaskPicture* mask,
+                       const CameraModel& camera) {
+  SceneFrame frame = empty_frame(mask, camera);
+  const Pinhole& pinhole = frame.camera;
+  std::vector<std::pair<std::size_t, float>> depths;  // pixel, z
+  for (const Vector3f& point : points) {
+    const Vector3 p = point.cast<double>();
+    const double u = pinhole.fx * p.x() / p.z() + pinhole.cx;
+    const double v = pinhole.fy * p.y() / p.z() + pinhole.cy;
+    if (!(p.z() > 0 && u >= 0 && v >= 0 && u < pinhole.width && v < pinhole.height)) continue;
+    depths.emplace_back(static_cast<std::size_t>(v) * static_cast<std::size_t>(pinhole.width) +
+                            static_cast<std::size_t>(u),
+                        point.z());
+  }
+  std::sort(depths.begin(), depths.end());
+  frame.depth_m.assign(static_cast<std::size_t>(pinhole.width * pinhole.height), 0);
+  std::vector<float> values;
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    values.push_back(depths[i].second);
+    if (i + 1 < depths.size() && depths[i + 1].first == depths[i].first) continue;
+    frame.depth_m[depths[i].first] = merged(values, 1);
+    values.clear();
+  }
+  return frame;
+}
+
+namespace {
+
+SceneFrame read_frame(const std::string& path, const MaskPicture* mask, const CameraModel& camera) {
+  if (!is_cloud_file(path)) return scene_frame(read_depth(path, camera), mask, camera);
+  const std::vector<Vector3f> points = read_depth_points(path);
+  SceneFrame frame = scene_frame(points, mask, camera);
+  if (std::all_of(frame.depth_m.begin(), frame.depth_m.end(), [](float z) { return z == 0; })) {
+    throw InputError(path + ": none of " + std::to_string(points.size()) +
+                     " points lies in the camera's picture; expected z forward, x right, y down");
+  }
+  return frame;
+}
+
+}  // namespace
 
 std::vector<SceneFrame> read_scene(const SceneFiles& files, const RobotModel& robot) {
   const std::size_t count = files.depth.size();
@@ -87,10 +150,10 @@ std::vector<SceneFrame> read_scene(const SceneFiles& files, const RobotModel& ro
   const CameraModel camera = read_camera_info(files.camera);
   std::vector<SceneFrame> frames;
   for (std::size_t i = 0; i < count; ++i) {
-    const DepthImage depth = read_depth(files.depth[i], camera);
-    MaskPicture mask;
-    if (!files.masks.empty()) mask = read_mask(files.masks[i], camera);
-    frames.push_back(scene_frame(depth, files.masks.empty() ? nullptr : &mask, camera));
+    MaskPicture picture;
+    if (!files.masks.empty()) picture = read_mask(files.masks[i], camera);
+    const MaskPicture* mask = files.masks.empty() ? nullptr : &picture;
+    frames.push_back(read_frame(files.depth[i], mask, camera));
     const std::vector<double> positions = read_joint_positions(files.joints[i], robot);
     frames.back().model = posed_surface(robot, positions, files.joints[i]);
     frames.back().name = files.depth[i];

@@ -2,6 +2,7 @@
 // robot's surface at its joint positions.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,13 +33,19 @@ struct SceneFrame {
 [[nodiscard]] SceneFrame scene_frame(const DepthImage& depth, const MaskPicture* mask,
                                      const CameraModel& camera);
 
+// The same of points in the camera's frame, metres: those of one pixel of the working size become
+// one, as above. They may be fewer than the picture has pixels. None need be in the picture.
+[[nodiscard]] SceneFrame scene_frame(std::span<const Vector3f> points, const MaskPicture* mask,
+                                     const CameraModel& camera);
+
 struct SceneFiles {
   std::string camera;
   std::vector<std::string> depth, joints;  // one of each a frame
   std::vector<std::string> masks;          // as many, or none
 };
 
-// Throws InputError where the files are none, or not as many of one kind as of another.
+// Throws InputError where the files are none, not as many of one kind as of another, or a cloud has
+// no point in the picture.
 [[nodiscard]] std::vector<SceneFrame> read_scene(const SceneFiles& files, const RobotModel& robot);
 
 }  // namespace glint

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "platform/mapping/cloud_files.hpp"
 #include "platform/reference/scene.hpp"
 #include "platform/sensors/npy.hpp"
 #include "tests/unit/platform/calibrate/expect_message.hpp"
@@ -40,19 +41,57 @@ TEST(DepthPicture, RefusesAnotherSizeNoDepthAndUnknownKinds) {
   expect_input_error([&] { (void)read_depth(path, camera(2, 3)); }, {"d.npy", "3 x 2", "2 x 3"});
   const std::string none = files.write("n.npy", npy_float32_bytes({{1, 2}, {0, -1}}));
   expect_input_error([&] { (void)read_depth(none, camera(2, 1)); }, {"n.npy", "no pixel"});
-  expect_input_error([&] { (void)read_depth("a.jpg", camera(2, 1)); }, {"a.jpg", ".npy"});
+  expect_input_error([&] { (void)read_depth("a.jpg", camera(2, 1)); }, {"a.jpg", ".npy", ".ply"});
   expect_input_error([&] { (void)read_depth(files.write("a.png", "no"), camera(2, 1)); },
                      {"a.png", "PNG"});
   expect_input_error([&] { (void)read_mask(files.folder() + "/m.png", camera(2, 1)); },
                      {"m.png", "cannot be opened"});
 }
 
-TEST(DepthImage, TakesTheNearestOfAPixelsPoints) {
+TEST(SceneFrame, TakesPointsThatAreFewerThanThePicturesPixels) {
+  // A picture of 1280 x 720 is worked on at 320 x 180; a point for each fourth of those pixels.
+  const CameraModel large = camera(1280, 720);
+  std::vector<Vector3f> points;
+  for (int y = 1; y < 180; y += 2) {
+    for (int x = 1; x < 320; x += 2) {
+      const float z = x < 160 ? 1.0f : 2.0f;
+      points.emplace_back((static_cast<float>(x) - 159.5f) / 125 * z,
+                          (static_cast<float>(y) - 89.5f) / 125 * z, z);
+    }
+  }
+  points.emplace_back(0.0f, 0.0f, 1.5f);  // alone: x is 160, y is 90
+  points.emplace_back(9.0f, 0.0f, 1.0f);  // beside the picture
+  const SceneFrame frame = scene_frame(points, nullptr, large);
+  ASSERT_EQ(frame.depth_m.size(), 320u * 180);
+  for (std::size_t i = 0; i < frame.depth_m.size(); ++i) {
+    const std::size_t x = i % 320, y = i / 320;
+    const float z = x == 160 && y == 90 ? 1.5f : x % 2 == 0 || y % 2 == 0 ? 0 : x < 160 ? 1 : 2;
+    ASSERT_EQ(frame.depth_m[i], z) << x << ", " << y;
+  }
+}
+
+TEST(SceneFrame, MergesPointsWithoutMixingNearAndFar) {
+  const std::vector<Vector3f> points = {{0, 0, 2}, {0, 0, 1.000f}, {0, 0, 1.004f}, {0, 0, 1.002f}};
+  const SceneFrame frame = scene_frame(points, nullptr, camera(5, 3));
+  for (std::size_t i = 0; i < 15; ++i) EXPECT_FLOAT_EQ(frame.depth_m[i], i == 7 ? 1.002f : 0) << i;
+}
+
+TEST(DepthPoints, TakeWhatIsFiniteAndBeforeTheCamera) {
+  const Files files;
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<Vector3f> points = {{0, 0, 2}, {0, 0, 1.5f}, {0, 0, 3},
-                                        {9, 9, 1}, {0, 0, -1},   {nan, 0, 1}};
-  const DepthImage depth = depth_of_points(points, camera(5, 3));
-  for (std::size_t i = 0; i < 15; ++i) EXPECT_FLOAT_EQ(depth.z_m[i], i == 7 ? 1.5f : 0) << i;
+  for (const std::string name : {"a.ply", "a.pcd"}) {
+    const std::string path = files.folder() + "/" + name;
+    write_cloud(path, {{{0.1f, 0, 1}, {0, 0, -1}, {nan, 0, 1}, {0, 0, nan}, {0, 0, 30}}, {}});
+    EXPECT_TRUE(is_cloud_file(path));
+    const std::vector<Vector3f> points = read_depth_points(path);
+    ASSERT_EQ(points.size(), 1u) << name;
+    EXPECT_EQ(points[0], Vector3f(0.1f, 0, 1));
+  }
+  const std::string empty = files.folder() + "/e.pcd", none = files.folder() + "/n.ply";
+  write_cloud(empty, {});
+  expect_input_error([&] { (void)read_depth_points(empty); }, {"e.pcd", "of 0 points", "metres"});
+  write_cloud(none, {{{nan, nan, nan}, {0, 0, -2}}, {}});
+  expect_input_error([&] { (void)read_depth_points(none); }, {"n.ply", "of 2 points", "metres"});
 }
 
 TEST(SceneFrame, MergesBlocksWithoutMixingNearAndFar) {
