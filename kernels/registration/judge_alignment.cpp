@@ -40,6 +40,10 @@ Judgement judge_alignment(std::span<const SceneView> views, const Pose& T_world_
     AlignmentScratch::View& memory = scratch.views[v];
     search_scene(view, 1, k_distance_steps * k_distance_step_m, memory);
     render_model(view, T_world_base, 1, memory);
+    const OutlineCounts outline =
+        look_beside_outline(view, memory.z, memory.triangle, settings.far_m);
+    judgement.outline.falls += outline.falls;
+    judgement.outline.goes_on += outline.goes_on;
     for (std::size_t pixel = 0; pixel < view.mask.size(); ++pixel) {
       if (view.mask[pixel] == 0 || !(view.depth_m[pixel] > 0)) continue;
       ++judgement.mask_pixels;

@@ -3,8 +3,8 @@
 // What:     the model is rendered into each view. Of its pixels that were measured: hidden where
 //           the scene is more than far_m in front, or in front at all where a mask says that it is
 //           not the model; seen through where it is more than far_m behind; explained where a
-//           scene point lies within inlier_m. Distances are those of the
-//           rendered points to the nearest scene points.
+//           scene point lies within inlier_m. Distances are those of the rendered points to the
+//           nearest scene points. Beside the outline the scene falls away or goes on (outline.hpp).
 // Cost:     a rendering, and a search a pixel.
 // Worst:    the model fills the picture and is nowhere near the scene.
 // Accuracy: the median to k_distance_step_m, and 40 mm at most: it is read off a histogram.
@@ -14,6 +14,7 @@
 #include <span>
 
 #include "kernels/registration/align_model.hpp"
+#include "kernels/registration/outline.hpp"
 
 namespace glint {
 
@@ -23,16 +24,18 @@ struct JudgeSettings {
 };
 inline constexpr double k_distance_step_m = 5e-5;
 inline constexpr int k_distance_steps = 800;
+inline constexpr int k_outline_granted = 20;
 
 struct Judgement {
-  int rendered = 0;      // pixels of the model, in all views
-  int measured = 0;      // of those, with a depth in the scene
-  int hidden = 0;        // of the measured: something stands in front
-  int inliers = 0;       // of the measured: a scene point within inlier_m
-  int seen_through = 0;  // of the measured: the scene is more than far_m behind
-  double median_m = 0;   // of the distances of all measured pixels that are not hidden
-  int mask_pixels = 0;   // measured pixels of the masks ..
-  int mask_covered = 0;  // .. and those that the model is rendered onto
+  int rendered = 0;       // pixels of the model, in all views
+  int measured = 0;       // of those, with a depth in the scene
+  int hidden = 0;         // of the measured: something stands in front
+  int inliers = 0;        // of the measured: a scene point within inlier_m
+  int seen_through = 0;   // of the measured: the scene is more than far_m behind
+  double median_m = 0;    // of the distances of all measured pixels that are not hidden
+  int mask_pixels = 0;    // measured pixels of the masks ..
+  int mask_covered = 0;   // .. and those that the model is rendered onto
+  OutlineCounts outline;  // of all views
   Reason reason = Reason::none;
 
   [[nodiscard]] double inlier_share() const {
@@ -43,6 +46,12 @@ struct Judgement {
   }
   [[nodiscard]] double mask_share() const {
     return mask_pixels > 0 ? static_cast<double>(mask_covered) / mask_pixels : 0;
+  }
+  // Of its outline: how much stands out from what is beside it. Of k_outline_granted pixels it is
+  // granted: an outline that nobody saw speaks against nothing.
+  [[nodiscard]] double outline_share() const {
+    return static_cast<double>(outline.falls + k_outline_granted) /
+           (outline.falls + outline.goes_on + k_outline_granted);
   }
   // How much of the model could be looked at.
   [[nodiscard]] double visible_share() const {

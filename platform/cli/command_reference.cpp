@@ -40,7 +40,8 @@ Json candidate_json(const Candidate& c) {
           {"median_surface_mm", 1e3 * c.judgement.median_m},
           {"inlier_share", c.judgement.inlier_share()},
           {"seen_through_share", c.judgement.seen_through_share()},
-          {"visible_share", c.judgement.visible_share()}};
+          {"visible_share", c.judgement.visible_share()},
+          {"outline_share", c.judgement.outline_share()}};
 }
 
 Json reference_json(const Reference& reference, const RobotModel& robot, std::size_t frames) {

@@ -40,6 +40,16 @@ void add_quad(PosedSurface& to, const Vector3& corner, const Vector3& along, con
   to.faces.push_back({first, first + 2, first + 3});
 }
 
+// Of many parts: a renderer leaves out what reaches behind the camera.
+void add_wall(PosedSurface& to, const Vector3& corner, const Vector3& along, const Vector3& up) {
+  constexpr int parts = 24;
+  for (int i = 0; i < parts; ++i) {
+    for (int j = 0; j < parts; ++j) {
+      add_quad(to, corner + i * along / parts + j * up / parts, along / parts, up / parts);
+    }
+  }
+}
+
 // A camera at this azimuth and elevation that looks at the point.
 Pose camera_at(const Vector3& target, double distance_m, double azimuth, double elevation) {
   const SineCosine a = sine_cosine(azimuth), e = sine_cosine(elevation);
@@ -147,11 +157,11 @@ SimulatedScene simulate_scene(const RobotModel& robot, const SimulationSettings&
     PosedSurface world = model;
     const auto robots_faces = static_cast<std::int32_t>(model.faces.size());
     const double floor = static_cast<double>(low.z()) - 0.01;
-    add_quad(world, {-3, -3, floor}, {6, 0, 0}, {0, 6, 0});
+    add_wall(world, {-3, -3, floor}, {6, 0, 0}, {0, 6, 0});
     const Vector3 away = T_camera_base.inverse().rotation * Vector3(0, 0, 1);
     const Vector3 flat = Vector3(away.x(), away.y(), 0).normalized();
     const Vector3 side(-flat.y(), flat.x(), 0);
-    add_quad(world, target + 0.9 * flat - 3 * side - Vector3(0, 0, 3), 6 * side, {0, 0, 6});
+    add_wall(world, target + 0.9 * flat - 3 * side - Vector3(0, 0, 3), 6 * side, {0, 0, 6});
     if (settings.half_hidden) {
       hide_half(world, rendered(model, T_camera_base, camera), camera, T_camera_base,
                 settings.distance_m);

@@ -120,6 +120,11 @@ std::string objection(const Candidate& c, const FindReferenceSettings& settings)
     return "the scene is seen through " + percent(j.seen_through_share()) +
            " of the robot; at most " + percent(settings.seen_through_share_max);
   }
+  if (j.outline_share() < settings.outline_share_min) {
+    return "the scene goes on beside " + percent(1 - j.outline_share()) +
+           " of the robot's outline, as flat things do; at most " +
+           percent(1 - settings.outline_share_min);
+  }
   if (j.mask_pixels > 0 && j.mask_share() < settings.mask_share_min) {
     return "the robot covers only " + percent(j.mask_share()) + " of the mask; wanted " +
            percent(settings.mask_share_min);
@@ -130,6 +135,12 @@ std::string objection(const Candidate& c, const FindReferenceSettings& settings)
     return "what is seen leaves the pose open along one direction";
   }
   return "";
+}
+
+// A pose that something speaks against is worth less than any other.
+bool better(const Candidate& a, const Candidate& b, const FindReferenceSettings& settings) {
+  const bool a_good = objection(a, settings).empty(), b_good = objection(b, settings).empty();
+  return a_good == b_good ? worth(a) > worth(b) : a_good;
 }
 
 }  // namespace
@@ -178,7 +189,7 @@ Reference find_reference(const std::vector<SceneFrame>& frames, const Pose& seed
       if (search.same_end(rival.alignment.T_world_base, reference.found.alignment.T_world_base)) {
         continue;
       }
-      if (worth(rival) > worth(reference.found)) std::swap(rival, reference.found);
+      if (better(rival, reference.found, settings)) std::swap(rival, reference.found);
       reference.rivals.push_back(rival);
     }
     std::erase_if(reference.rivals, [&](const Candidate& rival) {

@@ -25,6 +25,9 @@ struct FindReferenceSettings {
   double seen_through_share_max = 0.08;
   // Less of the model in view says nothing about the rest.
   double visible_share_min = 0.4;
+  // Flat things explain a robot that lies down on them, but do not end where it does. Twice the
+  // most that any such pose had in simulated scenes of an xArm7.
+  double outline_share_min = 0.25;
   double mask_share_min = 0.7;  // of the mask's pixels that the model covers
   double sigma_max_m = 0.02;    // of the base's position, along the axis that is known worst
   double sigma_max_rad = 0.035;

@@ -185,6 +185,31 @@ TEST(AlignModel, TakesNoHeapAndGivesTheSameBitsAgain) {
   EXPECT_EQ(first.covariance, again.covariance);
 }
 
+TEST(JudgeAlignment, TellsAnOutlineFromAPatchOfAWall) {
+  Scene scene;
+  const Judgement there = scene.judge(k_truth);
+  EXPECT_GT(there.outline.falls, 200);
+  EXPECT_EQ(there.outline.goes_on, 0);
+  EXPECT_EQ(there.outline_share(), 1);
+  // A wall with a box's face in it explains that face, but goes on beside it.
+  const Pose upright{Quaternion::Identity(), {0, 0, 1}};
+  std::fill(scene.depth.begin(), scene.depth.end(), 1.0f);
+  const Judgement flat = scene.judge(upright);
+  EXPECT_GT(flat.inlier_share(), 0.99);
+  EXPECT_EQ(flat.outline.falls, 0);
+  EXPECT_GT(flat.outline.goes_on, 100);  // a face of 30 pixels a side
+  EXPECT_LT(flat.outline_share(), 0.2);
+  // What stands in front of the edge says nothing, nor what was not measured.
+  for (const float beside : {0.0f, 0.5f}) {
+    std::vector<float>& depth = scene.depth;
+    const AlignmentScratch::View& seen = scene.scratch.views[0];
+    for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = seen.triangle[i] >= 0 ? 1.0f : beside;
+    const Judgement open = scene.judge(upright);
+    EXPECT_EQ(open.outline.falls + open.outline.goes_on, 0);
+    EXPECT_EQ(open.outline_share(), 1);
+  }
+}
+
 TEST(JudgeAlignment, TellsRightFromSeenThroughAndHidden) {
   Scene scene;
   const Judgement right = scene.judge(k_truth);

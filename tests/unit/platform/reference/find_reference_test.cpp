@@ -80,6 +80,21 @@ TEST(FindReference, RefusesAnEmptyRoomAndSaysWhy) {
   EXPECT_FALSE(r.why.empty());
 }
 
+TEST(FindReference, RefusesWhatLiesFlatOnAWall) {
+  std::vector<SceneFrame> frames = scene_of(post(), k_truth);
+  frames[0].model = surface_of({{{0.3, 0.5, 0.02}, {0, 0, 0}}, {{0.02, 0.3, 0.02}, {0.2, 0, 0}}});
+  for (float& z : frames[0].depth_m) z = 1.3f;
+  FindReferenceSettings settings;
+  settings.sigma_max_m = settings.sigma_max_rad = 1e9;  // a wall leaves three directions open
+  settings.alignment.gate_count = 0;
+  settings.other_starts = false;
+  const Pose flat{Quaternion::Identity(), {0, 0, 1.31}};
+  const Reference r = find_reference(frames, flat, settings);
+  EXPECT_EQ(r.found.judgement.inlier_share(), 1);
+  EXPECT_EQ(r.verdict, ReferenceVerdict::refused);
+  EXPECT_NE(r.why.find("outline"), std::string::npos) << r.why;
+}
+
 TEST(FindReference, RefusesWhatIsMostlyHidden) {
   std::vector<SceneFrame> frames = scene_of(arm(), k_truth);
   for (std::size_t i = 0; i < frames[0].depth_m.size(); ++i) {
