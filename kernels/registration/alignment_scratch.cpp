@@ -1,5 +1,7 @@
 #include "kernels/registration/alignment_scratch.hpp"
 
+#include "kernels/registration/splat_cloud.hpp"
+
 namespace glint {
 namespace {
 
@@ -34,6 +36,8 @@ bool scene_fits(std::span<const SceneView> views, const AlignmentScratch& scratc
     if (views[v].camera.width < 1 || views[v].camera.height < 1 || pixels == 0 ||
         pixels > scratch.views[v].z.size() || views[v].depth_m.size() != pixels ||
         views[v].model.corners.size() > scratch.views[v].corners.size() ||
+        views[v].cloud.points.size() > scratch.views[v].corners.size() ||
+        views[v].cloud.points.size() != views[v].cloud.normals.size() ||
         (!views[v].mask.empty() && views[v].mask.size() != pixels)) {
       return false;
     }
@@ -45,8 +49,10 @@ void render_model(const SceneView& view, const Pose& T_world_base, int step,
                   AlignmentScratch::View& memory) noexcept {
   const DepthBuffer buffer{std::span(memory.z).first(pixels_of(view)),
                            std::span(memory.triangle).first(pixels_of(view)), memory.corners};
-  memory.seen_count =
-      seen_points(view, view.T_camera_world * T_world_base, step, buffer, memory.seen);
+  const Pose T_camera_base = view.T_camera_world * T_world_base;
+  memory.seen_count = view.cloud.points.empty()
+                          ? seen_points(view, T_camera_base, step, buffer, memory.seen)
+                          : seen_cloud_points(view, T_camera_base, step, buffer, memory.seen);
 }
 
 void search_scene(const SceneView& view, int step, double reach_m,

@@ -13,7 +13,7 @@ namespace glint {
 
 class AlignmentScratch {
  public:
-  // Allocates, for so many views of so many pixels, and corners of a model, each.
+  // Allocates, for so many views of so many pixels, and corners or points of a model, each.
   // Reason::out_of_range: none or too many.
   [[nodiscard]] Reason prepare(int views, int pixels, int corners);
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "kernels/registration/model_cloud.hpp"
 #include "kernels/registration/triangle.hpp"
 
 namespace glint {
@@ -21,6 +22,7 @@ struct SceneView {
   std::span<const std::uint8_t> mask;  // 0: not the model; empty: nobody knows
   Surface model;                       // in the base's frame, at this view's joint positions
   Pose T_camera_world;                 // identity for a camera that stands still
+  ModelCloud cloud{};                  // in place of the model's triangles, if it has points
 
   [[nodiscard]] bool may_be_model(std::size_t pixel) const {
     return mask.empty() || mask[pixel] != 0;

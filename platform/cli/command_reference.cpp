@@ -10,6 +10,7 @@
 #include "platform/cli/output_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/reference/find_reference.hpp"
+#include "platform/robot/sample_robot.hpp"
 
 namespace glint {
 namespace {
@@ -20,7 +21,8 @@ struct ReferenceArguments {
   RobotFiles robot;
   SceneFiles scene;
   std::vector<double> seed;
-  std::string json;
+  std::string json, model;
+  int points = k_robot_cloud_points;
   bool visual = false;
 };
 
@@ -75,18 +77,43 @@ void print_pose(const char* what, const Candidate& c) {
               100 * c.judgement.seen_through_share());
 }
 
-void check_seed(const std::vector<double>& seed) {
-  for (const double value : seed) {
+void check_given(const ReferenceArguments& arguments) {
+  const std::pair<const char*, bool> wanted[] = {{"--depth", arguments.scene.depth.empty()},
+                                                 {"--joints", arguments.scene.joints.empty()},
+                                                 {"--camera", arguments.scene.camera.empty()},
+                                                 {"--seed", arguments.seed.empty()}};
+  for (const auto& [option, missing] : wanted) {
+    if (missing) {
+      throw InputError(std::string(option) +
+                       " is missing; expected --depth, --joints, --camera and --seed, or "
+                       "--export-model alone");
+    }
+  }
+  for (const double value : arguments.seed) {
     if (!std::isfinite(value) || std::abs(value) > 1e3) {
       throw InputError("--seed: expected x,y,z,roll,pitch,yaw in metres and radians");
     }
   }
 }
 
+void export_model(const ReferenceArguments& arguments, const RobotModel& robot) {
+  const RobotCloud cloud = sample_robot(robot, arguments.points);
+  write_robot_cloud(arguments.model, cloud);
+  std::printf("model      %s: %zu points of %zu links, %.1f mm apart\n", arguments.model.c_str(),
+              cloud.points.size(), cloud.links.size(), 1e3 * static_cast<double>(cloud.spacing_m));
+}
+
 int run_reference(ReferenceArguments arguments) {
-  check_seed(arguments.seed);
+  const SceneFiles& scene = arguments.scene;
+  const bool only_export = !arguments.model.empty() && scene.depth.empty() &&
+                           scene.joints.empty() && scene.camera.empty() && arguments.seed.empty();
+  if (!only_export) check_given(arguments);
   if (arguments.visual) arguments.robot.geometry = Geometry::visual;
   const RobotModel robot = load_robot(arguments.robot);
+  if (only_export) {
+    export_model(arguments, robot);
+    return 0;
+  }
   const std::vector<SceneFrame> frames = read_scene(arguments.scene, robot);
   const Reference reference = find_reference(frames, pose_of_seed(arguments.seed), {});
   print_pose("base", reference.found);
@@ -100,6 +127,7 @@ int run_reference(ReferenceArguments arguments) {
   }
   std::printf("verdict    %s%s%s\n", name_of(reference.verdict).c_str(),
               reference.why.empty() ? "" : ": ", reference.why.c_str());
+  if (!arguments.model.empty()) export_model(arguments, robot);
   write_json(arguments.json, reference_json(reference, robot, frames.size()));
   return reference.verdict == ReferenceVerdict::accepted ? 0 : 1;
 }
@@ -112,30 +140,31 @@ void add_reference(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<ReferenceArguments>();
   command->footer(
       "Example:\n"
+      "  glint reference --urdf arm.urdf --package-dir meshes --export-model arm.ply\n"
       "  glint reference --urdf arm.urdf --package-dir meshes --camera camera_info.yaml\n"
       "    --depth a.npy b.npy --joints a.txt b.txt --seed 0.4,0.2,1.2,-1.6,0.1,0.8 --json r.json\n"
       "Exit: 0 accepted, 1 ambiguous or refused, 2 bad use or input.");
   command->add_option("--urdf", arguments->robot.urdf, "the robot's description")->required();
   command->add_option("--package-dir", arguments->robot.package_dirs,
                       "where package:// leads: folders, or NAME=FOLDER");
-  command
-      ->add_option("--joints", arguments->scene.joints,
-                   "joint positions, a file for each depth picture: .npy, or text")
-      ->required();
-  command
-      ->add_option(
-          "--depth", arguments->scene.depth,
-          "depth: pictures .npy (m), .png (16 bit, mm); clouds .pcd, .ply in the camera's frame")
-      ->required();
-  command->add_option("--camera", arguments->scene.camera, "ROS camera_info, YAML")->required();
+  command->add_option("--joints", arguments->scene.joints,
+                      "joint positions, a file for each depth picture: .npy, or text");
+  command->add_option(
+      "--depth", arguments->scene.depth,
+      "depth: pictures .npy (m), .png (16 bit, mm); clouds .pcd, .ply in the camera's frame");
+  command->add_option("--camera", arguments->scene.camera, "ROS camera_info, YAML");
   command->add_option("--mask", arguments->scene.masks,
                       "the robot's pixels, a file for each depth");
   command
       ->add_option("--seed", arguments->seed,
                    "x,y,z,roll,pitch,yaw of T_camera_base: metres, radians, fixed axes")
       ->delimiter(',')
-      ->expected(6)
-      ->required();
+      ->expected(6);
+  command->add_option("--export-model", arguments->model,
+                      "write joints and points of the links' surfaces here, as PLY: what a board "
+                      "reads in place of URDF and meshes");
+  command->add_option("--points", arguments->points, "how many points that has")
+      ->capture_default_str();
   command->add_flag("--visual", arguments->visual, "visual meshes in place of collision meshes");
   command->add_option("--json", arguments->json, "write the figures here");
   command->callback([arguments, &exit_code] { exit_code = run_reference(*arguments); });

@@ -183,6 +183,7 @@ SimulatedScene simulate_scene(const RobotModel& robot, const SimulationSettings&
     scene.frames.push_back(std::move(frame));
   }
   scene.T_world_base = T_base_first.inverse();
+  scene.positions = positions;
   return scene;
 }
 

@@ -25,6 +25,7 @@ struct RobotScan {
 struct SimulatedScene {
   std::vector<SceneFrame> frames;  // the world is the first camera
   Pose T_world_base;               // the truth
+  std::vector<double> positions;   // of the joints
 };
 struct SimulationSettings {
   int views = 1;

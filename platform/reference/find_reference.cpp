@@ -27,7 +27,7 @@ class Search {
     std::size_t corners = 1, pixels = 1;
     for (const SceneFrame& frame : frames) {
       views_.push_back(frame.view());
-      corners = std::max(corners, frame.model.corners.size());
+      corners = std::max({corners, frame.model.corners.size(), frame.cloud.points.size()});
       pixels = std::max(pixels, frame.depth_m.size());
     }
     if (scratch_.prepare(static_cast<int>(views_.size()), static_cast<int>(pixels),
@@ -110,7 +110,10 @@ std::string objection(const Candidate& c, const FindReferenceSettings& settings)
   if (c.alignment.reason != Reason::none) return "too little of the robot is seen to fix a pose";
   if (j.visible_share() < settings.visible_share_min) {
     return "only " + percent(j.visible_share()) + " of the robot could be seen; wanted " +
-           percent(settings.visible_share_min);
+           percent(settings.visible_share_min) +
+           (settings.visible_share_min < settings.visible_share_min_alone
+                ? ""
+                : " of one frame without a mask");
   }
   if (j.inlier_share() < settings.inlier_share_min) {
     return "only " + percent(j.inlier_share()) + " of the robot lies at the scene; wanted " +
@@ -165,7 +168,11 @@ Pose pose_of_seed(const std::vector<double>& seed) {
 }
 
 Reference find_reference(const std::vector<SceneFrame>& frames, const Pose& seed,
-                         const FindReferenceSettings& settings) {
+                         const FindReferenceSettings& given) {
+  FindReferenceSettings settings = given;
+  if (frames.size() == 1 && frames[0].mask.empty()) {
+    settings.visible_share_min = std::max(given.visible_share_min, given.visible_share_min_alone);
+  }
   Search search(frames, settings);
   Reference reference;
   reference.found = search.whole(seed);

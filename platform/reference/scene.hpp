@@ -8,6 +8,7 @@
 
 #include "kernels/registration/scene_view.hpp"
 #include "platform/reference/depth_picture.hpp"
+#include "platform/robot/robot_cloud.hpp"
 #include "platform/robot/robot_model.hpp"
 
 namespace glint {
@@ -20,11 +21,12 @@ struct SceneFrame {
   std::vector<float> depth_m;
   std::vector<std::uint8_t> mask;  // empty: none
   PosedSurface model;
+  PosedCloud cloud;     // in place of the model, if it has points
   Pose T_camera_world;  // identity for a camera that stands still
   std::string name;     // the depth's file
 
   [[nodiscard]] SceneView view() const {
-    return {camera, depth_m, mask, model.surface(), T_camera_world};
+    return {camera, depth_m, mask, model.surface(), T_camera_world, cloud.cloud()};
   }
 };
 

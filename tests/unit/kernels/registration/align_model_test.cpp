@@ -7,39 +7,13 @@
 
 #include "kernels/registration/judge_alignment.hpp"
 #include "tests/unit/heap_count.hpp"
+#include "tests/unit/kernels/registration/box_model.hpp"
 
 namespace glint {
 namespace {
 
-// An arm of three boxes about one corner, none alike.
-struct Model {
-  std::vector<Vector3f> corners;
-  std::vector<Face> faces;
-
-  void add(const Vector3f& low, const Vector3f& high) {
-    const auto first = static_cast<std::int32_t>(corners.size());
-    for (int i = 0; i < 8; ++i) {
-      corners.emplace_back(i & 1 ? high.x() : low.x(), i & 2 ? high.y() : low.y(),
-                           i & 4 ? high.z() : low.z());
-    }
-    const int quads[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                             {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
-    for (const auto& q : quads) {
-      faces.push_back({first + q[0], first + q[1], first + q[2]});
-      faces.push_back({first + q[0], first + q[2], first + q[3]});
-    }
-  }
-  Model() {
-    add({-0.1f, -0.1f, 0}, {0.1f, 0.1f, 0.5f});
-    add({-0.05f, -0.05f, 0.4f}, {0.45f, 0.06f, 0.5f});
-    add({0.37f, -0.06f, 0.2f}, {0.45f, 0.06f, 0.5f});
-  }
-};
-
-// Seen from above and aside: three sides of each box, or a direction would stay open.
-const Pose k_truth{Quaternion(Eigen::AngleAxisd(2.094, Vector3::UnitX()) *
-                              Eigen::AngleAxisd(0.6, Vector3::UnitZ())),
-                   {-0.1, 0.15, 1.3}};
+using test::k_truth;
+using test::Model;
 
 struct Scene {
   Model model;

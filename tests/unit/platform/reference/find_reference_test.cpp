@@ -103,6 +103,25 @@ TEST(FindReference, RefusesWhatIsMostlyHidden) {
   EXPECT_EQ(find_reference(frames, k_truth, {}).verdict, ReferenceVerdict::refused);
 }
 
+TEST(FindReference, WantsAMaskOrASecondFrameWhereHalfIsHidden) {
+  std::vector<SceneFrame> frames = scene_of(arm(), k_truth);
+  std::vector<std::uint8_t> mask;
+  for (std::size_t i = 0; i < frames[0].depth_m.size(); ++i) {
+    mask.push_back(frames[0].depth_m[i] < 2 && i % 160 >= 74 ? 1 : 0);
+    if (i % 160 < 74) frames[0].depth_m[i] = 0.7f;
+  }
+  const Reference alone = find_reference(frames, off(0.02, 0.03), {});
+  EXPECT_LT(alone.found.judgement.visible_share(), 0.75);
+  EXPECT_GT(alone.found.judgement.visible_share(), 0.4);
+  EXPECT_EQ(alone.verdict, ReferenceVerdict::refused);
+  EXPECT_NE(alone.why.find("one frame without a mask"), std::string::npos) << alone.why;
+  frames[0].mask = mask;
+  EXPECT_EQ(find_reference(frames, off(0.02, 0.03), {}).verdict, ReferenceVerdict::accepted);
+  frames[0].mask.clear();
+  frames.push_back(frames[0]);
+  EXPECT_EQ(find_reference(frames, off(0.02, 0.03), {}).verdict, ReferenceVerdict::accepted);
+}
+
 TEST(FindReference, GivesTheSameBitsAgain) {
   const std::vector<SceneFrame> frames = scene_of(arm(), k_truth);
   const Reference a = find_reference(frames, off(0.05, 0.08), {});

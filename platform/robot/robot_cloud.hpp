@@ -1,0 +1,59 @@
+// A robot without meshes: its joints, and points that stand for its links' surfaces. What a host
+// makes of a URDF for a board that reads neither URDF nor meshes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kernels/registration/model_cloud.hpp"
+#include "kernels/robot/joint_tree.hpp"
+
+namespace glint {
+
+inline constexpr int k_robot_cloud_points = 60'000;
+
+struct RobotCloud {
+  std::string name;
+  JointTree tree;
+  std::vector<std::string> links, inputs;  // as in RobotModel
+  std::vector<Vector3f> points, normals;   // in their links' frames, metres
+  std::vector<std::uint16_t> point_links;
+  float spacing_m = 0;
+
+  [[nodiscard]] LinkCloud cloud() const { return {{points, normals, spacing_m}, point_links}; }
+};
+
+// A whole robot's points in its root's frame.
+struct PosedCloud {
+  std::vector<Vector3f> points, normals;
+  float spacing_m = 0;
+
+  [[nodiscard]] ModelCloud cloud() const { return {points, normals, spacing_m}; }
+};
+
+// At these positions (radians, metres; one for each input). Throws InputError naming `what` where
+// the positions are none.
+[[nodiscard]] PosedCloud posed_cloud(const RobotCloud& robot, std::span<const double> positions,
+                                     const std::string& what);
+
+// A PLY file that any viewer opens: binary_little_endian, a vertex a point with float x y z, float
+// nx ny nz (in the link's frame) and ushort link; before them, as comments, what moves the links:
+//   comment glint robot cloud 1
+//   comment robot NAME
+//   comment spacing_m S
+//   comment input NAME                    one for each joint value, in their order
+//   comment link NAME                     the root; then for each joint, parents first:
+//   comment joint KIND PARENT INPUT MULTIPLIER OFFSET AX AY AZ X Y Z QX QY QZ QW
+//   comment link NAME                     that it carries
+// KIND: fixed, turning, sliding; PARENT, INPUT: numbers from 0, INPUT -1 for none; the axis in the
+// joint's frame; T_parent_joint as metres and a quaternion. Numbers have digits enough to come back
+// as they were.
+// Throws InputError where the file cannot be written.
+void write_robot_cloud(const std::string& path, const RobotCloud& robot);
+
+// Throws InputError naming file, line, found and expected.
+[[nodiscard]] RobotCloud read_robot_cloud(const std::string& path);
+
+}  // namespace glint
