@@ -52,59 +52,112 @@ Matrix6 covariance_of(const AlignmentSums& sums, const Vector3& middle,
   return to_origin * about_middle * to_origin.transpose();
 }
 
+int gates_of(const AlignmentSettings& settings) noexcept {
+  return std::clamp(settings.gate_count, 0, k_gates_max);
+}
+
 }  // namespace
+
+int AlignmentRun::slices_max(const AlignmentSettings& settings, int views) noexcept {
+  int slices = 0;
+  for (int g = 0; g < gates_of(settings); ++g) {
+    const Gate& gate = settings.gates[static_cast<std::size_t>(g)];
+    const int steps = std::clamp(gate.steps_max, 0, k_alignment_steps_max);
+    const int grids = gate.matching == Matching::projective ? 0 : views;
+    slices += grids + steps + (gate.render_each ? steps : 1) * views;
+  }
+  return std::max(slices, 1);
+}
+
+void AlignmentRun::start(const Pose& T_world_base, const AlignmentSettings& settings) noexcept {
+  settings_ = settings;
+  result_ = ModelAlignment{};
+  result_.T_world_base = T_world_base;
+  number_ = 0;
+  phase_ = Phase::begin;
+}
+
+bool AlignmentRun::step(std::span<const SceneView> views, AlignmentScratch& scratch) noexcept {
+  if (phase_ == Phase::begin) {
+    if (!scene_fits(views, scratch)) {
+      result_.reason = Reason::not_prepared;
+      phase_ = Phase::done;
+      return false;
+    }
+    begin_gate();
+  }
+  if (phase_ == Phase::grid) {
+    // No thinner than every other pixel: pairs are then apart mostly along the normal.
+    search_scene(views[view_], gate_.step > 2 ? 2 : 1, gate_.gate_m, scratch.views[view_]);
+    if (++view_ < views.size()) return true;
+    view_ = 0;
+    phase_ = Phase::render;
+  } else if (phase_ == Phase::render) {
+    if (view_ == 0) T_world_rendered_ = result_.T_world_base;
+    render_model(views[view_], T_world_rendered_, gate_.step, scratch.views[view_]);
+    if (++view_ < views.size()) return true;
+    view_ = 0;
+    middle_ = middle_of(views, scratch);
+    phase_ = Phase::move;
+  } else if (phase_ == Phase::move) {
+    move(views, scratch);
+  }
+  return phase_ != Phase::done;
+}
+
+void AlignmentRun::begin_gate() noexcept {
+  while (number_ < gates_of(settings_)) {
+    gate_ = settings_.gates[static_cast<std::size_t>(number_)];
+    gate_.steps_max = std::min(gate_.steps_max, k_alignment_steps_max);
+    step_ = 0;
+    view_ = 0;
+    phase_ = gate_.matching == Matching::projective ? Phase::render : Phase::grid;
+    if (gate_.steps_max > 0) return;
+    ++number_;
+  }
+  phase_ = Phase::done;
+}
+
+void AlignmentRun::move(std::span<const SceneView> views,
+                        const AlignmentScratch& scratch) noexcept {
+  const Pose T_world_since = result_.T_world_base * T_world_rendered_.inverse();
+  const AlignmentSums sums = sums_of(views, T_world_since, middle_, gate_, scratch);
+  const Result<AlignmentStep> step = solve(sums);
+  ++result_.steps;
+  if (!step) {
+    result_.reason = Reason::degenerate;
+    phase_ = Phase::done;
+    return;
+  }
+  result_.T_world_base = moved(result_.T_world_base, step.value, middle_);
+  const double wide = gate_.matching == Matching::projective ? 0 : gate_.gate_m / 50;
+  const bool rests = step.value.shift.norm() < std::max(wide, settings_.rest_shift_m) &&
+                     step.value.turn.norm() < std::max(wide, settings_.rest_turn_rad);
+  if (rests || ++step_ == gate_.steps_max) {
+    end_gate(sums);
+  } else if (gate_.render_each) {
+    phase_ = Phase::render;
+  }
+}
+
+void AlignmentRun::end_gate(const AlignmentSums& sums) noexcept {
+  if (number_ + 1 == gates_of(settings_)) {
+    result_.covariance = covariance_of(sums, middle_, result_.T_world_base);
+    result_.pairs = sums.count;
+    result_.residual_m = sums.count > 0 ? std::sqrt(sums.squares / sums.count) : 0;
+  }
+  ++number_;
+  begin_gate();
+}
 
 ModelAlignment align_model(std::span<const SceneView> views, const Pose& T_world_base,
                            const AlignmentSettings& settings, AlignmentScratch& scratch) noexcept {
-  ModelAlignment result;
-  result.T_world_base = T_world_base;
-  if (!scene_fits(views, scratch)) {
-    result.reason = Reason::not_prepared;
-    return result;
+  AlignmentRun run;
+  run.start(T_world_base, settings);
+  const int slices = AlignmentRun::slices_max(settings, static_cast<int>(views.size()));
+  for (int slice = 0; slice < slices && run.step(views, scratch); ++slice) {
   }
-  const int gates = std::min(settings.gate_count, k_gates_max);
-  for (int g = 0; g < gates; ++g) {
-    const Gate& gate = settings.gates[static_cast<std::size_t>(g)];
-    const int steps = std::min(gate.steps_max, k_alignment_steps_max);
-    if (gate.matching != Matching::projective) {
-      // No thinner than every other pixel: pairs are then apart mostly along the normal.
-      const int thin = gate.step > 2 ? 2 : 1;
-      for (std::size_t v = 0; v < views.size(); ++v) {
-        search_scene(views[v], thin, gate.gate_m, scratch.views[v]);
-      }
-    }
-    Pose T_world_rendered;
-    AlignmentSums sums;
-    Vector3 middle = Vector3::Zero();
-    for (int s = 0; s < steps; ++s) {
-      if (s == 0 || gate.render_each) {
-        T_world_rendered = result.T_world_base;
-        for (std::size_t v = 0; v < views.size(); ++v) {
-          render_model(views[v], T_world_rendered, gate.step, scratch.views[v]);
-        }
-        middle = middle_of(views, scratch);
-      }
-      const Pose T_world_since = result.T_world_base * T_world_rendered.inverse();
-      sums = sums_of(views, T_world_since, middle, gate, scratch);
-      const Result<AlignmentStep> step = solve(sums);
-      ++result.steps;
-      if (!step) {
-        result.reason = Reason::degenerate;
-        return result;
-      }
-      result.T_world_base = moved(result.T_world_base, step.value, middle);
-      const double wide = gate.matching == Matching::projective ? 0 : gate.gate_m / 50;
-      const bool rests = step.value.shift.norm() < std::max(wide, settings.rest_shift_m) &&
-                         step.value.turn.norm() < std::max(wide, settings.rest_turn_rad);
-      if (rests) break;
-    }
-    if (g + 1 == gates) {
-      result.covariance = covariance_of(sums, middle, result.T_world_base);
-      result.pairs = sums.count;
-      result.residual_m = sums.count > 0 ? std::sqrt(sums.squares / sums.count) : 0;
-    }
-  }
-  return result;
+  return run.result();
 }
 
 }  // namespace glint

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 
 #include "kernels/registration/alignment_scratch.hpp"
@@ -52,7 +53,40 @@ struct ModelAlignment {
   Reason reason = Reason::none;  // degenerate: too little was seen to fix a pose
 };
 
-// Reason::not_prepared: the scratch is too small for the views.
+// An alignment in slices: step() after step() until it says false, with the same views and scratch
+// each time. A slice is a grid or a rendering of one view, or one step of Gauss-Newton over all.
+class AlignmentRun {
+ public:
+  // How many slices it takes at most.
+  [[nodiscard]] static int slices_max(const AlignmentSettings& settings, int views) noexcept;
+
+  void start(const Pose& T_world_base, const AlignmentSettings& settings) noexcept;
+  [[nodiscard]] bool step(std::span<const SceneView> views,
+                          AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;
+
+  // Complete when step() has said false.
+  [[nodiscard]] const ModelAlignment& result() const noexcept { return result_; }
+  // Of what was seen at the last rendering, in the world: what turns are about.
+  [[nodiscard]] const Vector3& middle() const noexcept { return middle_; }
+
+ private:
+  enum class Phase : std::uint8_t { begin, grid, render, move, done };
+
+  void begin_gate() noexcept;
+  void move(std::span<const SceneView> views, const AlignmentScratch& scratch) noexcept;
+  void end_gate(const AlignmentSums& sums) noexcept;
+
+  AlignmentSettings settings_;
+  ModelAlignment result_;
+  Pose T_world_rendered_;
+  Vector3 middle_ = Vector3::Zero();
+  Gate gate_;
+  Phase phase_ = Phase::done;
+  int number_ = 0, step_ = 0;  // of the gate, and in it
+  std::size_t view_ = 0;
+};
+
+// All slices at once. Reason::not_prepared: the scratch is too small for the views.
 [[nodiscard]] ModelAlignment align_model(std::span<const SceneView> views, const Pose& T_world_base,
                                          const AlignmentSettings& settings,
                                          AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;

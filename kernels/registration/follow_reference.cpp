@@ -1,0 +1,152 @@
+#include "kernels/registration/follow_reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/elementary.hpp"
+
+namespace glint {
+namespace {
+
+// The turn that brings b to a, about fixed axes: radians times its axis.
+Vector3 turn_between(const Quaternion& a, const Quaternion& b) noexcept {
+  const Quaternion q = a * b.conjugate();
+  const double sine = q.vec().norm();
+  if (!(sine > 0)) return Vector3::Zero();
+  const double angle = 2 * arc_tangent(sine, std::abs(q.w()));
+  return q.vec() * ((q.w() < 0 ? -angle : angle) / sine);
+}
+
+double sigma_of(const Matrix6& covariance, int first) noexcept {
+  return std::sqrt(covariance(first, first) + covariance(first + 1, first + 1) +
+                   covariance(first + 2, first + 2));
+}
+
+}  // namespace
+
+const char* name_of(FollowOutcome outcome) noexcept {
+  switch (outcome) {
+    case FollowOutcome::followed:
+      return "followed";
+    case FollowOutcome::late:
+      return "late";
+    case FollowOutcome::hidden:
+      return "hidden";
+    case FollowOutcome::unexplained:
+      return "unexplained";
+    case FollowOutcome::unsure:
+      return "unsure";
+    case FollowOutcome::jumped:
+      return "jumped";
+    default:
+      return "no_reference";
+  }
+}
+
+Reason ReferenceFollower::prepare(int pixels, int corners) {
+  known_ = false;
+  phase_ = Phase::idle;
+  for (const double value : {settings.time_constant_s, settings.jump_m, settings.jump_rad}) {
+    if (!(value > 0) || !std::isfinite(value)) return Reason::out_of_range;
+  }
+  if (!(settings.drift_m_s >= 0) || !(settings.drift_rad_s >= 0)) return Reason::out_of_range;
+  return scratch_.prepare(1, pixels, corners);
+}
+
+void ReferenceFollower::begin(const Pose& T_world_base, const Matrix6& covariance,
+                              Time time) noexcept {
+  reference_ = {T_world_base, covariance, time};
+  newest_ = time;
+  report_ = FollowReport{};
+  report_.time = time;
+  report_.outcome = FollowOutcome::followed;
+  phase_ = Phase::idle;
+  known_ = true;
+}
+
+bool ReferenceFollower::look(const SceneView& view, Time time) noexcept {
+  const int jumps = report_.jumps;
+  report_ = FollowReport{};
+  report_.time = time;
+  report_.jumps = jumps;
+  phase_ = Phase::idle;
+  if (!known_) return false;
+  if (time <= newest_) {
+    report_.outcome = FollowOutcome::late;
+    return false;
+  }
+  newest_ = time;
+  view_ = view;
+  run_.start(reference_.T_world_base, settings.alignment);
+  phase_ = Phase::align;
+  return true;
+}
+
+int ReferenceFollower::slices_max() const noexcept {
+  return AlignmentRun::slices_max(settings.alignment, 1) + 1;
+}
+
+bool ReferenceFollower::step() noexcept {
+  if (phase_ == Phase::idle) return false;
+  const std::span<const SceneView> views(&view_, 1);
+  if (phase_ == Phase::align) {
+    if (!run_.step(views, scratch_)) phase_ = Phase::judge;
+    return true;
+  }
+  report_.seen = run_.result();
+  report_.judgement = judge_alignment(views, report_.seen.T_world_base, settings.judge, scratch_);
+  decide();
+  phase_ = Phase::idle;
+  return false;
+}
+
+FollowOutcome ReferenceFollower::outcome() const noexcept {
+  const Judgement& j = report_.judgement;
+  if (report_.seen.reason != Reason::none || j.visible_share() < settings.visible_share_min) {
+    return FollowOutcome::hidden;
+  }
+  if (j.inlier_share() < settings.inlier_share_min ||
+      j.seen_through_share() > settings.seen_through_share_max) {
+    return FollowOutcome::unexplained;
+  }
+  // Three sigma of noise must not look like a jump.
+  if (3 * sigma_of(report_.seen.covariance, 0) > settings.jump_m ||
+      3 * sigma_of(report_.seen.covariance, 3) > settings.jump_rad) {
+    return FollowOutcome::unsure;
+  }
+  const bool far = report_.shift_m > settings.jump_m || report_.turn_rad > settings.jump_rad;
+  return far ? FollowOutcome::jumped : FollowOutcome::followed;
+}
+
+void ReferenceFollower::decide() noexcept {
+  const Pose& was = reference_.T_world_base;
+  const Pose& seen = report_.seen.T_world_base;
+  const Vector3 middle = run_.middle();
+  const Vector3 shift = seen * (was.inverse() * middle) - middle;
+  const Vector3 turn = turn_between(seen.rotation, was.rotation);
+  report_.shift_m = shift.norm();
+  report_.turn_rad = turn.norm();
+  report_.outcome = outcome();
+  report_.jumps = report_.outcome == FollowOutcome::jumped ? report_.jumps + 1 : 0;
+  if (report_.outcome != FollowOutcome::followed) return;
+  const double passed = (report_.time - reference_.measured).seconds();
+  const double gain = 1 - exponential(-std::min(passed / settings.time_constant_s, 700.0));
+  reference_.T_world_base = moved(was, {gain * shift, gain * turn}, middle);
+  reference_.covariance =
+      (1 - gain) * (1 - gain) * reference_.covariance + gain * gain * report_.seen.covariance;
+  reference_.measured = report_.time;
+}
+
+FollowedReference ReferenceFollower::reference(Time now) const noexcept {
+  FollowedReference out = reference_;
+  const double late =
+      settings.time_constant_s + std::max(0.0, (now - reference_.measured).seconds());
+  const double shift = settings.drift_m_s * late, turn = settings.drift_rad_s * late;
+  for (int i = 0; i < 3; ++i) {
+    out.covariance(i, i) += shift * shift;
+    out.covariance(i + 3, i + 3) += turn * turn;
+  }
+  return out;
+}
+
+}  // namespace glint

@@ -1,0 +1,177 @@
+#include "kernels/registration/follow_reference.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/heap_count.hpp"
+#include "tests/unit/kernels/registration/box_model.hpp"
+
+namespace glint {
+namespace {
+
+using test::k_truth;
+using test::Model;
+
+constexpr int k_pixels = 160 * 120;
+
+Time at(double seconds) { return {static_cast<std::int64_t>(seconds * 1e9)}; }
+
+struct World {
+  Model model;
+  Pinhole camera{160, 120, 150, 150, 80, 60};
+  std::vector<float> depth = std::vector<float>(k_pixels);
+  std::mt19937 random{3};
+  ReferenceFollower follower;
+
+  World() {
+    EXPECT_EQ(follower.prepare(k_pixels, 64), Reason::none);
+    Matrix6 covariance = Matrix6::Zero();
+    covariance.diagonal() << 1e-6, 1e-6, 1e-6, 1e-6, 1e-6, 1e-6;
+    follower.begin(k_truth, covariance, at(0));
+  }
+  [[nodiscard]] SceneView view() const {
+    return {camera, depth, {}, {model.corners, model.faces}, {}};
+  }
+  // With 1 % of noise, and a wall behind.
+  void draw(const Pose& truth) {
+    std::vector<std::int32_t> face(depth.size());
+    std::vector<ProjectedCorner> corners(64);
+    EXPECT_EQ(render_depth({model.corners, model.faces}, truth, camera, {depth, face, corners}),
+              Reason::none);
+    std::normal_distribution<float> noise(0, 0.01f);
+    for (float& z : depth) z = z == 0 ? 1.9f : z * (1 + noise(random));
+  }
+  // Slices that it took.
+  int look(Time time) {
+    int slices = 0;
+    if (!follower.look(view(), time)) return slices;
+    do {
+      ++slices;
+    } while (follower.step());
+    return slices;
+  }
+};
+
+Vector6 error_of(const Pose& found, const Pose& truth) {
+  Vector6 error;
+  const Quaternion q = found.rotation * truth.rotation.conjugate();
+  error << found.translation - truth.translation, 2 * q.vec() * (q.w() < 0 ? -1 : 1);
+  return error;
+}
+
+TEST(FollowReference, FollowsADriftWithinItsCovariance) {
+  World world;
+  double squares = 0, worst_mm = 0;
+  int judged = 0;
+  for (int i = 1; i <= 40; ++i) {
+    const double t = 0.5 * i;  // two pictures a second, 1 mm and 0.03 degrees a second
+    const Pose truth{
+        (Quaternion(Eigen::AngleAxisd(5e-4 * t, Vector3::UnitZ())) * k_truth.rotation).normalized(),
+        k_truth.translation + 1e-3 * t * Vector3(0.6, 0, 0.8)};
+    world.draw(truth);
+    world.look(at(t));
+    ASSERT_EQ(world.follower.report().outcome, FollowOutcome::followed) << i;
+    if (t < 3 * world.follower.settings.time_constant_s) continue;
+    const FollowedReference now = world.follower.reference(at(t));
+    const Vector6 error = error_of(now.T_world_base, truth);
+    squares += error.dot(now.covariance.inverse() * error) / 6;
+    worst_mm = std::max(worst_mm, 1e3 * error.head<3>().norm());
+    ++judged;
+  }
+  EXPECT_LT(squares / judged, 1.5);
+  EXPECT_GT(squares / judged, 0.05);  // nor is it much too careful
+  EXPECT_LT(worst_mm, 5);             // of 20 that it drifted
+  EXPECT_GT(worst_mm, 0.5);           // it lags, as it says
+}
+
+TEST(FollowReference, GoesAPartOfTheWayByItsTimeConstant) {
+  World world;
+  const Pose truth{k_truth.rotation, k_truth.translation + Vector3(0.01, 0, 0)};
+  world.draw(truth);
+  world.look(at(world.follower.settings.time_constant_s));
+  ASSERT_EQ(world.follower.report().outcome, FollowOutcome::followed);
+  const Pose seen = world.follower.report().seen.T_world_base;
+  const Vector3 left = world.follower.reference(at(2)).T_world_base.translation - seen.translation;
+  EXPECT_NEAR(left.norm() / (k_truth.translation - seen.translation).norm(), std::exp(-1), 0.01);
+  EXPECT_LT(left.norm(), 0.01);
+}
+
+TEST(FollowReference, RefusesAJumpAndTellsIt) {
+  World world;
+  world.draw({k_truth.rotation, k_truth.translation + Vector3(0.03, 0, 0)});
+  for (int i = 1; i <= 3; ++i) {
+    world.look(at(i));
+    const FollowReport& report = world.follower.report();
+    EXPECT_EQ(report.outcome, FollowOutcome::jumped) << name_of(report.outcome);
+    EXPECT_NEAR(report.shift_m, 0.03, 0.004);
+    EXPECT_EQ(report.jumps, i);
+  }
+  EXPECT_EQ(world.follower.reference(at(3)).T_world_base.translation, k_truth.translation);
+  EXPECT_EQ(world.follower.reference(at(3)).measured, at(0));
+  // Back where it was, it is followed again.
+  world.draw(k_truth);
+  world.look(at(4));
+  EXPECT_EQ(world.follower.report().outcome, FollowOutcome::followed);
+  EXPECT_EQ(world.follower.report().jumps, 0);
+  // And a turn on the spot is a jump as well.
+  world.draw({(Quaternion(Eigen::AngleAxisd(0.06, Vector3::UnitY())) * k_truth.rotation),
+              k_truth.translation});
+  world.look(at(5));
+  EXPECT_EQ(world.follower.report().outcome, FollowOutcome::jumped);
+}
+
+TEST(FollowReference, LeavesAHiddenRobotAloneAndKnowsLessOfItAsTimePasses) {
+  World world;
+  const FollowedReference before = world.follower.reference(at(1));
+  std::fill(world.depth.begin(), world.depth.end(), 0.5f);
+  world.look(at(5));
+  EXPECT_EQ(world.follower.report().outcome, FollowOutcome::hidden);
+  std::fill(world.depth.begin(), world.depth.end(), 0.0f);
+  world.look(at(9));
+  EXPECT_EQ(world.follower.report().outcome, FollowOutcome::hidden);
+  std::fill(world.depth.begin(), world.depth.end(), std::nanf(""));
+  world.look(at(10));
+  EXPECT_EQ(world.follower.report().outcome, FollowOutcome::hidden);
+  const FollowedReference after = world.follower.reference(at(10));
+  EXPECT_EQ(after.T_world_base.translation, before.T_world_base.translation);
+  EXPECT_EQ(after.T_world_base.rotation.coeffs(), before.T_world_base.rotation.coeffs());
+  const auto spread = [](const FollowedReference& r) { return std::sqrt(r.covariance(0, 0)); };
+  EXPECT_NEAR(spread(after) - spread(before), 0.009, 0.001);  // 9 s of 1 mm a second
+}
+
+TEST(FollowReference, IsNotTakenInByARobotThatIsGone) {
+  World world;
+  std::fill(world.depth.begin(), world.depth.end(), 1.9f);
+  world.look(at(1));
+  EXPECT_NE(world.follower.report().outcome, FollowOutcome::followed);
+  EXPECT_EQ(world.follower.reference(at(1)).T_world_base.translation, k_truth.translation);
+}
+
+TEST(FollowReference, WantsAReferenceAndNewerPictures) {
+  World world;
+  world.draw(k_truth);
+  world.look(at(2));
+  EXPECT_EQ(world.look(at(2)), 0);
+  EXPECT_EQ(world.follower.report().outcome, FollowOutcome::late);
+  ReferenceFollower none;
+  EXPECT_EQ(none.prepare(0, 64), Reason::out_of_range);
+  ASSERT_EQ(none.prepare(k_pixels, 64), Reason::none);
+  EXPECT_FALSE(none.look(world.view(), at(1)));
+  EXPECT_EQ(none.report().outcome, FollowOutcome::no_reference);
+  EXPECT_FALSE(none.step());
+  none.settings.time_constant_s = 0;
+  EXPECT_EQ(none.prepare(k_pixels, 64), Reason::out_of_range);
+}
+
+TEST(FollowReference, TakesNoMoreSlicesThanItSaysAndNoHeap) {
+  World world;
+  world.follower.settings.alignment.rest_shift_m = 0;  // never at rest
+  world.draw({k_truth.rotation, k_truth.translation + Vector3(0.004, 0, 0)});
+  EXPECT_EQ(world.look(at(1)), world.follower.slices_max());
+  if (!AllocationCounter::available()) GTEST_SKIP() << "allocations are not counted in this build";
+  const HeapCount heap;
+  world.look(at(2));
+  EXPECT_EQ(heap.count(), 0u);
+}
+
+}  // namespace
+}  // namespace glint
