@@ -106,7 +106,7 @@ FollowOutcome ReferenceFollower::outcome() const noexcept {
     return FollowOutcome::hidden;
   }
   if (j.inlier_share() < settings.inlier_share_min ||
-      j.seen_through_share() > settings.seen_through_share_max) {
+      j.unhidden_seen_through_share() > settings.seen_through_share_max) {
     return FollowOutcome::unexplained;
   }
   // Three sigma of noise must not look like a jump.

@@ -44,6 +44,10 @@ struct Judgement {
   [[nodiscard]] double seen_through_share() const {
     return measured > 0 ? static_cast<double>(seen_through) / measured : 0;
   }
+  // The same of what is not hidden: a pose gains nothing by hiding the rest of the model.
+  [[nodiscard]] double unhidden_seen_through_share() const {
+    return measured > hidden ? static_cast<double>(seen_through) / (measured - hidden) : 0;
+  }
   [[nodiscard]] double mask_share() const {
     return mask_pixels > 0 ? static_cast<double>(mask_covered) / mask_pixels : 0;
   }

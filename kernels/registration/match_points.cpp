@@ -14,6 +14,14 @@ int pixel_of(const Pinhole& camera, const Vector3& p) noexcept {
   return static_cast<int>(v) * camera.width + static_cast<int>(u);
 }
 
+// Whether what stands before a point is nearer by more than the gate: something else.
+bool hidden(const SceneView& view, const Vector3& p, double gate_m) noexcept {
+  const int pixel = pixel_of(view.camera, p);
+  if (pixel < 0) return false;
+  const double z = static_cast<double>(view.depth_m[static_cast<std::size_t>(pixel)]);
+  return z > 0 && z < p.z() - gate_m;
+}
+
 }  // namespace
 
 void add_pairs(std::span<const SeenPoint> points, const Pose& T_moved, Matching matching,
@@ -35,6 +43,7 @@ void add_pairs(std::span<const SeenPoint> points, const Pose& T_moved, Matching 
       sums.add(lever, to_world * normal * (-1 / cosine), away * range / p.z(), 1);
       continue;
     }
+    if (hidden(view, p, gate_m)) continue;
     const Nearest nearest = search.grid->nearest(p.cast<float>(), static_cast<float>(gate_m));
     if (nearest.index < 0) continue;
     const Vector3 apart = p - search.points[static_cast<std::size_t>(nearest.index)].cast<double>();

@@ -6,7 +6,9 @@
 //           projective: the scene point of the same pixel; along the normal, divided by the cosine
 //                       between normal and ray: then all pull as exactly as depth is measured.
 //           A pair farther apart than the gate pulls nothing: what is hidden behind something
-//           nearer is left out so, and what the scene does not have.
+//           nearer is left out so, and what the scene does not have. By the first two ways a
+//           hidden point would find neighbours aside: it is left out where its pixel is nearer by
+//           more than the gate.
 // Cost:     a search in the grid, or a look into the picture; one or three rows of the sums.
 // Worst:    a search that finds nothing looks at all cells within the gate.
 // Accuracy: that of the pairs; a surface that is seen at less than k_least_cosine is left out by

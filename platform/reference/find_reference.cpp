@@ -41,6 +41,14 @@ class Search {
 
   [[nodiscard]] Candidate whole(const Pose& start) { return run(start, settings_.alignment); }
 
+  // Without the widest gates, which draw a robot to floors and boards that are near it.
+  [[nodiscard]] Candidate narrow(const Pose& start, int gates_skipped) {
+    AlignmentSettings fewer = settings_.alignment;
+    std::rotate(fewer.gates.begin(), fewer.gates.begin() + gates_skipped, fewer.gates.end());
+    fewer.gate_count -= gates_skipped;
+    return run(start, fewer);
+  }
+
   // With an eighth of the points and only the wide gates: enough to see where it leads.
   [[nodiscard]] Candidate rough(const Pose& start) {
     AlignmentSettings few;
@@ -119,9 +127,10 @@ std::string objection(const Candidate& c, const FindReferenceSettings& settings)
     return "only " + percent(j.inlier_share()) + " of the robot lies at the scene; wanted " +
            percent(settings.inlier_share_min);
   }
-  if (j.seen_through_share() > settings.seen_through_share_max) {
-    return "the scene is seen through " + percent(j.seen_through_share()) +
-           " of the robot; at most " + percent(settings.seen_through_share_max);
+  if (j.unhidden_seen_through_share() > settings.seen_through_share_max) {
+    return "the scene is seen through " + percent(j.unhidden_seen_through_share()) +
+           " of what is not hidden of the robot; at most " +
+           percent(settings.seen_through_share_max);
   }
   if (j.outline_share() < settings.outline_share_min) {
     return "the scene goes on beside " + percent(1 - j.outline_share()) +
@@ -177,6 +186,13 @@ Reference find_reference(const std::vector<SceneFrame>& frames, const Pose& seed
   Reference reference;
   reference.found = search.whole(seed);
   reference.starts = 1;
+  for (int skip = 1; settings.other_starts && skip < 3; ++skip) {
+    if (settings.alignment.gate_count <= skip) break;
+    if (objection(reference.found, settings).empty()) break;
+    ++reference.starts;
+    const Candidate narrow = search.narrow(seed, skip);
+    if (better(narrow, reference.found, settings)) reference.found = narrow;
+  }
   if (settings.other_starts) {
     // About where the first ended if that is any good, else about the seed.
     const bool good = objection(reference.found, settings).empty();
