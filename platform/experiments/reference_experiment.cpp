@@ -96,6 +96,7 @@ class Experiment {
     cut_out();
     for (std::size_t i = 0; i < scan_.frames.size(); ++i) single(i);
     for (const char* robot : {"ur5", "panda"}) simulated(robot);
+    straight_up();
     return std::move(list_);
   }
 
@@ -183,6 +184,25 @@ class Experiment {
     add("frame " + std::to_string(number) + " alone", seeds_, std::move(figures));
   }
 
+  // A column that looks much alike from all sides: an ambiguous verdict is no wrong one.
+  void straight_up() {
+    const std::string folder = options_.data + "/robots/ur5";
+    const RobotModel robot =
+        load_robot({folder + "/ur5_robot.urdf", {folder}, Geometry::collision});
+    constexpr double quarter = 1.5707963267948966;
+    SimulationSettings settings;
+    settings.half_hidden = settings.mask = false;
+    settings.positions = {0, -quarter, 0, -quarter, 0, 0};
+    Tally tally;
+    for (int i = 0; i < seeds_; ++i) {
+      const auto number = static_cast<std::uint64_t>(i);
+      const SimulatedScene scene = simulate_scene(robot, settings, options_.seed, number);
+      const Pose start = seed_about(scene.T_world_base, 0.4, 40, options_.seed, number);
+      tally.add(find_reference(scene.frames, start, {}), scene.T_world_base);
+    }
+    add("ur5 straight up, seeds +-40 cm, 40 deg", seeds_, tally.verdicts());
+  }
+
   void simulated(const std::string& name) {
     const std::string folder = options_.data + "/robots/" + name;
     const std::string urdf = folder + (name == "ur5" ? "/ur5_robot.urdf" : "/panda.urdf");
@@ -237,7 +257,7 @@ class Experiment {
 
   void add(const std::string& name, int n, std::vector<Figure> figures) {
     list_.cases.push_back({name, "glint", n, std::move(figures)});
-    constexpr int cases = 20;
+    constexpr int cases = 21;
     if (options_.progress) options_.progress(static_cast<int>(list_.cases.size()), cases);
   }
 

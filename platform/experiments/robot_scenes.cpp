@@ -139,6 +139,7 @@ SimulatedScene simulate_scene(const RobotModel& robot, const SimulationSettings&
   };
   std::vector<double> positions;
   for (std::size_t i = 0; i < robot.inputs.size(); ++i) positions.push_back(draw(-1.3, 1.3));
+  if (!settings.positions.empty()) positions = settings.positions;
   const PosedSurface model = posed_surface(robot, positions, "simulated");
   Vector3f low = model.corners[0], high = low;
   for (const Vector3f& corner : model.corners) {

@@ -32,9 +32,10 @@ struct SimulationSettings {
   bool mask = true;
   bool half_hidden = true;
   double distance_m = 1.2;
-  double noise = 0.01;  // of the depth, independent from pixel to pixel
+  double noise = 0.01;            // of the depth, independent from pixel to pixel
+  std::vector<double> positions;  // of the joints; empty: random
 };
-// Robot at random joint positions on a floor before a wall; the instance chooses all that is
+// Robot on a floor before a wall; the instance chooses all that is
 // random.
 [[nodiscard]] SimulatedScene simulate_scene(const RobotModel& robot,
                                             const SimulationSettings& settings, std::uint64_t seed,

@@ -121,7 +121,7 @@ std::string objection(const Candidate& c, const FindReferenceSettings& settings)
            percent(settings.visible_share_min) +
            (settings.visible_share_min < settings.visible_share_min_alone
                 ? ""
-                : " of one frame without a mask");
+                : " from one place without a mask");
   }
   if (j.inlier_share() < settings.inlier_share_min) {
     return "only " + percent(j.inlier_share()) + " of the robot lies at the scene; wanted " +
@@ -155,6 +155,16 @@ bool better(const Candidate& a, const Candidate& b, const FindReferenceSettings&
   return a_good == b_good ? worth(a) > worth(b) : a_good;
 }
 
+// Without a mask, and no camera more than a hand's width from the first.
+bool from_one_place(const std::vector<SceneFrame>& frames) {
+  constexpr double near_m = 0.1;
+  return std::all_of(frames.begin(), frames.end(), [&](const SceneFrame& frame) {
+    const Vector3 apart =
+        frame.T_camera_world.inverse().translation - frames[0].T_camera_world.inverse().translation;
+    return frame.mask.empty() && apart.norm() < near_m;
+  });
+}
+
 }  // namespace
 
 std::string name_of(ReferenceVerdict verdict) {
@@ -179,8 +189,9 @@ Pose pose_of_seed(const std::vector<double>& seed) {
 Reference find_reference(const std::vector<SceneFrame>& frames, const Pose& seed,
                          const FindReferenceSettings& given) {
   FindReferenceSettings settings = given;
-  if (frames.size() == 1 && frames[0].mask.empty()) {
+  if (from_one_place(frames)) {
     settings.visible_share_min = std::max(given.visible_share_min, given.visible_share_min_alone);
+    settings.outline_share_min = std::max(given.outline_share_min, given.outline_share_min_alone);
   }
   Search search(frames, settings);
   Reference reference;

@@ -25,8 +25,9 @@ struct FindReferenceSettings {
   double seen_through_share_max = 0.08;
   // Less of the model in view says nothing about the rest.
   double visible_share_min = 0.4;
-  // Of one frame without a mask: what hides the robot from it may as well be taken for the robot.
+  // From one place of the camera without a mask: what hides the robot may as well be taken for it.
   double visible_share_min_alone = 0.75;
+  double outline_share_min_alone = 0.3;
   // Flat things explain a robot that lies down on them, but do not end where it does. Twice the
   // most that any such pose had in simulated scenes of an xArm7.
   double outline_share_min = 0.25;
