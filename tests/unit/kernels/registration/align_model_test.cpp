@@ -120,6 +120,22 @@ TEST(AlignModel, IsNotDrawnToWhatStandsInFront) {
   EXPECT_LT(scene.judge(end.T_world_base).visible_share(), 0.9);
 }
 
+TEST(AlignModel, LeavesWhatIsHiddenOutOfTheWidestGate) {
+  // A board hides the left; what lies behind it would find neighbours aside, in the part that
+  // shows.
+  Scene scene;
+  for (int y = 0; y < 120; ++y) {
+    for (int x = 0; x < 68; ++x) scene.depth[static_cast<std::size_t>(y * 160 + x)] = 0.8f;
+  }
+  AlignmentSettings wide;
+  wide.gate_count = 1;
+  wide.gates[0].steps_max = k_alignment_steps_max;
+  const ModelAlignment end = scene.align(k_truth, wide);
+  EXPECT_LT((end.T_world_base.translation - k_truth.translation).norm(), 0.01);
+  EXPECT_LT(degrees_between(end.T_world_base, k_truth),
+            3);  // three times as far with what is hidden
+}
+
 TEST(AlignModel, TwoViewsKnowMoreThanOne) {
   Scene scene;
   SceneView views[] = {scene.view(), scene.view()};
