@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "kernels/motion/interpolate.hpp"
 
 namespace glint {
 namespace {
 
-constexpr double k_pi = 3.14159265358979323846;
-constexpr double k_nowhere = 2;  // beyond any segment
-constexpr double k_unit_tolerance =
-    1e-6;  // what rounding leaves of a unit quaternion, and far more
+constexpr double k_nowhere = 2;            // beyond any segment
+constexpr double k_unit_tolerance = 1e-6;  // far more than rounding leaves of a unit quaternion
 
 bool usable(double number) noexcept { return std::isfinite(number) && number > 0; }
 
@@ -24,7 +23,7 @@ double angle_between(const Quaternion& a, const Quaternion& b) noexcept {
 Reason StrokeResampler::begin(const StrokeSettings& settings) noexcept {
   *this = {};
   const bool right = usable(settings.spacing_m) && usable(settings.turn_rad) &&
-                     settings.turn_rad <= k_pi && settings.gap_max.nanoseconds > 0 &&
+                     settings.turn_rad <= std::numbers::pi && settings.gap_max.nanoseconds > 0 &&
                      usable(settings.acceleration_m_s2) &&
                      usable(settings.turn_acceleration_rad_s2);
   settings_ = settings;
