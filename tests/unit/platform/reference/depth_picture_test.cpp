@@ -70,6 +70,24 @@ TEST(SceneFrame, TakesPointsThatAreFewerThanThePicturesPixels) {
   }
 }
 
+TEST(SceneFrame, IsTheSameOfAPictureAndOfItsPoints) {
+  const CameraModel large = camera(960, 540);
+  DepthImage picture{960, 540, {}};
+  std::vector<Vector3f> points;
+  for (int y = 0; y < 540; ++y) {
+    for (int x = 0; x < 960; ++x) {
+      const float z = 1.0f + 3e-4f * static_cast<float>(x) + (y > 200 ? 0.5f : 0.0f);
+      picture.z_m.push_back(z);
+      points.emplace_back((static_cast<float>(x) - 479.5f) / 500 * z,
+                          (static_cast<float>(y) - 269.5f) / 500 * z, z);
+    }
+  }
+  const SceneFrame a = scene_frame(picture, nullptr, large),
+                   b = scene_frame(points, nullptr, large);
+  ASSERT_EQ(a.depth_m.size(), 320u * 180);
+  for (std::size_t i = 0; i < a.depth_m.size(); ++i) ASSERT_NEAR(a.depth_m[i], b.depth_m[i], 1e-6f);
+}
+
 TEST(SceneFrame, MergesPointsWithoutMixingNearAndFar) {
   const std::vector<Vector3f> points = {{0, 0, 2}, {0, 0, 1.000f}, {0, 0, 1.004f}, {0, 0, 1.002f}};
   const SceneFrame frame = scene_frame(points, nullptr, camera(5, 3));
