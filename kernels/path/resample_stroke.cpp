@@ -9,8 +9,8 @@
 namespace glint {
 namespace {
 
-constexpr double k_nowhere = 2;            // beyond any segment
-constexpr double k_unit_tolerance = 1e-6;  // far more than rounding leaves of a unit quaternion
+constexpr double k_nowhere = 2;      // beyond any segment
+constexpr double k_rounding = 1e-6;  // far more than rounding leaves of a unit quaternion
 
 bool usable(double number) noexcept { return std::isfinite(number) && number > 0; }
 
@@ -33,8 +33,7 @@ Reason StrokeResampler::begin(const StrokeSettings& settings) noexcept {
 Reason StrokeResampler::add(const UncertainPose& sample_in) noexcept {
   const Pose& pose = sample_in.pose;
   if (!pose.translation.allFinite() || !pose.rotation.coeffs().allFinite() ||
-      !sample_in.covariance.allFinite() ||
-      std::abs(pose.rotation.squaredNorm() - 1) > k_unit_tolerance) {
+      !sample_in.covariance.allFinite() || std::abs(pose.rotation.squaredNorm() - 1) > k_rounding) {
     return Reason::out_of_range;
   }
   if (count_ > 0) {

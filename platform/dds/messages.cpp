@@ -8,9 +8,6 @@ namespace {
 
 constexpr std::int64_t k_second_ns = 1'000'000'000;
 
-// A string of a message is char*, though writing only reads it.
-char* borrowed(const char* text) { return const_cast<char*>(text); }
-
 }  // namespace
 
 // Hashes as published with ROS 2; TrackStatus' by the same rule, see README.md.

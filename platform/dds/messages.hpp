@@ -22,6 +22,9 @@ using TfMessage = tf2_msgs_msg_dds__TFMessage_;
 using DiagnosticsMessage = diagnostic_msgs_msg_dds__DiagnosticArray_;
 using StatusMessage = glint_msgs_msg_dds__TrackStatus_;
 
+// A string of a message is char*, though writing only reads it.
+[[nodiscard]] inline char* borrowed(const char* text) { return const_cast<char*>(text); }
+
 [[nodiscard]] TopicType pose_stamped_type();
 [[nodiscard]] TopicType pose_covariance_type();
 [[nodiscard]] TopicType tf_type();

@@ -17,8 +17,6 @@ constexpr std::uint8_t k_float32 = 7;  // sensor_msgs/PointField
 // Around a message's points: names, fields, lengths; far more than they take.
 constexpr std::size_t k_heading_bytes = 1024;
 
-char* borrowed(const char* text) { return const_cast<char*>(text); }
-
 template <class Sequence, class Item>
 void borrow(Sequence& sequence, std::vector<Item>& items) {
   sequence._length = sequence._maximum = static_cast<std::uint32_t>(items.size());

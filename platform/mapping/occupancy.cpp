@@ -10,7 +10,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_slice = 4096;
+constexpr int k_points_at_once = 4096;
 constexpr double k_resolution_min_m = 0.002, k_resolution_max_m = 1.0;
 
 octomap::point3d point_of(const Vector3& v) {
@@ -21,9 +21,9 @@ octomap::point3d point_of(const Vector3& v) {
 
 struct Occupancy::Tree {
   explicit Tree(double resolution) : octree(resolution) {
-    slice_memory.resize(PointCloud::bytes(k_slice) + Arena::k_alignment);
+    slice_memory.resize(PointCloud::bytes(k_points_at_once) + Arena::k_alignment);
     Arena arena(slice_memory);
-    (void)slice.prepare(k_slice, arena);
+    (void)slice.prepare(k_points_at_once, arena);
   }
   // Inner nodes follow their children in compact() only: once a picture, not once a voxel.
   void set(const octomap::OcTreeKey& key, bool occupied) {
@@ -72,7 +72,8 @@ void Occupancy::add_view(const DepthPicture& picture, const CameraModel& camera,
   for (int at = 0; at < pixels;) {
     int dropped = 0;
     t.slice.count = 0;
-    at = add_depth_points(picture, camera, T_world_camera, settings, at, k_slice, t.slice, dropped);
+    at = add_depth_points(picture, camera, T_world_camera, settings, at, k_points_at_once, t.slice,
+                          dropped);
     (void)leave_out_capsules(left_out, 0, t.slice);
     for (int i = 0; i < t.slice.count; ++i) {
       const Vector3 point(t.slice.x[i], t.slice.y[i], t.slice.z[i]);

@@ -10,21 +10,21 @@ namespace {
 constexpr int k_points_most = 1 << 22;
 constexpr int k_elements_most = 1 << 20;
 
-void check(bool right, const std::string& what) {
+void check_capture(bool right, const std::string& what) {
   if (!right) throw InputError("path: " + what);
 }
 
 }  // namespace
 
 PathCapture::PathCapture(const CaptureSettings& settings) : settings_(settings) {
-  check(resampler_.begin(settings.stroke) == Reason::none,
-        "stroke settings; expected numbers above 0, turns of at most pi");
-  check(settings.click_max.nanoseconds >= 0 && settings.click_reach_m >= 0,
-        "click settings; expected 0 or more");
-  check(settings.points_max >= 1 && settings.points_max <= k_points_most,
-        "points_max; expected 1 to " + std::to_string(k_points_most));
-  check(settings.elements_max >= 1 && settings.elements_max <= k_elements_most,
-        "elements_max; expected 1 to " + std::to_string(k_elements_most));
+  check_capture(resampler_.begin(settings.stroke) == Reason::none,
+                "stroke settings; expected numbers above 0, turns of at most pi");
+  check_capture(settings.click_max.nanoseconds >= 0 && settings.click_reach_m >= 0,
+                "click settings; expected 0 or more");
+  check_capture(settings.points_max >= 1 && settings.points_max <= k_points_most,
+                "points_max; expected 1 to " + std::to_string(k_points_most));
+  check_capture(settings.elements_max >= 1 && settings.elements_max <= k_elements_most,
+                "elements_max; expected 1 to " + std::to_string(k_elements_most));
   const auto elements = static_cast<std::size_t>(settings.elements_max);
   points_.reserve(static_cast<std::size_t>(settings.points_max));
   elements_.reserve(elements);

@@ -39,21 +39,22 @@ std::string pose_text(const Pose& pose) {
   return text + ']';
 }
 
-void check(bool right, const std::string& what) {
+void check_script(bool right, const std::string& what) {
   if (!right) throw InputError("urscript: " + what);
 }
 
 void check(const UrScriptSettings& settings) {
   const auto above_0 = [](double number) { return std::isfinite(number) && number > 0; };
-  check(above_0(settings.travel_m_s), "travel speed; expected a number above 0");
-  check(above_0(settings.stroke_m_s), "stroke speed; expected a number above 0");
-  check(above_0(settings.acceleration_m_s2), "acceleration; expected a number above 0");
-  check(std::isfinite(settings.blend_m) && settings.blend_m >= 0, "blend; expected 0 or more");
+  check_script(above_0(settings.travel_m_s), "travel speed; expected a number above 0");
+  check_script(above_0(settings.stroke_m_s), "stroke speed; expected a number above 0");
+  check_script(above_0(settings.acceleration_m_s2), "acceleration; expected a number above 0");
+  check_script(std::isfinite(settings.blend_m) && settings.blend_m >= 0,
+               "blend; expected 0 or more");
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   const auto word = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; };
-  check(!settings.name.empty() && letter(settings.name.front()) &&
-            std::all_of(settings.name.begin(), settings.name.end(), word),
-        "name \"" + settings.name + "\"; expected a letter, then letters, digits or _");
+  check_script(!settings.name.empty() && letter(settings.name.front()) &&
+                   std::all_of(settings.name.begin(), settings.name.end(), word),
+               "name \"" + settings.name + "\"; expected a letter, then letters, digits or _");
 }
 
 std::vector<Move> moves_of(const DrawnPath& path) {

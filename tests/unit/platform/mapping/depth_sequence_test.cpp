@@ -121,7 +121,7 @@ TEST(DepthSequence, ReadsWhatIsLeftOutAndRefusesAWrongLine) {
         {"0 0 0 0 0 0 1\n0 0 0 0 0 0 0", "line 2: no radius"},
         {"0 0 nan 0 0 0 1", "line 1: a number that is not finite"},
         {many, "line 65: one more"}}) {
-    const std::string complaint = complaint_of([&] { (void)read(lines); });
+    const std::string complaint = complaint_of([&, &text = lines] { (void)read(text); });
     EXPECT_NE(complaint.find(what), std::string::npos) << complaint;
   }
 }
