@@ -11,6 +11,7 @@ namespace glint {
 namespace {
 
 constexpr int k_points_at_once = 4096;
+constexpr double k_half_voxels = 32768;  // of the tree to each side, along an axis
 constexpr double k_resolution_min_m = 0.002, k_resolution_max_m = 1.0;
 
 octomap::point3d point_of(const Vector3& v) {
@@ -28,6 +29,12 @@ struct Occupancy::Tree {
   // Inner nodes follow their children in compact() only: once a picture, not once a voxel.
   void set(const octomap::OcTreeKey& key, bool occupied) {
     octree.setNodeValue(key, occupied ? octree.getProbHitLog() : octree.getProbMissLog(), true);
+  }
+  // Whether the tree has a voxel there. The library itself turns a place into a whole number before
+  // it looks, which no far place fits.
+  [[nodiscard]] bool reaches(const Vector3& place) const {
+    const double half_m = k_half_voxels * octree.getResolution();
+    return place.allFinite() && place.cwiseAbs().maxCoeff() < half_m;
   }
   void compact() {
     octree.updateInnerOccupancy();
@@ -78,7 +85,8 @@ void Occupancy::add_view(const DepthPicture& picture, const CameraModel& camera,
     for (int i = 0; i < t.slice.count; ++i) {
       const Vector3 point(t.slice.x[i], t.slice.y[i], t.slice.z[i]);
       octomap::OcTreeKey key;
-      if (!point.allFinite() || !t.octree.coordToKeyChecked(point_of(point), key)) {
+      if (!t.reaches(eye) || !t.reaches(point) ||
+          !t.octree.coordToKeyChecked(point_of(point), key)) {
         ++counts_.out_of_range;
         continue;
       }
@@ -105,7 +113,7 @@ void Occupancy::add_surface(const PointCloud& map) {
   for (int i = 0; i < map.count; ++i) {
     const Vector3 point(map.x[i], map.y[i], map.z[i]);
     octomap::OcTreeKey key;
-    if (!point.allFinite() || !t.octree.coordToKeyChecked(point_of(point), key)) {
+    if (!t.reaches(point) || !t.octree.coordToKeyChecked(point_of(point), key)) {
       ++counts_.out_of_range;
     } else if (full() && t.octree.search(key) == nullptr) {
       ++counts_.points_left_out;
@@ -117,6 +125,7 @@ void Occupancy::add_surface(const PointCloud& map) {
 }
 
 Occupied Occupancy::at(const Vector3& place) const {
+  if (!tree_->reaches(place)) return Occupied::unknown;
   const octomap::OcTreeNode* node = tree_->octree.search(point_of(place));
   if (node == nullptr) return Occupied::unknown;
   return tree_->octree.isNodeOccupied(node) ? Occupied::yes : Occupied::no;

@@ -18,7 +18,7 @@ struct ReportPaths {
   std::string footprint;
 };
 
-struct InputFile {
+struct ReportInput {
   std::string path, what, sha256;
 };
 
@@ -28,7 +28,7 @@ struct ReportSources {
   std::optional<TraceFile> trace;
   RunObservations run;  // of the trace; empty without one
   std::string run_folder;
-  std::vector<InputFile> inputs;
+  std::vector<ReportInput> inputs;
 
   // The largest frame to CAN that the run's summary saw, in microseconds; negative: none.
   [[nodiscard]] double observed_frame_to_can_us() const;

@@ -237,7 +237,7 @@ Section spoiled_section(const ReportSources& sources) {
 Section inputs_section(const ReportSources& sources) {
   Section section{"inputs", "The files behind this report", {}};
   Table table{"", {{"File"}, {"What"}, {"SHA-256"}}, {}};
-  for (const InputFile& input : sources.inputs) {
+  for (const ReportInput& input : sources.inputs) {
     table.rows.push_back({{"`" + input.path + "`"}, {input.what}, {"`" + input.sha256 + "`"}});
   }
   section.blocks.push_back(table);
