@@ -43,8 +43,8 @@ struct ReachSettings {
   // start_max: one that has moved on for longer is seen to move.
   double acceleration_max_m_s2 = 30.0;
   Duration start_max = milliseconds(60);
-  // A speed this sure is one that was seen; half of what a hand's is before it was. A tool found
-  // once may have been thrown: it is looked for everywhere until it is found again.
+  // A speed this sure was seen; before that a hand's is taken to be twice as unsure. A tool found
+  // once may go faster than any hand: it is looked for everywhere until it is found again.
   double known_speed_m_s = 0.25;
   // However unsure a track is, a hand is no faster and no further than this.
   double margin_m = 0.015;

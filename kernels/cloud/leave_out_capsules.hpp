@@ -4,9 +4,7 @@
 // What:     points at most radius_m from the line from `from` to `to` go, the others keep their
 //           order. A sphere has both ends in one place.
 // Cost:     a point's distance to each line.
-// Worst:    all points times all capsules. A capsule that is not finite, or of no radius, takes
-// none
-//           off.
+// Worst:    all points times all capsules. One that is not finite, or of no radius, takes none off.
 // Accuracy: in double.
 // Source:   Ericson 2005, "Real-Time Collision Detection", 5.1.2 (closest point on a segment).
 #pragma once

@@ -4,6 +4,7 @@
 #include "kernels/pose/lever_arm.hpp"
 
 namespace glint {
+
 void add_prior(const PosePrior& prior, const Pose& T_camera_tool, const Vector3& mean_m,
                NormalEquations& normal) noexcept {
   const Vector3 lever = T_camera_tool.rotation * (prior.reference_m - mean_m);

@@ -47,21 +47,21 @@ DepthSample sample_of(const SeenMarker& seen, const Tool& tool, Brightness brigh
 }
 
 template <class Call>
-void for_each(std::vector<DepthFrame>& frames, const Call& call) {
-  for (DepthFrame& frame : frames)
+void for_each(std::vector<RangedFrame>& frames, const Call& call) {
+  for (RangedFrame& frame : frames)
     for (std::size_t i = 0; i < frame.samples.size(); ++i) call(frame, i);
 }
 
-Vector3 residual_of(const DepthFrame& frame, std::size_t i, const Vector3& bias) {
+Vector3 residual_of(const RangedFrame& frame, std::size_t i, const Vector3& bias) {
   return depth_residual<double>(frame.samples[i], frame.T_camera_tool.rotation,
                                 frame.T_camera_tool.translation, bias);
 }
 
 // The declared sigmas, scaled by what the residuals say of all pixels and of all ranges.
-void take_noise(std::vector<DepthFrame>& frames, const DepthFit& fit) {
+void take_noise(std::vector<RangedFrame>& frames, const DepthFit& fit) {
   const double pixel = std::sqrt(std::max(fit.pixel_variance, 1e-6));
   const double range = std::sqrt(std::max(fit.range_variance, 1e-6));
-  for_each(frames, [&](DepthFrame& frame, std::size_t i) {
+  for_each(frames, [&](RangedFrame& frame, std::size_t i) {
     frame.samples[i].sigma_x_px *= pixel;
     frame.samples[i].sigma_y_px *= pixel;
     frame.samples[i].sigma_range_m =
@@ -69,8 +69,8 @@ void take_noise(std::vector<DepthFrame>& frames, const DepthFit& fit) {
   });
 }
 
-void leave_out(std::vector<DepthFrame>& frames, const Vector3& bias, double sigmas) {
-  for_each(frames, [&](DepthFrame& frame, std::size_t i) {
+void leave_out(std::vector<RangedFrame>& frames, const Vector3& bias, double sigmas) {
+  for_each(frames, [&](RangedFrame& frame, std::size_t i) {
     frame.kept[i] = residual_of(frame, i, bias).cwiseAbs().maxCoeff() <= sigmas;
   });
 }
@@ -190,9 +190,9 @@ DepthCalibration calibrate_depth(std::span<const Sighting> sightings, const Tool
   result.range_dim_correlation = correlation(seen.ranges_m, seen.dimness);
   check_span(result, settings, what);
 
-  std::vector<DepthFrame> frames;
+  std::vector<RangedFrame> frames;
   for (const Sighting& sighting : sightings) {
-    DepthFrame frame{sighting.pose.pose, {}, {}};
+    RangedFrame frame{sighting.pose.pose, {}, {}};
     for (const SeenMarker& marker : sighting.markers)
       frame.samples.push_back(sample_of(marker, tool, settings.brightness));
     frame.kept.assign(frame.samples.size(), true);
@@ -208,7 +208,7 @@ DepthCalibration calibrate_depth(std::span<const Sighting> sightings, const Tool
   }
 
   double before = 0, after = 0, pixels = 0, ranges = 0;
-  for_each(frames, [&](DepthFrame& frame, std::size_t i) {
+  for_each(frames, [&](RangedFrame& frame, std::size_t i) {
     const DepthSample& sample = frame.samples[i];
     const double miss = residual_of(frame, i, fit.bias)[2] * sample.sigma_range_m;
     const double raw = residual_of(frame, i, Vector3::Zero())[2] * sample.sigma_range_m;

@@ -39,7 +39,7 @@ struct FrameRows {
   Eigen::VectorXd residuals;
 };
 
-FrameRows rows_of(const DepthFrame& frame, const Vector3& bias) {
+FrameRows rows_of(const RangedFrame& frame, const Vector3& bias) {
   const PoseManifold manifold;
   const PoseBlock pose = block_of(frame.T_camera_tool);
   Eigen::Matrix<double, 7, 6, Eigen::RowMajor> tangent;
@@ -70,11 +70,11 @@ FrameRows rows_of(const DepthFrame& frame, const Vector3& bias) {
 // The poses eliminated (Schur complement), frame by frame; the noise of pixels and ranges told
 // apart by how much of each residual its own frame's pose takes up.
 // Source: Foerstner and Wrobel 2016, Photogrammetric Computer Vision, eq. (4.99), (4.60).
-void judge(const std::vector<DepthFrame>& frames, Brightness brightness, DepthFit& fit) {
+void judge(const std::vector<RangedFrame>& frames, Brightness brightness, DepthFit& fit) {
   Matrix3 information = Matrix3::Zero();
   std::vector<Vector3> scores;
   double squares[2] = {0, 0}, redundancy[2] = {0, 0};  // of pixels, of ranges
-  for (const DepthFrame& frame : frames) {
+  for (const RangedFrame& frame : frames) {
     const FrameRows rows = rows_of(frame, fit.bias);
     if (rows.residuals.size() < 9) continue;  // fewer than three markers
     const Eigen::LDLT<Matrix6> of_pose(rows.by_pose.transpose() * rows.by_pose);
@@ -108,12 +108,12 @@ void judge(const std::vector<DepthFrame>& frames, Brightness brightness, DepthFi
 
 }  // namespace
 
-DepthFit refined_depth(std::vector<DepthFrame>& frames, const Vector3& start, Brightness brightness,
-                       DepthLoss loss) {
+DepthFit refined_depth(std::vector<RangedFrame>& frames, const Vector3& start,
+                       Brightness brightness, DepthLoss loss) {
   DepthFit fit;
   Vector3 bias = start;
   std::vector<PoseBlock> poses;
-  for (const DepthFrame& frame : frames) poses.push_back(block_of(frame.T_camera_tool));
+  for (const RangedFrame& frame : frames) poses.push_back(block_of(frame.T_camera_tool));
 
   PoseManifold moved;  // one for all
   ceres::SubsetManifold without_dim(3, {2});

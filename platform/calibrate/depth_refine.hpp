@@ -10,7 +10,7 @@
 namespace glint {
 
 // One frame's markers. Those not kept have no say.
-struct DepthFrame {
+struct RangedFrame {
   Pose T_camera_tool;
   std::vector<DepthSample> samples;
   std::vector<bool> kept;
@@ -28,7 +28,7 @@ struct DepthFit {
 };
 
 // The frames' poses are the start and become the result's.
-[[nodiscard]] DepthFit refined_depth(std::vector<DepthFrame>& frames, const Vector3& start,
+[[nodiscard]] DepthFit refined_depth(std::vector<RangedFrame>& frames, const Vector3& start,
                                      Brightness brightness, DepthLoss loss);
 
 }  // namespace glint

@@ -26,9 +26,7 @@ ToolsPresent bit_of(const std::string& name, const Cell& cell, const std::string
       return static_cast<ToolsPresent>(1u << t);
   }
   throw InputError(place + ": no tool is named \"" + name +
-                   "\"; expected the name of a "
-                   "listed tool: " +
-                   names_of(cell.tools));
+                   "\"; expected the name of a listed tool: " + names_of(cell.tools));
 }
 
 }  // namespace

@@ -63,9 +63,9 @@ double median_of(const KernelObservations& kernel) {
   return quantile(costs, 0.5);
 }
 
-std::vector<Interference> interference_of(MeasureRequest request, const Observations& alone,
-                                          const MeasureCommand& command) {
-  std::vector<Interference> factors;
+std::vector<InterferenceFactor> interference_of(MeasureRequest request, const Observations& alone,
+                                                const MeasureCommand& command) {
+  std::vector<InterferenceFactor> factors;
   for (const std::string& enemy : command.enemies) {
     if (enemy == "none") continue;
     request.enemy = enemy;
@@ -109,7 +109,7 @@ void print(const Measurement& measurement) {
                   static_cast<long long>(kernel.observed[j]), kernel.cost[j]);
     }
   }
-  for (const Interference& one : measurement.interference) {
+  for (const InterferenceFactor& one : measurement.interference) {
     std::printf("beside %-10s %-15s x %.2f\n", one.enemy.c_str(), one.kernel.c_str(), one.factor);
   }
 }

@@ -22,7 +22,7 @@ int write_report(const ReportArguments& arguments) {
   const std::filesystem::path folder(arguments.out);
   write_text((folder / "budget.html").string(), html_of(document));
   write_text((folder / "budget.md").string(), markdown_of(document));
-  for (const Figure& figure : figures_of(document)) {
+  for (const Illustration& figure : figures_of(document)) {
     write_text((folder / "figures" / (figure.name + ".svg")).string(), standalone_svg(figure));
   }
   std::printf("%s: %s\n", name_of(document.verdict).c_str(), document.verdict_text.c_str());

@@ -64,7 +64,7 @@ nlohmann::ordered_json measurement_json(const Measurement& measurement) {
   nlohmann::ordered_json kernels = nlohmann::ordered_json::array();
   for (const MeasuredCosts& kernel : measurement.kernels) kernels.push_back(kernel_json(kernel));
   nlohmann::ordered_json interference = nlohmann::ordered_json::array();
-  for (const Interference& one : measurement.interference) {
+  for (const InterferenceFactor& one : measurement.interference) {
     interference.push_back({{"enemy", one.enemy}, {"kernel", one.kernel}, {"factor", one.factor}});
   }
   return {{"board", measurement.board},

@@ -8,7 +8,7 @@
 namespace glint {
 
 // How often a kernel's median grew beside an enemy.
-struct Interference {
+struct InterferenceFactor {
   std::string enemy, kernel;
   double factor = 1;
 };
@@ -18,7 +18,7 @@ struct Measurement {
   std::string board;  // whose costs are judged; empty: they are fitted now
   bool count_instructions = true;
   std::vector<MeasuredCosts> kernels;
-  std::vector<Interference> interference;
+  std::vector<InterferenceFactor> interference;
 
   [[nodiscard]] const char* unit() const { return count_instructions ? "instructions" : "ns"; }
 };

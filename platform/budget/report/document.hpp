@@ -18,7 +18,7 @@ struct TableCell {
   Tone tone = Tone::plain;
 };
 
-struct Column {
+struct TableColumn {
   std::string title;
   NumberKind kind = NumberKind::none;
   bool is_number = false;
@@ -26,7 +26,7 @@ struct Column {
 
 struct Table {
   std::string caption;
-  std::vector<Column> columns;
+  std::vector<TableColumn> columns;
   std::vector<std::vector<TableCell>> rows;
 };
 
@@ -39,17 +39,17 @@ struct Command {
   std::string text;  // one that a reader can paste
 };
 
-struct Figure {
+struct Illustration {
   std::string name;     // of its file beside the Markdown
   std::string caption;  // also what a reader hears who does not see it
   std::string svg;
 };
 
 struct FigureGrid {
-  std::vector<Figure> figures;  // small ones, side by side
+  std::vector<Illustration> figures;  // small ones, side by side
 };
 
-using Block = std::variant<Sentence, Table, Command, Figure, FigureGrid>;
+using Block = std::variant<Sentence, Table, Command, Illustration, FigureGrid>;
 
 struct Section {
   std::string id, title;
@@ -85,9 +85,9 @@ struct Document {
 [[nodiscard]] std::string markdown_of(const Document& document);
 
 // All figures, in order.
-[[nodiscard]] std::vector<Figure> figures_of(const Document& document);
+[[nodiscard]] std::vector<Illustration> figures_of(const Document& document);
 
 // A figure as a file of its own, with the colours that the page would give it.
-[[nodiscard]] std::string standalone_svg(const Figure& figure);
+[[nodiscard]] std::string standalone_svg(const Illustration& figure);
 
 }  // namespace glint

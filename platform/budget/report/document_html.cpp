@@ -48,7 +48,7 @@ std::string rich(std::string_view text) {
   return code ? html + "</code>" : html;
 }
 
-std::string figure_html(const Figure& figure) {
+std::string figure_html(const Illustration& figure) {
   return "<figure id=\"figure-" + figure.name + "\">" + figure.svg + "<figcaption>" +
          rich(figure.caption) + "</figcaption></figure>\n";
 }
@@ -60,11 +60,11 @@ struct BlockHtml {
   std::string operator()(const Command& command) const {
     return "<pre><code>" + escaped(command.text) + "</code></pre>\n";
   }
-  std::string operator()(const Figure& figure) const { return figure_html(figure); }
+  std::string operator()(const Illustration& figure) const { return figure_html(figure); }
   std::string operator()(const FigureGrid& grid) const {
     std::string html = "<div class=\"grid\">\n";
     // What a small figure's caption says stands in its drawing; a pointer or a voice reads it out.
-    for (const Figure& figure : grid.figures) {
+    for (const Illustration& figure : grid.figures) {
       html += "<figure id=\"figure-" + figure.name + "\">" + figure.svg + "</figure>\n";
     }
     return html + "</div>\n";
@@ -73,7 +73,7 @@ struct BlockHtml {
     std::string html;
     if (!table.caption.empty()) html += "<p class=\"caption\">" + rich(table.caption) + "</p>\n";
     html += "<div class=\"scroll\"><table>\n<thead><tr>";
-    for (const Column& column : table.columns) {
+    for (const TableColumn& column : table.columns) {
       html += "<th scope=\"col\"" +
               classes(column.is_number ? "number" : "", class_of(column.kind)) + '>' +
               std::string(mark_of(column.kind)) + rich(column.title) + "</th>";
@@ -142,7 +142,7 @@ std::string html_of(const Document& document) {
   return html + "</main></div></body></html>\n";
 }
 
-std::string standalone_svg(const Figure& figure) {
+std::string standalone_svg(const Illustration& figure) {
   std::string svg = figure.svg;
   const std::size_t inside = svg.find('>') + 1;
   return svg.insert(inside, "<style>" + std::string(k_figure_colours) +

@@ -16,7 +16,7 @@ std::string emphasised(const std::string& text, Tone tone) {
   return tone == Tone::bad && !text.empty() ? "**" + text + "**" : text;
 }
 
-std::string figure_markdown(const Figure& figure) {
+std::string figure_markdown(const Illustration& figure) {
   return "![" + figure.caption + "](figures/" + figure.name + ".svg)\n\n";
 }
 
@@ -27,19 +27,19 @@ struct BlockMarkdown {
   std::string operator()(const Command& command) const {
     return "```sh\n" + command.text + "\n```\n\n";
   }
-  std::string operator()(const Figure& figure) const {
+  std::string operator()(const Illustration& figure) const {
     return figure_markdown(figure) + figure.caption + "\n\n";
   }
   std::string operator()(const FigureGrid& grid) const {
     std::string text;
-    for (const Figure& figure : grid.figures) text += figure_markdown(figure);
+    for (const Illustration& figure : grid.figures) text += figure_markdown(figure);
     return text;
   }
   std::string operator()(const Table& table) const {
     std::string text = table.caption.empty() ? "" : table.caption + "\n\n";
     std::string rule = "|";
     text += '|';
-    for (const Column& column : table.columns) {
+    for (const TableColumn& column : table.columns) {
       const std::string kind =
           column.kind == NumberKind::none ? "" : " (" + name_of(column.kind) + ")";
       text += ' ' + in_table(column.title) + kind + " |";
@@ -88,11 +88,11 @@ std::string markdown_of(const Document& document) {
   return text;
 }
 
-std::vector<Figure> figures_of(const Document& document) {
-  std::vector<Figure> figures;
+std::vector<Illustration> figures_of(const Document& document) {
+  std::vector<Illustration> figures;
   for (const Section& section : document.sections) {
     for (const Block& block : section.blocks) {
-      if (const auto* figure = std::get_if<Figure>(&block)) figures.push_back(*figure);
+      if (const auto* figure = std::get_if<Illustration>(&block)) figures.push_back(*figure);
       if (const auto* grid = std::get_if<FigureGrid>(&block)) {
         figures.insert(figures.end(), grid->figures.begin(), grid->figures.end());
       }

@@ -13,8 +13,8 @@ std::string micro(double us) { return number_text(us, us < 100 ? 2 : 1) + " \u00
 
 }  // namespace
 
-Figure stages_figure(const std::string& name, const std::string& caption,
-                     const std::vector<StageBar>& stages, double deadline_us) {
+Illustration stages_figure(const std::string& name, const std::string& caption,
+                           const std::vector<StageBar>& stages, double deadline_us) {
   constexpr double width = 1080, left = 190, right = 130, row = 22;
   double total = 0;
   for (const StageBar& stage : stages) total += stage.us;
@@ -43,8 +43,8 @@ Figure stages_figure(const std::string& name, const std::string& caption,
   return {name, caption, drawing.finished()};
 }
 
-Figure slack_figure(const std::string& name, const std::string& caption,
-                    const std::vector<SlackBar>& bars) {
+Illustration slack_figure(const std::string& name, const std::string& caption,
+                          const std::vector<SlackBar>& bars) {
   constexpr double width = 1080, left = 250, right = 90, row = 20;
   double least = 0;
   for (const SlackBar& bar : bars) least = std::min(least, bar.percent);
@@ -74,7 +74,7 @@ Figure slack_figure(const std::string& name, const std::string& caption,
   return {name, caption, drawing.finished()};
 }
 
-Figure histogram_figure(const NodeTimes& node) {
+Illustration histogram_figure(const NodeTimes& node) {
   constexpr double width = 340, height = 150, left = 10, right = 12, top = 40, bottom = 32;
   constexpr int bins = 64;
   const double most = *std::max_element(node.us.begin(), node.us.end());
@@ -125,8 +125,8 @@ Figure histogram_figure(const NodeTimes& node) {
   return {"histogram-" + file, caption, drawing.finished()};
 }
 
-Figure quantile_figure(const std::string& name, const std::string& title,
-                       const ExtremeEstimate& estimate) {
+Illustration quantile_figure(const std::string& name, const std::string& title,
+                             const ExtremeEstimate& estimate) {
   constexpr double width = 340, height = 280, left = 62, top = 30, size = 200;
   const std::vector<double>& judged = estimate.judged_values;
   const auto n = static_cast<double>(judged.size());

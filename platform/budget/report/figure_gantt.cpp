@@ -77,8 +77,8 @@ void draw_strip(Drawing& drawing, const GanttStrip& strip, double top, double ra
 
 }  // namespace
 
-Figure gantt_figure(const std::string& name, const std::string& caption,
-                    const std::vector<GanttStrip>& strips, double deadline_us) {
+Illustration gantt_figure(const std::string& name, const std::string& caption,
+                          const std::vector<GanttStrip>& strips, double deadline_us) {
   std::map<std::string, int> shades;
   double height = 6, least = 0, most = 0;
   for (const GanttStrip& strip : strips) {

@@ -28,8 +28,8 @@ struct GanttStrip {
 
 // All strips above one axis, unless one is so long that the others would vanish: each then has its
 // own, and the caption says so. A deadline of 0 is not drawn.
-[[nodiscard]] Figure gantt_figure(const std::string& name, const std::string& caption,
-                                  const std::vector<GanttStrip>& strips, double deadline_us);
+[[nodiscard]] Illustration gantt_figure(const std::string& name, const std::string& caption,
+                                        const std::vector<GanttStrip>& strips, double deadline_us);
 
 struct StageBar {
   std::string name;
@@ -38,22 +38,22 @@ struct StageBar {
 };
 
 // A chain's stages one after the other, to the deadline.
-[[nodiscard]] Figure stages_figure(const std::string& name, const std::string& caption,
-                                   const std::vector<StageBar>& stages, double deadline_us);
+[[nodiscard]] Illustration stages_figure(const std::string& name, const std::string& caption,
+                                         const std::vector<StageBar>& stages, double deadline_us);
 
 struct SlackBar {
   std::string name;
   double percent = 0;  // negative: overshoot
 };
-[[nodiscard]] Figure slack_figure(const std::string& name, const std::string& caption,
-                                  const std::vector<SlackBar>& bars);
+[[nodiscard]] Illustration slack_figure(const std::string& name, const std::string& caption,
+                                        const std::vector<SlackBar>& bars);
 
 // How often a node took how long, with its bound; counts on a logarithmic scale, since the rare
 // ones are the ones that matter.
-[[nodiscard]] Figure histogram_figure(const NodeTimes& node);
+[[nodiscard]] Illustration histogram_figure(const NodeTimes& node);
 
 // The judged half's values over what the fit says they should be.
-[[nodiscard]] Figure quantile_figure(const std::string& name, const std::string& title,
-                                     const ExtremeEstimate& estimate);
+[[nodiscard]] Illustration quantile_figure(const std::string& name, const std::string& title,
+                                           const ExtremeEstimate& estimate);
 
 }  // namespace glint

@@ -89,6 +89,22 @@ TEST_F(PredictTracks, ReachesFurtherWhereTheLastMeasurementWasASurprise) {
   EXPECT_NEAR(predict().reach_m, 2 * before, 1e-3);
 }
 
+TEST_F(PredictTracks, LooksNowhereElseOnlyForAToolWhoseSpeedItKnows) {
+  sure_within(0.001, 1e-3);
+  const auto fast_within = [&](double x, double y, double z) {
+    track().motion.covariance.diagonal().segment<3>(k_velocity) = Vector3(x, y, z).cwiseAbs2();
+  };
+  fast_within(0.1, 0.1, 0.1);
+  EXPECT_TRUE(predict().only_near);
+  for (int axis = 0; axis < 3; ++axis) {
+    Vector3 unsure = Vector3::Constant(0.1);
+    unsure[axis] = 0.5;  // found once: as unsure as a hand's speed is
+    fast_within(unsure.x(), unsure.y(), unsure.z());
+    EXPECT_FALSE(predict().only_near) << axis;
+    EXPECT_TRUE(predict().follows_motion);
+  }
+}
+
 TEST_F(PredictTracks, HoldsTheToolBeyondTheHorizonAndReachesWhereItMayBe) {
   sure_within(1e-4, 1e-3);
   track().motion.velocity_m_s = {0.5, 0, 0};

@@ -341,6 +341,31 @@ TEST_F(RefinePose, BelievesThreeMarkersOnlyWhereTheMotionCanHaveBroughtTheTool) 
   EXPECT_EQ(run_one().reason, Reason::none);
 }
 
+TEST_F(RefinePose, IsTheLessSureOfThreeMarkersTheLessTheyWereExpected) {
+  Random random(17);
+  Tool tool = test::five_marker_pen();
+  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
+  add_tool(0, tool, truth, 0, random);
+  Prediction& prediction = world_->predictions.tools[0];
+  const auto sigma_aside = [&](double sigmas) {
+    foretell(tool, truth, prediction);
+    const double sigma_m = std::sqrt(prediction.covariance(0, 0));
+    foretell(tool, {truth.rotation, truth.translation + Vector3(sigmas * sigma_m, 0, 0)},
+             prediction);
+    return std::sqrt(run_one().covariance(0, 0));
+  };
+  const double all = sigma_aside(0);
+  EXPECT_EQ(sigma_aside(4), all) << "five that agree are no chance";
+  forget(0, 4);
+  forget(0, 3);
+  const double expected = sigma_aside(0);
+  EXPECT_EQ(sigma_aside(1), expected) << "no more than noise";
+  const double unexpected = sigma_aside(4);
+  EXPECT_EQ(run_one().reason, Reason::none);
+  EXPECT_GT(unexpected, 1.3 * expected);
+  EXPECT_LE(unexpected, std::sqrt(16.0 / 6) * (1 + 1e-9) * expected);
+}
+
 TEST_F(RefinePose, ForgivesOnlyWhatTheMotionExplains) {
   Random random(16);
   Tool tool = test::five_marker_pen();

@@ -54,20 +54,9 @@ class Peer {
   Peer(const Peer&) = delete;
   Peer& operator=(const Peer&) = delete;
 
-  // Asks for XCDR1, as rmw_cyclonedds does.
   dds_entity_t reader(const TopicType& type, const std::string& topic, Reliability reliability,
                       Durability durability, int depth) {
-    dds_qos_t* qos = dds_create_qos();
-    dds_qset_reliability(qos,
-                         reliability == Reliability::reliable ? DDS_RELIABILITY_RELIABLE
-                                                              : DDS_RELIABILITY_BEST_EFFORT,
-                         DDS_MSECS(100));
-    dds_qset_durability(qos, durability == Durability::transient_local
-                                 ? DDS_DURABILITY_TRANSIENT_LOCAL
-                                 : DDS_DURABILITY_VOLATILE);
-    dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, depth);
-    const dds_data_representation_id_t xcdr1 = DDS_DATA_REPRESENTATION_XCDR1;
-    dds_qset_data_representation(qos, 1, &xcdr1);
+    dds_qos_t* const qos = quality(reliability, durability, depth);
     const dds_entity_t entity =
         dds_create_topic(participant_, type.descriptor, topic.c_str(), nullptr, nullptr);
     const dds_entity_t reader = dds_create_reader(participant_, entity, qos, nullptr);
@@ -79,17 +68,7 @@ class Peer {
 
   dds_entity_t writer(const TopicType& type, const std::string& topic, Reliability reliability,
                       Durability durability, int depth) {
-    dds_qos_t* qos = dds_create_qos();
-    dds_qset_reliability(qos,
-                         reliability == Reliability::reliable ? DDS_RELIABILITY_RELIABLE
-                                                              : DDS_RELIABILITY_BEST_EFFORT,
-                         DDS_MSECS(100));
-    dds_qset_durability(qos, durability == Durability::transient_local
-                                 ? DDS_DURABILITY_TRANSIENT_LOCAL
-                                 : DDS_DURABILITY_VOLATILE);
-    dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, depth);
-    const dds_data_representation_id_t xcdr1 = DDS_DATA_REPRESENTATION_XCDR1;
-    dds_qset_data_representation(qos, 1, &xcdr1);
+    dds_qos_t* const qos = quality(reliability, durability, depth);
     const dds_entity_t entity =
         dds_create_topic(participant_, type.descriptor, topic.c_str(), nullptr, nullptr);
     const dds_entity_t writer = dds_create_writer(participant_, entity, qos, nullptr);
@@ -113,6 +92,22 @@ class Peer {
   [[nodiscard]] dds_entity_t participant() const { return participant_; }
 
  private:
+  // XCDR1, as rmw_cyclonedds has it. The caller deletes it.
+  static dds_qos_t* quality(Reliability reliability, Durability durability, int depth) {
+    dds_qos_t* qos = dds_create_qos();
+    dds_qset_reliability(qos,
+                         reliability == Reliability::reliable ? DDS_RELIABILITY_RELIABLE
+                                                              : DDS_RELIABILITY_BEST_EFFORT,
+                         DDS_MSECS(100));
+    dds_qset_durability(qos, durability == Durability::transient_local
+                                 ? DDS_DURABILITY_TRANSIENT_LOCAL
+                                 : DDS_DURABILITY_VOLATILE);
+    dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, depth);
+    const dds_data_representation_id_t xcdr1 = DDS_DATA_REPRESENTATION_XCDR1;
+    dds_qset_data_representation(qos, 1, &xcdr1);
+    return qos;
+  }
+
   DdsSettings settings_;
   std::vector<dds_entity_t> readers_;
   int status_readers_ = 0;

@@ -169,7 +169,7 @@ TEST_F(BudgetReport, SaysTheSameInMarkdownAsOnThePage) {
     EXPECT_NE(html.find(escaped(part.title)), std::string::npos) << part.title;
     EXPECT_NE(markdown.find(part.title), std::string::npos) << part.title;
   }
-  for (const Figure& figure : figures_of(document)) {
+  for (const Illustration& figure : figures_of(document)) {
     EXPECT_NE(html.find("figure-" + figure.name), std::string::npos) << figure.name;
     EXPECT_NE(markdown.find("figures/" + figure.name + ".svg"), std::string::npos) << figure.name;
   }
