@@ -98,7 +98,7 @@ void FollowMotion::operator()(
         anchored.head.valid ? ReferenceFrame::world : ReferenceFrame::camera;
     if (tool.base != base) tool.motion.forget();
     tool.base = base;
-    const UncertainPose seen = middle_of(found, set.items[t], verdict.stamp.mid_exposure);
+    const UncertainPose seen = told_middle_of(found, set.items[t], verdict.stamp.mid_exposure);
     const MotionUpdate done = tool.motion.update(in_base(seen, anchored), settings, sums_[place]);
     tool.reason = done.reason;
     if (done.reason != Reason::none) continue;

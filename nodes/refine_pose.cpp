@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include "kernels/pose/agreed_pose.hpp"
+#include "kernels/pose/blob_size.hpp"
 #include "kernels/pose/chi_square_limit.hpp"
 
 namespace glint {
@@ -13,24 +15,60 @@ namespace {
 struct SeenMarkers {
   std::array<WeightedMarker, k_markers_per_tool_max> items;
   std::array<int, k_markers_per_tool_max> of_tool{};
+  std::array<bool, k_markers_per_tool_max> whole{};  // neither merged nor partly hidden
   std::size_t count = 0;
   Reason reason = Reason::none;
+
+  [[nodiscard]] std::size_t whole_count() const {
+    return static_cast<std::size_t>(std::count(whole.begin(), whole.begin() + count, true));
+  }
+  [[nodiscard]] Vector3 mean_m() const {  // tool frame
+    Vector3 sum = Vector3::Zero();
+    for (std::size_t i = 0; i < count; ++i) sum += items[i].model_m;
+    return sum / static_cast<double>(count);
+  }
 };
+
+SeenMarkers without(const SeenMarkers& seen, int left_out) {
+  SeenMarkers kept = seen;
+  if (left_out < 0) return kept;
+  const auto first = static_cast<std::size_t>(left_out);
+  --kept.count;
+  for (std::size_t i = first; i < kept.count; ++i) {
+    kept.items[i] = seen.items[i + 1];
+    kept.of_tool[i] = seen.of_tool[i + 1];
+    kept.whole[i] = seen.whole[i + 1];
+  }
+  return kept;
+}
 
 SeenMarkers weigh(const Tool& tool, int marker_count, const Markers& markers,
                   const Labeling& labeling, const MarkerNoise& noise) {
+  std::array<MarkerSight, k_markers_per_tool_max> sights;
+  std::array<double, k_markers_per_tool_max> strips{};
+  CommonStrip common;
   SeenMarkers out;
   for (int i = 0; i < marker_count; ++i) {
     const auto at = static_cast<std::size_t>(i);
     if (labeling.marker[at] < 0) continue;
     const Marker& marker = markers.items[static_cast<std::size_t>(labeling.marker[at])];
-    const double range_m = marker.surface_range_m + tool.centre_offset_m();
-    const MarkerSight sight = sight_of(marker, range_m, noise);
-    const Result<WeightedMarker> weighed =
-        weigh_marker(tool.markers_m[at], sight.rays, range_m, sight.variance);
-    if (!weighed) out.reason = weighed.reason;
-    out.items[out.count] = weighed.value;
+    WeightedMarker& seen = out.items[out.count];
+    seen.model_m = tool.markers_m[at];
+    seen.range_m = marker.surface_range_m + tool.centre_offset_m();
+    sights[out.count] = sight_of(marker, seen.range_m, noise);
+    strips[out.count] = strip_px(marker, sights[out.count].rays, tool, seen.range_m);
+    common.add(strips[out.count]);
+    out.whole[out.count] = (marker.flags & k_marker_uneven) == 0;
     out.of_tool[out.count++] = i;
+  }
+  for (std::size_t i = 0; i < out.count; ++i) {
+    const double own = common.beyond(strips[i]);
+    out.whole[i] = out.whole[i] && !is_merged(own) && !is_partly_hidden(own);
+    widen(sights[i].variance, own);
+    const Result<WeightedMarker> weighed = weigh_marker(out.items[i].model_m, sights[i].rays,
+                                                        out.items[i].range_m, sights[i].variance);
+    if (!weighed) out.reason = weighed.reason;
+    out.items[i] = weighed.value;
   }
   return out;
 }
@@ -70,29 +108,43 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
                          pose.chi_square <= k_noise_stretch_most * pose.degrees_of_freedom;
   out.reason = stretched ? Reason::none : pose.reason;
   if (out.reason != Reason::none) return;
-  Matrix6 covariance = pose.covariance;
-  if (stretched) covariance *= pose.chi_square / pose.degrees_of_freedom;
-  const bool weak = stretched || pose.left_out >= 0 || seen.count <= k_agree_by_chance_most;
+  const SeenMarkers kept = without(seen, pose.left_out);
+  // Three markers may tell little of a turn, and their likeliest pose too much: agreed_pose.hpp.
+  if (kept.whole_count() <= k_agree_by_chance_most && prediction.follows_motion) {
+    const AgreedPose agreed =
+        agreed_pose({kept.items.data(), kept.count}, kept.mean_m(), expected, within.steps_max);
+    ++counts_[2];
+    counts_[3] += agreed.steps;
+    counts_[4] += agreed.steps * static_cast<int>(kept.count);
+    out.tells_near = agreed.reason == Reason::none;
+    out.near_T_camera_tool = agreed.T_camera_tool;
+    out.near_covariance = agreed.covariance;
+  }
+  double growth = stretched ? pose.chi_square / pose.degrees_of_freedom : 1.0;
+  const bool weak = stretched || pose.left_out >= 0 || kept.whole_count() <= k_agree_by_chance_most;
   if (weak && prediction.follows_motion) {
-    const double surprise = surprise_of(expected, pose.T_camera_tool, covariance, tool.tip_m);
+    const double surprise =
+        out.tells_near
+            ? surprise_of(expected, out.near_T_camera_tool, growth * out.near_covariance,
+                          expected.reference_m)
+            : surprise_of(expected, pose.T_camera_tool, growth * pose.covariance, tool.tip_m);
     if (surprise > k_surprise_most) {
       out.reason = Reason::bad_fit;
       return;
     }
-    covariance *= std::max(1.0, surprise / k_surprise_usual);
+    growth *= std::max(1.0, surprise / k_surprise_usual);
   }
-  out.covariance = covariance;
+  out.covariance = growth * pose.covariance;
+  out.near_covariance *= growth;
   double squares = 0;
-  int kept = 0;
-  for (std::size_t i = 0; i < seen.count; ++i) {
-    if (static_cast<int>(i) == pose.left_out) continue;
-    const WeightedMarker& marker = seen.items[i];
+  for (std::size_t i = 0; i < kept.count; ++i) {
+    const WeightedMarker& marker = kept.items[i];
     squares += (pose.T_camera_tool * marker.model_m - marker.measured_m()).squaredNorm();
-    out.marker_mask = static_cast<std::uint8_t>(out.marker_mask | (1u << seen.of_tool[i]));
-    ++kept;
+    out.marker_mask = static_cast<std::uint8_t>(out.marker_mask | (1u << kept.of_tool[i]));
   }
-  out.rms_m = std::sqrt(squares / kept);
+  out.rms_m = std::sqrt(squares / static_cast<double>(kept.count));
   out.T_camera_tool = correct_bias(correction, pose.T_camera_tool).T_camera_tool;
+  out.near_T_camera_tool = correct_bias(correction, out.near_T_camera_tool).T_camera_tool;
 }
 
 void RefinePose::operator()(const FrameVerdict& verdict, const Markers& markers,

@@ -24,6 +24,7 @@ inline constexpr int k_predicted_left_least = 3;
 // covariance grown to what its residuals show, and where four times the noise would not do either
 // it is none: its reason is bad_fit. So it is where three markers, or what was forgiven, put the
 // tool where its followed motion cannot have brought it. The mask names the markers that count.
+// What no more than three tell a filter is read near where it expects the tool.
 struct RefinePose {
   static constexpr std::array<std::string_view, 5> k_loops = {"call", "tools", "fits", "steps",
                                                               "marker_steps"};
@@ -33,8 +34,7 @@ struct RefinePose {
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits,
                                                          graph::Slice slice) noexcept {
     const std::int64_t tools = tools_of(limits, slice);
-    const RefineWork work =
-        refine_work_max(limits.markers_per_tool, {.markers_left_least = k_predicted_left_least});
+    const RefineWork work = work_max(limits.markers_per_tool);
     return {{1, tools, tools * work.fits, tools * work.steps, tools * work.marker_steps}};
   }
   [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
@@ -49,6 +49,13 @@ struct RefinePose {
                   FittedTools& fitted) noexcept GLINT_NONBLOCKING;
 
  private:
+  // What the markers tell a filter may be read a second time, near where the tool is expected.
+  [[nodiscard]] static constexpr RefineWork work_max(int markers) noexcept {
+    constexpr RefineSettings k_most = {.markers_left_least = k_predicted_left_least};
+    RefineWork work = refine_work_max(markers, k_most);
+    work += {1, k_most.steps_max, k_most.steps_max * markers};
+    return work;
+  }
   void fit(const Tool& tool, const Markers& markers, const Labeling& labeling,
            const Prediction& prediction, FittedTool& out) noexcept GLINT_NONBLOCKING;
 

@@ -91,6 +91,10 @@ struct FittedTool {
   double rms_m = 0;
   Pose T_camera_tool;
   Matrix6 covariance = Matrix6::Zero();  // of the tip, about the camera's axes
+  // What few markers tell a filter that expected the tool (agreed_pose.hpp): not a pose to show.
+  bool tells_near = false;
+  Pose near_T_camera_tool;
+  Matrix6 near_covariance = Matrix6::Zero();  // of the markers' middle
 };
 struct FittedTools {
   std::array<FittedTool, k_tools_max> tools;
@@ -104,6 +108,13 @@ struct FittedTools {
   return {time,
           {seen.rotation, seen * middle},
           moved_covariance(found.covariance, seen.rotation * (middle - tool.tip_m))};
+}
+// As a filter is told of it.
+[[nodiscard]] inline UncertainPose told_middle_of(const FittedTool& found, const Tool& tool,
+                                                  Time time) {
+  if (!found.tells_near) return middle_of(found, tool, time);
+  const Pose& near = found.near_T_camera_tool;
+  return {time, {near.rotation, near * tool.middle_m()}, found.near_covariance};
 }
 
 // The head's pose in this frame as the reference body corrects it, and what is known for the next.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kernels/motion/cholesky.hpp"
+#include "kernels/pose/blob_size.hpp"
 #include "kernels/pose/chi_square_limit.hpp"
 #include "kernels/pose/lever_arm.hpp"
 
@@ -66,7 +67,11 @@ void open_gates(const ExpectedTool& expected, const MarkerNoise& noise,
 NamedMarker measured(const Marker& marker, const Tool& tool, int of_tool,
                      const MarkerNoise& noise) {
   const double range = marker.surface_range_m + tool.centre_offset_m();
-  return {of_tool, marker.ray * range, centre_covariance(sight_of(marker, range, noise), range)};
+  MarkerSight sight = sight_of(marker, range, noise);
+  CommonStrip common;  // one or two do not tell what is common
+  common.add(0);
+  widen(sight.variance, common.beyond(strip_px(marker, sight.rays, tool, range)));
+  return {of_tool, marker.ray * range, centre_covariance(sight, range)};
 }
 
 // Whether the two are as far apart as the tool has them, but once in 10^4.

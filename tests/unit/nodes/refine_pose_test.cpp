@@ -4,7 +4,9 @@
 
 #include <cstdio>
 #include <memory>
+#include <numbers>
 
+#include "kernels/pose/blob_size.hpp"
 #include "kernels/pose/pose_factor.hpp"
 #include "kernels/pose/rigid_fit.hpp"
 #include "tests/unit/kernels/pose/weighted_scene.hpp"
@@ -91,6 +93,14 @@ Vector6 error_of(const FittedTool& found, const Pose& truth, const Vector3& tip)
   error << found.T_camera_tool * tip - truth * tip,
       rotation_vector(found.T_camera_tool.rotation * truth.rotation.conjugate());
   return error;
+}
+
+// Foretold to 3 mm and 2 degrees at the middle of the markers.
+void foretell(const Tool& tool, const Pose& T_camera_tool, Prediction& prediction) {
+  prediction.follows_motion = true;
+  prediction.T_camera_tool = T_camera_tool;
+  prediction.covariance.diagonal() << Vector3::Constant(9e-6), Vector3::Constant(1.2e-3);
+  ASSERT_GT(tool.marker_count, 0);
 }
 
 TEST_F(RefinePose, BeatsTheRigidFitOnNoisyMarkersAndSaysHowSureItIs) {
@@ -256,8 +266,16 @@ TEST_F(RefinePose, NeverRunsItsLoopsMoreOftenThanItSays) {
     start_over();
     for (int t = 0; t < 3; ++t) {
       const Tool tool = test::random_tool(random, 5 + random.below(3));
-      add_tool(t, tool, test::tilted_pose(tool, random.within(0, 1.5), k_place, random), 1, random);
-      for (int bad = 0; bad < 2; ++bad) marker_of(t, bad).surface_range_m *= random.within(0.3, 3);
+      const Pose pose = test::tilted_pose(tool, random.within(0, 1.5), k_place, random);
+      add_tool(t, tool, pose, 1, random);
+      // Of every other one few are whole, and where they are is expected.
+      const bool few = trial % 2 == 1;
+      Prediction& prediction = world_->predictions.tools[static_cast<std::size_t>(t)];
+      prediction = {};
+      if (few) foretell(tool, pose, prediction);
+      for (int i = 3; few && i < tool.marker_count; ++i) marker_of(t, i).flags = k_marker_uneven;
+      for (int bad = 0; bad < (few ? 1 : 2); ++bad)
+        marker_of(t, bad).surface_range_m *= random.within(0.3, 3);
     }
     run();
     EXPECT_TRUE(graph::within(node_.counts(), worst)) << trial;
@@ -311,14 +329,6 @@ TEST_F(RefinePose, IsLessSureOfMarkersThatAreOffByMoreThanTheirNoise) {
   EXPECT_LT(error.dot(pose_factor(found.covariance).value.solve(error)), 20);
 }
 
-// Foretold to 3 mm and 2 degrees at the middle of the markers.
-void foretell(const Tool& tool, const Pose& T_camera_tool, Prediction& prediction) {
-  prediction.follows_motion = true;
-  prediction.T_camera_tool = T_camera_tool;
-  prediction.covariance.diagonal() << Vector3::Constant(9e-6), Vector3::Constant(1.2e-3);
-  ASSERT_GT(tool.marker_count, 0);
-}
-
 TEST_F(RefinePose, BelievesThreeMarkersOnlyWhereTheMotionCanHaveBroughtTheTool) {
   Random random(15);
   Tool tool = test::five_marker_pen();
@@ -339,6 +349,77 @@ TEST_F(RefinePose, BelievesThreeMarkersOnlyWhereTheMotionCanHaveBroughtTheTool) 
   EXPECT_EQ(run_one().reason, Reason::none);
   prediction = {};  // it is not known how it moved
   EXPECT_EQ(run_one().reason, Reason::none);
+}
+
+// What a marker's blob covers when it is `part` of its disc, in the pinhole's pixels.
+std::uint32_t area_of(const Tool& tool, const Pose& truth, int i, double part) {
+  const Vector3 point = truth * tool.markers_m[static_cast<std::size_t>(i)];
+  const double radius_px = 253 * tool.marker_radius_m / point.norm() + k_rim_px;
+  return static_cast<std::uint32_t>(part * std::numbers::pi * radius_px * radius_px);
+}
+
+TEST_F(RefinePose, IsLessSureOfAMarkerWhoseBlobIsLargerThanTheOthers) {
+  Random random(18);
+  Tool tool = test::five_marker_pen();
+  tool.marker_radius_m = 0.0055;
+  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
+  add_tool(0, tool, truth, 0, random);
+  forget(0, 4);  // of five the bad one would be left out
+  Marker& merged = marker_of(0, 1);
+  int lens_steps = 0;
+  merged.centroid_px.x() += 0.6;
+  const LocalRays rays =
+      local_rays(test::pinhole(), merged.centroid_px, k_ray_steps_max, lens_steps).value;
+  merged.ray = rays.ray;
+  merged.along_x = rays.along_x;
+  merged.along_y = rays.along_y;
+  const auto error = [&](double part, double of_merged) {
+    for (int i = 0; i < 4; ++i)
+      marker_of(0, i).area_px = area_of(tool, truth, i, i == 1 ? of_merged : part);
+    const FittedTool& found = run_one();
+    EXPECT_EQ(found.reason, Reason::none);
+    return error_of(found, truth, tool.tip_m).head<3>().norm();
+  };
+  const double unnoticed = error(1, 1);
+  EXPECT_LT(error(1, 2.2), 0.3 * unnoticed);
+  EXPECT_EQ(run_one().marker_mask, 15) << "it still counts";
+  EXPECT_LT(error(1, 0.5), 0.3 * unnoticed) << "partly hidden";
+  EXPECT_GT(error(2.2, 2.2), 0.8 * unnoticed) << "all are smeared alike";
+}
+
+TEST_F(RefinePose, BelievesFewWholeMarkersOnlyWhereTheMotionCanHaveBroughtTheTool) {
+  Random random(19);
+  Tool tool = test::five_marker_pen();
+  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
+  const Pose aside{truth.rotation, truth.translation + Vector3(0.03, 0, 0)};
+  add_tool(0, tool, truth, 1, random);
+  foretell(tool, aside, world_->predictions.tools[0]);
+  EXPECT_EQ(run_one().reason, Reason::none);
+  for (int i = 0; i < 2; ++i) marker_of(0, i).flags = k_marker_uneven;
+  EXPECT_EQ(run_one().reason, Reason::bad_fit);
+  foretell(tool, truth, world_->predictions.tools[0]);
+  EXPECT_EQ(run_one().reason, Reason::none);
+}
+
+TEST_F(RefinePose, TellsAFilterWhatFewMarkersSayNearWhereItExpectsTheTool) {
+  Random random(20);
+  const Tool tool = test::five_marker_pen();
+  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
+  add_tool(0, tool, truth, 1, random);
+  Prediction& prediction = world_->predictions.tools[0];
+  foretell(tool, truth, prediction);
+  EXPECT_FALSE(run_one().tells_near) << "five that agree need no help";
+  forget(0, 4);
+  forget(0, 3);
+  ASSERT_TRUE(run_one().tells_near);
+  const UncertainPose told = told_middle_of(run_one(), tool, Time{});
+  EXPECT_EQ(told.pose.translation, Vector3(run_one().near_T_camera_tool * tool.middle_m()));
+  EXPECT_EQ(told.covariance, run_one().near_covariance);
+  EXPECT_LT((told.pose.translation - truth * tool.middle_m()).norm(), 0.01);
+  prediction = {};
+  EXPECT_FALSE(run_one().tells_near) << "nothing is expected";
+  const UncertainPose alone = told_middle_of(run_one(), tool, Time{});
+  EXPECT_EQ(alone.pose.translation, Vector3(run_one().T_camera_tool * tool.middle_m()));
 }
 
 TEST_F(RefinePose, IsTheLessSureOfThreeMarkersTheLessTheyWereExpected) {

@@ -5,4 +5,4 @@ glint_test(test_correspond correspond_test.cpp correspond_prediction_test.cpp
            correspond_crowd_test.cpp partner_counts_test.cpp assign_test.cpp LIBS glint_kernels LABELS unit APART)
 glint_test(test_refine_pose refine_pose_test.cpp weighted_fit_test.cpp marker_sight_test.cpp
            decide_labeling_test.cpp few_markers_test.cpp
-           expected_pose_test.cpp LIBS glint_kernels LABELS unit APART)
+           expected_pose_test.cpp agreed_pose_test.cpp blob_size_test.cpp LIBS glint_kernels LABELS unit APART)

@@ -1,0 +1,41 @@
+// What a tool's markers say near where the tool is expected, for a filter that expects it there.
+//
+// What:     the pose x with the least sum of chi-square and squared distance from the expectation,
+//           both in sigmas; the step that the markers alone would take from x, and their own
+//           information there. A filter with the same expectation that is given x moved by this
+//           step, with the inverse of this information, ends at x: the expectation counts once.
+// Cost:     one weighted fit of steps_max steps at most, a 6x6 factor.
+// Worst:    a start that needs all its steps.
+// Accuracy: first order about x. Markers nearly on a line, or a flat tool seen face-on, tell little
+//           of a turn that only a cosine shows: their likelihood has two summits, each surer than
+//           what lies between. A fit to the markers alone stands on one of them and states that
+//           one's sureness; time after time the one on the expectation's side, so that a filter
+//           walks there, sure of itself. About x they say as little as they know.
+// Source:   the iterated extended Kalman filter: Bell and Cathey 1993, The iterated Kalman filter
+//           update as a Gauss-Newton method, IEEE Transactions on Automatic Control 38(2).
+#pragma once
+
+#include <span>
+
+#include "kernels/nonblocking.hpp"
+#include "kernels/pose/expected_pose.hpp"
+#include "kernels/pose/weighted_fit.hpp"
+
+namespace glint {
+
+struct AgreedPose {
+  // x moved by the markers' step: the reference straight on, however far the step turns. A filter's
+  // equations are straight, too; on an arc place and turn would not hang together as they say.
+  Pose T_camera_tool;
+  Matrix6 covariance = Matrix6::Zero();  // of the expectation's reference, as fit_covariance.hpp
+  int steps = 0;
+  // degenerate: the expectation's covariance is none, or the markers tell nothing of a direction.
+  Reason reason = Reason::none;
+};
+
+// mean_m: of the markers, in the tool's frame.
+[[nodiscard]] AgreedPose agreed_pose(std::span<const WeightedMarker> markers, const Vector3& mean_m,
+                                     const ExpectedPose& expected,
+                                     int steps_max) noexcept GLINT_NONBLOCKING;
+
+}  // namespace glint

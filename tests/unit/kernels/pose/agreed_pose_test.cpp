@@ -1,0 +1,167 @@
+#include "kernels/pose/agreed_pose.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "kernels/motion/interpolate.hpp"
+#include "kernels/pose/lever_arm.hpp"
+#include "kernels/pose/refine_pose.hpp"
+#include "tests/unit/kernels/pose/weighted_scene.hpp"
+
+namespace glint {
+namespace {
+
+using test::Random;
+
+const Vector3 k_place(0.02, -0.03, 0.6);
+const MarkerVariance k_usual{0.01, 0, 0.01, 0.0015 * 0.0015};
+constexpr int k_steps = k_refine_steps_max;
+
+Matrix6 known_to(double shift_m, double turn_rad) {
+  Matrix6 covariance = Matrix6::Zero();
+  covariance.diagonal() << Vector3::Constant(shift_m * shift_m),
+      Vector3::Constant(turn_rad * turn_rad);
+  return covariance;
+}
+
+Vector6 difference(const Pose& a, const Pose& b, const Vector3& at) {
+  Vector6 out;
+  out << a * at - b * at, rotation_vector(a.rotation * b.rotation.conjugate());
+  return out;
+}
+
+// What a filter with this expectation makes of a pose: the mean of both, by their information.
+ExpectedPose fused(const ExpectedPose& expected, const Pose& pose, const Matrix6& covariance) {
+  const Matrix6 gain =
+      expected.covariance * pose_factor(expected.covariance + covariance).value.inverse();
+  const Vector6 step = gain * difference(pose, expected.T_camera_tool, expected.reference_m);
+  ExpectedPose out = expected;
+  out.T_camera_tool.rotation =
+      (from_rotation_vector(step.tail<3>()) * expected.T_camera_tool.rotation).normalized();
+  out.T_camera_tool.translation = expected.T_camera_tool * expected.reference_m + step.head<3>() -
+                                  out.T_camera_tool.rotation * expected.reference_m;
+  out.covariance = expected.covariance - gain * expected.covariance;
+  return out;
+}
+
+TEST(AgreedPose, LeadsAFilterToWhereMarkersAndExpectationAgree) {
+  Random random(1);
+  const Tool tool = test::five_marker_pen();
+  const Vector3 mean = test::mean_of_markers(tool);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Pose truth = test::tilted_pose(tool, random.within(0.4, 1), k_place, random);
+    const auto markers = test::weighted_view(tool, truth, k_usual, 1, random);
+    ExpectedPose expected{truth, known_to(0.002, 0.02), mean};
+    expected.T_camera_tool.translation += Vector3(0.002, -0.001, 0.002);
+    const AgreedPose agreed = agreed_pose(markers, mean, expected, k_steps);
+    ASSERT_EQ(agreed.reason, Reason::none);
+    const PosePrior prior{expected.T_camera_tool, pose_factor(expected.covariance).value.inverse(),
+                          mean};
+    const WeightedFit best = fit_weighted(markers, mean, expected.T_camera_tool, &prior, k_steps);
+    const ExpectedPose filtered = fused(expected, agreed.T_camera_tool, agreed.covariance);
+    const Vector6 apart = difference(filtered.T_camera_tool, best.T_camera_tool, mean);
+    EXPECT_LT(apart.head<3>().norm(), 1e-5);
+    EXPECT_LT(apart.tail<3>().norm(), 1e-4);
+    const Matrix6 sure = pose_factor(best.information).value.inverse();
+    EXPECT_LT((filtered.covariance - sure).norm(), 0.01 * sure.norm());
+  }
+}
+
+// Three markers across the sight, one 8 mm beside the line of the others: a turn about it moves
+// that one along its ray, and beside it only by a cosine.
+Tool nearly_straight() { return test::tool_of<3>({{-60, 0, 0}, {10, 8, 0}, {60, 0, 0}}); }
+
+// A still tool, frame after frame, as a filter takes it: the error of the turn about the line in
+// sigmas, squared.
+template <class Reading>
+double honesty(const Reading& reading) {
+  constexpr int k_runs = 200, k_frames = 60;
+  Random random(2);
+  const Tool tool = nearly_straight();
+  const Vector3 mean = test::mean_of_markers(tool);
+  double sum = 0;
+  for (int run = 0; run < k_runs; ++run) {
+    const Pose truth{Quaternion::Identity(), k_place - mean};
+    ExpectedPose known{truth, known_to(0.001, 0.03), mean};
+    const auto noise = [&] { return Vector3(random.normal(), random.normal(), random.normal()); };
+    known.T_camera_tool.rotation = from_rotation_vector(0.03 * noise());
+    known.T_camera_tool.translation =
+        truth * mean + 0.001 * noise() - known.T_camera_tool.rotation * mean;
+    for (int frame = 0; frame < k_frames; ++frame) {
+      known.covariance += known_to(0.0005, 0.03);  // it might move
+      const auto markers = test::weighted_view(tool, truth, k_usual, 1, random);
+      reading(markers, mean, known);
+    }
+    const Vector6 error = difference(known.T_camera_tool, truth, mean);
+    sum += error(3) * error(3) / known.covariance(3, 3) / k_runs;
+  }
+  return sum;
+}
+
+TEST(AgreedPose, LeadsNoFilterAwayWhereOnlyACosineTellsATurn) {
+  const double agreed = honesty([](const auto& markers, const Vector3& mean, ExpectedPose& known) {
+    const AgreedPose found = agreed_pose(markers, mean, known, k_steps);
+    ASSERT_EQ(found.reason, Reason::none);
+    known = fused(known, found.T_camera_tool, found.covariance);
+  });
+  const double alone = honesty([](const auto& markers, const Vector3& mean, ExpectedPose& known) {
+    const RefinedPose found = refine_pose(markers, mean, nullptr, {}, &known);
+    if (found.reason == Reason::none) known = fused(known, found.T_camera_tool, found.covariance);
+  });
+  std::printf("  read near the expectation %.2f, the markers' own best pose %.2f\n", agreed, alone);
+  EXPECT_LT(agreed, 1.5);
+  EXPECT_GT(agreed, 0.5);
+  EXPECT_GT(alone, 2 * agreed) << "else there is nothing to mend";
+}
+
+// Two sure markers and two that may be anywhere near: all but the turn about the sure ones' line is
+// known. A filter must take the place that goes with the turn from it, though the step turns far.
+TEST(AgreedPose, ItsReferenceGoesStraightOnHoweverFarTheStepTurns) {
+  Random random(4);
+  const Tool tool = test::five_marker_pen();
+  Tool four = tool;
+  four.marker_count = 4;
+  const Vector3 mean = test::mean_of_markers(four), reference = mean + Vector3(0.02, 0.03, -0.04);
+  const MarkerVariance unsure{16, 0, 16, 0.03 * 0.03};
+  double most_turn = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const Pose truth = test::tilted_pose(tool, random.within(0.4, 1), k_place, random);
+    auto markers = test::weighted_view(four, truth, k_usual, 1, random);
+    const auto loose = test::weighted_view(four, truth, unsure, 1, random);
+    std::copy(loose.begin() + 2, loose.end(), markers.begin() + 2);
+    const ExpectedPose expected{truth, known_to(0.003, 0.02), reference};
+    const AgreedPose agreed = agreed_pose(markers, mean, expected, k_steps);
+    ASSERT_EQ(agreed.reason, Reason::none);
+    const PosePrior prior{truth, pose_factor(expected.covariance).value.inverse(), reference};
+    const WeightedFit best = fit_weighted(markers, mean, truth, &prior, k_steps);
+    const ExpectedPose filtered = fused(expected, agreed.T_camera_tool, agreed.covariance);
+    const Vector6 apart = difference(filtered.T_camera_tool, best.T_camera_tool, reference);
+    EXPECT_LT(apart.head<3>().norm(), 5e-5) << trial;
+    most_turn =
+        std::max(most_turn, difference(agreed.T_camera_tool, truth, reference).tail<3>().norm());
+  }
+  EXPECT_GT(most_turn, 0.2) << "else no step turned far";
+}
+
+TEST(AgreedPose, SaysWhereThereIsNone) {
+  Random random(3);
+  const Tool tool = test::five_marker_pen();
+  const Vector3 mean = test::mean_of_markers(tool);
+  const Pose truth = test::tilted_pose(tool, 0.6, k_place, random);
+  const auto markers = test::weighted_view(tool, truth, k_usual, 1, random);
+  const ExpectedPose certain{truth, Matrix6::Zero(), mean};
+  EXPECT_EQ(agreed_pose(markers, mean, certain, k_steps).reason, Reason::degenerate);
+  const ExpectedPose expected{truth, known_to(0.002, 0.02), mean};
+  const auto one = std::span(markers).first(1);
+  EXPECT_EQ(agreed_pose(one, tool.markers_m[0], expected, k_steps).reason, Reason::degenerate)
+      << "one marker alone fixes no pose";
+  ExpectedPose behind = expected;
+  behind.T_camera_tool.translation.z() -= 2;
+  EXPECT_EQ(agreed_pose(markers, mean, behind, k_steps).reason, Reason::degenerate);
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,178 @@
+#include "kernels/pose/blob_size.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <vector>
+
+#include "tests/unit/kernels/pose/weighted_scene.hpp"
+
+namespace glint {
+namespace {
+
+using test::Random;
+
+constexpr double k_focal_px = 253, k_range_m = 0.5;
+
+struct Disc {
+  Vector2 middle_px;
+  double radius_px;
+};
+
+struct Drawn {
+  std::uint32_t area_px = 0;
+  Vector2 middle_px = Vector2::Zero();
+};
+
+// Pixels whose middle one of the discs holds, but none beyond `end_px` along x.
+Drawn draw(const std::vector<Disc>& discs, double end_px = 64) {
+  Drawn drawn;
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const Vector2 pixel(x + 0.5, y + 0.5);
+      bool lit = false;
+      for (const Disc& disc : discs) lit = lit || (pixel - disc.middle_px).norm() <= disc.radius_px;
+      if (!lit || pixel.x() > end_px) continue;
+      ++drawn.area_px;
+      drawn.middle_px += pixel;
+    }
+  }
+  drawn.middle_px /= drawn.area_px;
+  return drawn;
+}
+
+Tool tool_of_radius(double radius_px, MarkerShape shape = MarkerShape::sphere) {
+  Tool tool;
+  tool.shape = shape;
+  tool.marker_radius_m = radius_px * k_range_m / k_focal_px;
+  return tool;
+}
+
+double strip_of(std::uint32_t area_px, const Tool& tool, std::uint8_t flags = 0) {
+  Marker marker;
+  marker.area_px = area_px;
+  marker.flags = flags;
+  const LocalRays rays{Vector2::Zero(), Vector3::UnitZ(), Vector3::UnitX() / k_focal_px,
+                       Vector3::UnitY() / k_focal_px};
+  return strip_px(marker, rays, tool, k_range_m);
+}
+
+// An axis's variance that the blob's size adds.
+double added(double own_strip_px) {
+  MarkerVariance variance{0, 0, 0, 1};
+  widen(variance, own_strip_px);
+  return variance.xx_px2;
+}
+
+Vector2 somewhere(Random& random) {
+  const double x = random.within(0, 1), y = random.within(0, 1);
+  return Vector2(32 + x, 32 + y);
+}
+
+TEST(BlobSize, SaysHardlyEverAnythingOfADiscOfItsOwn) {
+  Random random(1);
+  int blamed = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const double radius_px = random.within(1.5, 6);
+    const Drawn drawn = draw({{somewhere(random), radius_px + k_rim_px}});
+    blamed += added(strip_of(drawn.area_px, tool_of_radius(radius_px))) > 0 ? 1 : 0;
+  }
+  EXPECT_LE(blamed, 4);
+}
+
+struct Tally {
+  double squares = 0, stated = 0;
+  int unnoticed = 0;
+  void add(double off_px2, double variance) {
+    squares += off_px2;
+    stated += variance;
+    unnoticed += variance == 0 ? 1 : 0;
+    if (variance == 0) return;
+    EXPECT_LT(off_px2, 3 * variance);
+    EXPECT_GT(off_px2, 0.2 * variance);
+  }
+};
+
+TEST(BlobSize, SaysHowFarADiscBesideMovesTheMiddle) {
+  Random random(2);
+  Tally tally;
+  constexpr int k_trials = 3000;
+  for (int trial = 0; trial < k_trials; ++trial) {
+    const double radius_px = random.within(2, 5);
+    const Vector2 middle = somewhere(random);
+    const double angle = random.within(0, 6.28);
+    const double apart_px = random.within(2, 1.5 * radius_px);
+    const SineCosine turn = sine_cosine(angle);
+    const Drawn drawn =
+        draw({{middle, radius_px + k_rim_px},
+              {middle + apart_px * Vector2(turn.cosine, turn.sine), radius_px + k_rim_px}});
+    tally.add(0.5 * (drawn.middle_px - middle).squaredNorm(),
+              added(strip_of(drawn.area_px, tool_of_radius(radius_px))));
+  }
+  std::printf("  off by %.2f px rms, %.2f stated, %d unnoticed\n",
+              std::sqrt(tally.squares / k_trials), std::sqrt(tally.stated / k_trials),
+              tally.unnoticed);
+  EXPECT_LT(tally.unnoticed, k_trials / 20);
+  EXPECT_NEAR(tally.stated / tally.squares, 1, 0.2);
+}
+
+TEST(BlobSize, SaysHowFarAHiddenPartMovesTheMiddle) {
+  Random random(3);
+  Tally tally;
+  constexpr int k_trials = 3000;
+  for (int trial = 0; trial < k_trials; ++trial) {
+    const double radius_px = random.within(2.5, 5);
+    const Vector2 middle = somewhere(random);
+    const double kept_px = random.within(-0.5, 0.4) * radius_px;  // beyond the middle
+    const Drawn drawn = draw({{middle, radius_px + k_rim_px}}, middle.x() + kept_px);
+    tally.add(0.5 * (drawn.middle_px - middle).squaredNorm(),
+              added(strip_of(drawn.area_px, tool_of_radius(radius_px))));
+  }
+  std::printf("  off by %.2f px rms, %.2f stated, %d unnoticed\n",
+              std::sqrt(tally.squares / k_trials), std::sqrt(tally.stated / k_trials),
+              tally.unnoticed);
+  EXPECT_LT(tally.unnoticed, k_trials / 20);
+  EXPECT_NEAR(tally.stated / tally.squares, 1, 0.2);
+}
+
+TEST(BlobSize, AMergedBlobsRangeMayBeTheOthersAHiddenOnesIsItsOwn) {
+  MarkerVariance merged, hidden;
+  const double range_m2 = merged.range_m2;
+  widen(merged, 2);
+  widen(hidden, -2);
+  EXPECT_GT(merged.range_m2, 10 * range_m2);
+  EXPECT_EQ(hidden.range_m2, range_m2);
+}
+
+TEST(BlobSize, BlamesNoMarkerForWhatAllHave) {
+  CommonStrip smeared;
+  for (const double strip : {1.6, 1.9, 3.9}) smeared.add(strip);
+  EXPECT_EQ(smeared.beyond(1.6), 0);
+  EXPECT_NEAR(smeared.beyond(1.9), 0.3, 1e-12);
+  EXPECT_NEAR(smeared.beyond(3.9), 2.3, 1e-12);
+  CommonStrip dim;
+  for (const double strip : {-1.6, -1.9, -3.9}) dim.add(strip);
+  EXPECT_EQ(dim.beyond(-1.6), 0);
+  EXPECT_NEAR(dim.beyond(-3.9), -2.3, 1e-12);
+  CommonStrip mixed;
+  for (const double strip : {-1.5, 0.1, 2.0}) mixed.add(strip);
+  EXPECT_EQ(mixed.beyond(-1.5), -1.5);
+  EXPECT_EQ(mixed.beyond(2.0), 2.0);
+}
+
+TEST(BlobSize, TellsNothingOfWhatIsNotSeenWhole) {
+  const Tool sphere = tool_of_radius(3), disc = tool_of_radius(3, MarkerShape::disc);
+  EXPECT_GT(strip_of(60, sphere), 0);
+  EXPECT_LT(strip_of(10, sphere), -1);
+  EXPECT_GT(strip_of(60, disc), 0);
+  EXPECT_EQ(strip_of(10, disc), 0) << "it may be tilted";
+  EXPECT_EQ(strip_of(60, sphere, k_marker_touches_edge), 0);
+  EXPECT_EQ(strip_of(0, sphere), 0);
+  EXPECT_EQ(strip_of(60, tool_of_radius(0)), 0);
+  Marker no_image;
+  no_image.area_px = 60;
+  EXPECT_EQ(strip_px(no_image, {}, sphere, 0.5), 0);
+}
+
+}  // namespace
+}  // namespace glint
