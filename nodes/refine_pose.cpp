@@ -104,12 +104,8 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
   counts_[2] += pose.work.fits;
   counts_[3] += pose.work.steps;
   counts_[4] += pose.work.marker_steps;
-  const bool stretched = pose.reason == Reason::bad_fit &&
-                         pose.chi_square <= k_noise_stretch_most * pose.degrees_of_freedom;
-  out.reason = stretched ? Reason::none : pose.reason;
-  if (out.reason != Reason::none) return;
   const SeenMarkers kept = without(seen, pose.left_out);
-  // Three markers may tell little of a turn, and their likeliest pose too much: agreed_pose.hpp.
+  // Few markers may tell little of a turn, and their likeliest pose too much: agreed_pose.hpp.
   if (kept.whole_count() <= k_agree_by_chance_most && prediction.follows_motion) {
     const AgreedPose agreed =
         agreed_pose({kept.items.data(), kept.count}, kept.mean_m(), expected, within.steps_max);
@@ -120,6 +116,10 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
     out.near_T_camera_tool = agreed.T_camera_tool;
     out.near_covariance = agreed.covariance;
   }
+  const bool stretched = pose.reason == Reason::bad_fit &&
+                         pose.chi_square <= k_noise_stretch_most * pose.degrees_of_freedom;
+  out.reason = stretched ? Reason::none : pose.reason;
+  if (out.reason != Reason::none) return;
   double growth = stretched ? pose.chi_square / pose.degrees_of_freedom : 1.0;
   const bool weak = stretched || pose.left_out >= 0 || kept.whole_count() <= k_agree_by_chance_most;
   if (weak && prediction.follows_motion) {

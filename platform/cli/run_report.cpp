@@ -143,6 +143,7 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
                          {"robot_descriptions", result.heard.descriptions},
                          {"initial_poses", result.heard.guesses},
                          {"buttons", result.heard.buttons},
+                         {"tools", result.heard.tools},
                          {"refused", result.heard.refused}}},
                        {"recording", result.recording_file},
                        {"recording_complete", result.recording.complete()},
@@ -220,11 +221,11 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
                  std::to_string(result.dds_reader.missed) + " missed, " +
                  std::to_string(result.dds.ring_dropped) + " dropped");
   if (const HeardCounts& heard = result.heard; heard.any()) {
-    row("heard over DDS", std::to_string(heard.joints) + " joint states, " +
-                              std::to_string(heard.descriptions) + " descriptions, " +
-                              std::to_string(heard.guesses) + " guesses, " +
-                              std::to_string(heard.buttons) + " buttons; " +
-                              std::to_string(heard.refused) + " refused");
+    row("heard over DDS",
+        std::to_string(heard.joints) + " joint states, " + std::to_string(heard.descriptions) +
+            " descriptions, " + std::to_string(heard.guesses) + " guesses, " +
+            std::to_string(heard.buttons) + " buttons, " + std::to_string(heard.tools) +
+            " tools; " + std::to_string(heard.refused) + " refused");
   }
   row("output_sha256", result.output_sha256);
   for (const std::string& file : result.files) row("written", file);

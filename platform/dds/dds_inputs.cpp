@@ -2,6 +2,7 @@
 
 #include <dds/ddsi/ddsi_serdata.h>
 
+#include <algorithm>
 #include <array>
 
 #include "platform/dds/topic_names.hpp"
@@ -15,12 +16,14 @@ constexpr Quality k_joints{Reliability::best_effort, Durability::volatile_data, 
 constexpr Quality k_description{Reliability::reliable, Durability::transient_local, 1};
 constexpr Quality k_guess{Reliability::reliable, Durability::volatile_data, 10};
 constexpr Quality k_button{Reliability::reliable, Durability::volatile_data, 64};
+constexpr Quality k_tool{Reliability::reliable, Durability::volatile_data, 64};
 
 // Of a whole message as it came; strings and padding included.
 constexpr std::size_t k_joints_bytes = std::size_t{64} << 10;
 constexpr std::size_t k_description_bytes = k_heard_description_max + 64;
 constexpr std::size_t k_guess_bytes = std::size_t{4} << 10;
 constexpr std::size_t k_button_bytes = 64;
+constexpr std::size_t k_tool_bytes = 128;  // a name has 31 at most
 
 constexpr Duration k_look_again = milliseconds(20);
 constexpr int k_takes_max = 256;  // of one topic before the others have their turn
@@ -61,10 +64,12 @@ std::uint64_t count_up(std::atomic<std::uint64_t>& counter, std::uint64_t by = 1
 }  // namespace
 
 DdsInputs::DdsInputs(std::shared_ptr<Participant> participant, const DdsSettings& settings,
-                     OnButton on_button)
+                     OnButton on_button, OnTool on_tool)
     : participant_(std::move(participant)),
       unix_minus_board_(settings.unix_minus_board),
       on_button_(std::move(on_button)),
+      on_tool_(std::move(on_tool)),
+      tool_names_(settings.tool_names),
       waitset_(participant_->waitset()),
       joints_(std::make_unique<graph::TripleBuffer<HeardJoints>>()),
       guess_(std::make_unique<graph::TripleBuffer<HeardGuess>>()),
@@ -76,12 +81,16 @@ DdsInputs::DdsInputs(std::shared_ptr<Participant> participant, const DdsSettings
     buttons_[i].reader =
         add_reader(bool_type(), topic_under(settings.topic_prefix, k_button_names[i]), k_button);
   }
+  const std::string& prefix = settings.topic_prefix;
+  add_reader_ = add_reader(text_type(), topic_under(prefix, k_tool_add_name), k_tool);
+  remove_reader_ = add_reader(text_type(), topic_under(prefix, k_tool_remove_name), k_tool);
 }
 
 DdsInputs::~DdsInputs() {
   stop();
   for (const ButtonReader& button : buttons_) dds_delete(button.reader);
-  for (const dds_entity_t entity : {guess_reader_, description_reader_, joints_reader_, waitset_}) {
+  for (const dds_entity_t entity : {remove_reader_, add_reader_, guess_reader_, description_reader_,
+                                    joints_reader_, waitset_}) {
     dds_delete(entity);
   }
 }
@@ -113,6 +122,8 @@ void DdsInputs::read(Duration limit) {
   take_descriptions();
   take_guesses();
   for (int i = 0; i < k_button_count; ++i) take_button(static_cast<Button>(i));
+  take_tools(remove_reader_, false);
+  take_tools(add_reader_, true);
 }
 
 void DdsInputs::take_joints() {
@@ -158,6 +169,18 @@ void DdsInputs::take_button(Button button) {
   count_up(refused_, take_bounded<BoolMessage>(one.reader, bool_type(), k_button_bytes, use));
 }
 
+// A name that no tool of the run has is refused.
+void DdsInputs::take_tools(dds_entity_t reader, bool there) {
+  const auto use = [&](const TextMessage& message) {
+    const auto found = std::find(tool_names_.begin(), tool_names_.end(), message.data);
+    if (found == tool_names_.end()) return false;
+    count_up(tool_count_);
+    if (on_tool_) on_tool_(static_cast<int>(found - tool_names_.begin()), there);
+    return true;
+  };
+  count_up(refused_, take_bounded<TextMessage>(reader, text_type(), k_tool_bytes, use));
+}
+
 Time DdsInputs::now() const { return Time{dds_time()} - unix_minus_board_; }
 
 HeardCounts DdsInputs::counts() const noexcept {
@@ -166,6 +189,7 @@ HeardCounts DdsInputs::counts() const noexcept {
   counts.descriptions = description_count_.load(std::memory_order_relaxed);
   counts.guesses = guess_count_.load(std::memory_order_relaxed);
   counts.buttons = button_count_.load(std::memory_order_relaxed);
+  counts.tools = tool_count_.load(std::memory_order_relaxed);
   counts.refused = refused_.load(std::memory_order_relaxed);
   return counts;
 }

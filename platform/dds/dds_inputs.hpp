@@ -1,8 +1,9 @@
-// What comes in: joint states, the robot's description, a guess of where it stands, and the pen's
-// buttons, read by a thread of its own.
+// What comes in: joint states, the robot's description, a guess of where it stands, the pen's
+// buttons, and which tools are there, read by a thread of its own.
 //
 // Values of which the newest counts are handed over in triple buffers, as Latest<> reads them; a
-// button's changes go one by one to whoever records them, for each of them counts. Every message is
+// button's changes go one by one to whoever records them, for each of them counts, and so do tools
+// that are named to be there or not. Every message is
 // bounded before it is unpacked; what is too large or makes no sense is refused and counted.
 #pragma once
 
@@ -11,7 +12,9 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "graph/latest.hpp"
 #include "platform/dds/heard.hpp"
@@ -21,19 +24,24 @@
 namespace glint {
 
 struct HeardCounts {
-  std::uint64_t joints = 0, descriptions = 0, guesses = 0, buttons = 0;  // messages taken
+  std::uint64_t joints = 0, descriptions = 0, guesses = 0, buttons = 0,
+                tools = 0;  // messages taken
   std::uint64_t refused = 0;
-  [[nodiscard]] bool any() const { return joints + descriptions + guesses + buttons + refused > 0; }
+  [[nodiscard]] bool any() const {
+    return joints + descriptions + guesses + buttons + tools + refused > 0;
+  }
 };
 
 class DdsInputs {
  public:
   using OnButton = std::function<void(const ButtonEvent&)>;
+  // The settings' tool of this number is there from now on, or no more.
+  using OnTool = std::function<void(int tool, bool there)>;
 
-  // `on_button`, which may be empty, is called from the reading thread with each change. Throws as
+  // Both may be empty; they are called from the reading thread with each change. Throws as
   // Participant does.
   DdsInputs(std::shared_ptr<Participant> participant, const DdsSettings& settings,
-            OnButton on_button);
+            OnButton on_button, OnTool on_tool = {});
   ~DdsInputs();  // stop()
   DdsInputs(const DdsInputs&) = delete;
   DdsInputs& operator=(const DdsInputs&) = delete;
@@ -64,18 +72,23 @@ class DdsInputs {
   void take_descriptions();
   void take_guesses();
   void take_button(Button button);
+  void take_tools(dds_entity_t reader, bool there);
   [[nodiscard]] Time now() const;
 
   std::shared_ptr<Participant> participant_;
   Duration unix_minus_board_;
   OnButton on_button_;
+  OnTool on_tool_;
+  std::vector<std::string> tool_names_;
   dds_entity_t waitset_ = 0, joints_reader_ = 0, description_reader_ = 0, guess_reader_ = 0;
+  dds_entity_t add_reader_ = 0, remove_reader_ = 0;
   std::array<ButtonReader, k_button_count> buttons_;
   std::unique_ptr<graph::TripleBuffer<HeardJoints>> joints_;
   std::unique_ptr<graph::TripleBuffer<HeardGuess>> guess_;
   std::unique_ptr<graph::TripleBuffer<HeardDescription>> description_;
   using Counter = std::atomic<std::uint64_t>;
-  Counter joints_count_{0}, description_count_{0}, guess_count_{0}, button_count_{0}, refused_{0};
+  Counter joints_count_{0}, description_count_{0}, guess_count_{0}, button_count_{0},
+      tool_count_{0}, refused_{0};
   std::atomic<bool> stopping_{false};
   std::thread thread_;
 };

@@ -30,6 +30,9 @@ inline constexpr const char* k_map_points_name = "map_points";
 inline constexpr const char* k_octomap_name = "octomap";
 inline constexpr const char* k_path_name = "path";
 
+inline constexpr const char* k_tool_add_name = "tool_add";
+inline constexpr const char* k_tool_remove_name = "tool_remove";
+
 inline constexpr const char* k_joint_states_topic = "rt/joint_states";
 inline constexpr const char* k_robot_description_topic = "rt/robot_description";
 inline constexpr const char* k_initial_pose_topic = "rt/initialpose";

@@ -65,7 +65,7 @@ SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, st
     : frame_runner_(runner_settings(options.plan.frame, k_frame_group, cell, options, trace)),
       tick_runner_(runner_settings(options.plan.tick, k_tick_group, cell, options, trace)),
       counters_(&sinks.overruns()),
-      roster_(cell),
+      roster_(cell, &sinks.tool_requests()),
       frame_(cell, roster_.published(), now, frame_runner_,
              sinks.recorder() != nullptr ? &sinks.recorder()->frame_lane() : nullptr,
              method_of(cell)),

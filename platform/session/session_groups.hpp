@@ -26,7 +26,7 @@ class SessionGroups {
   void process(const ArrivedFrame& arrived) noexcept;
   void tick(std::uint32_t number, Time nominal, Time woken) noexcept;
 
-  // What changes by plan, up to this time; not by a real-time thread.
+  // What changes by plan or was asked for, up to this time; not by a real-time thread.
   void reach(Time now) { roster_.reach(now); }
 
   // Null where the cell has none, or where no clock runs.

@@ -105,7 +105,8 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     const auto record_button = [recorder = recorder_.get()](const ButtonEvent& event) {
       if (recorder != nullptr) (void)recorder->input_lane().offer_button(event);
     };
-    inputs_ = std::make_unique<DdsInputs>(dds_->participant(), settings, record_button);
+    const auto hand_on = [this](int tool, bool there) { tool_requests_.ask(tool, there); };
+    inputs_ = std::make_unique<DdsInputs>(dds_->participant(), settings, record_button, hand_on);
     inputs_->start();
     dds_->start();
     if (reader_ != nullptr && !dds_->wait_for_readers(1, k_reader_limit)) {

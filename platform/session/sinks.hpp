@@ -13,6 +13,7 @@
 #include "platform/rt/overrun_counters.hpp"
 #include "platform/session/file_sink.hpp"
 #include "platform/session/sink_outcome.hpp"
+#include "platform/session/tool_requests.hpp"
 
 namespace glint {
 
@@ -29,6 +30,9 @@ class Sinks {
   [[nodiscard]] Recorder* recorder() noexcept { return recorder_.get(); }
   [[nodiscard]] FileSink* files() noexcept { return files_.get(); }
 
+  // What is asked for over DDS.
+  [[nodiscard]] ToolRequests& tool_requests() noexcept { return tool_requests_; }
+
   // For whoever counts overruns; DDS diagnostics tell them.
   [[nodiscard]] OverrunCounters& overruns() noexcept { return overruns_; }
 
@@ -39,6 +43,7 @@ class Sinks {
   std::string out_;
   double can_bus_load_ = 0;
   OverrunCounters overruns_;
+  ToolRequests tool_requests_;
   std::unique_ptr<CanSink> can_;
   std::unique_ptr<ReaderProcess> reader_;  // started before the sink, ended after it
   std::unique_ptr<DdsSink> dds_;

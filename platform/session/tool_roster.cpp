@@ -2,12 +2,23 @@
 
 namespace glint {
 
-ToolRoster::ToolRoster(const Cell& cell) : cell_(&cell) { publish(cell.tools_at_start, Time{}); }
+ToolRoster::ToolRoster(const Cell& cell, ToolRequests* requests)
+    : cell_(&cell), requests_(requests), planned_(cell.tools_at_start), there_(cell.tools_at_start) {
+  publish(there_, Time{});
+}
 
 void ToolRoster::reach(Time now) {
-  const std::size_t before = next_;
-  while (next_ < cell_->tool_changes.size() && cell_->tool_changes[next_].at <= now) ++next_;
-  if (next_ > before) publish(cell_->tool_changes[next_ - 1].now_there, now);
+  ToolsPresent there = there_;
+  for (; next_ < cell_->tool_changes.size() && cell_->tool_changes[next_].at <= now; ++next_) {
+    const ToolsPresent planned = cell_->tool_changes[next_].now_there;
+    const auto named = static_cast<ToolsPresent>(planned ^ planned_);
+    there = static_cast<ToolsPresent>((there & ~named) | (planned & named));
+    planned_ = planned;
+  }
+  if (requests_ != nullptr) there = requests_->applied_to(there);
+  if (there == there_) return;
+  there_ = there;
+  publish(there, now);
 }
 
 void ToolRoster::publish(ToolsPresent there, Time now) {

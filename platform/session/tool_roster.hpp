@@ -9,6 +9,7 @@
 
 #include "graph/latest.hpp"
 #include "platform/cells/cell.hpp"
+#include "platform/session/tool_requests.hpp"
 
 namespace glint {
 
@@ -23,13 +24,14 @@ namespace glint {
 
 class ToolRoster {
  public:
-  // `cell` outlives this.
-  explicit ToolRoster(const Cell& cell);
+  // Both outlive this; `requests` may be null.
+  explicit ToolRoster(const Cell& cell, ToolRequests* requests = nullptr);
 
   [[nodiscard]] graph::TripleBuffer<ToolSet>& published() noexcept { return published_; }
 
-  // Publishes what the cell's changes say of this time, if it is not what holds already. To be
-  // called by one thread, not a real-time one: later than the change by as much as it is called.
+  // Publishes what the cell's changes say of this time and what was asked for, if it is not what
+  // holds already. To be called by one thread, not a real-time one: later than the change by as
+  // much as it is called. A change of the cell touches the tools that it names, no others.
   void reach(Time now);
 
  private:
@@ -37,8 +39,10 @@ class ToolRoster {
 
   const Cell* cell_;
   graph::TripleBuffer<ToolSet> published_;
+  ToolRequests* requests_;
   std::uint64_t number_ = 0;
   std::size_t next_ = 0;
+  ToolsPresent planned_, there_;
 };
 
 }  // namespace glint

@@ -1,6 +1,7 @@
 // Labelings to share out, and labelled markers to fit.
 #include <algorithm>
 
+#include "kernels/pose/agreed_pose.hpp"
 #include "nodes/pose_nodes.hpp"
 #include "nodes/refine_pose.hpp"
 #include "platform/budget/inputs/node_kernel.hpp"
@@ -59,8 +60,10 @@ class AssignKernel final : public NodeKernel<AssignMarkers> {
 // As the node fits markers that lie where they were predicted.
 constexpr RefineSettings k_predicted = {.markers_left_least = k_predicted_left_least};
 
-// How much of its loops the fit of one tool runs.
-int marker_steps_of(const Tool& tool, const Marker* seen, const MarkerNoise& noise) {
+// How much of its loops the fit of one tool runs, with what few whole markers tell near where they
+// were expected.
+int marker_steps_of(const Tool& tool, const Marker* seen, const MarkerNoise& noise,
+                    const Prediction& prediction) {
   std::array<WeightedMarker, k_markers_per_tool_max> markers;
   for (int m = 0; m < tool.marker_count; ++m) {
     const double range_m = seen[m].surface_range_m + tool.centre_offset_m();
@@ -68,7 +71,11 @@ int marker_steps_of(const Tool& tool, const Marker* seen, const MarkerNoise& noi
     markers[m] = weigh_marker(tool.markers_m[m], sight.rays, range_m, sight.variance).value;
   }
   const std::size_t count = static_cast<std::size_t>(tool.marker_count);
-  return refine_pose({markers.data(), count}, tool.tip_m, nullptr, k_predicted).work.marker_steps;
+  const ExpectedPose expected = {prediction.T_camera_tool, prediction.covariance, tool.middle_m()};
+  const int steps =
+      agreed_pose({markers.data(), count}, tool.middle_m(), expected, k_predicted.steps_max).steps;
+  return refine_pose({markers.data(), count}, tool.tip_m, nullptr, k_predicted).work.marker_steps +
+         steps * tool.marker_count;
 }
 
 class RefineKernel final : public NodeKernel<RefinePose> {
@@ -99,7 +106,7 @@ class RefineKernel final : public NodeKernel<RefinePose> {
       prediction.T_camera_tool = any_view(numbers);
       prediction.covariance = 1e-4 * Matrix6::Identity();
       if (all) {
-        set_.items[t] = add_hardest(limits.markers_per_tool, numbers);
+        set_.items[t] = add_hardest(limits.markers_per_tool, prediction, numbers);
       } else {
         set_.items[t] = any_tool(numbers, 3 + numbers.below(limits.markers_per_tool - 2));
         add_tool(markers_, set_.items[t], any_view(numbers), numbers.within(0, 0.005), numbers,
@@ -129,9 +136,10 @@ class RefineKernel final : public NodeKernel<RefinePose> {
 
   // A tool whose markers were seen where no pose has them, with all or without any one, and no fit
   // ends before its last step: the hardest of some.
-  Tool add_hardest(int count, Numbers& numbers) {
+  Tool add_hardest(int count, const Prediction& prediction, Numbers& numbers) {
     const int first = markers_.count;
-    const int most = refine_work_max(count, k_predicted).marker_steps;
+    const int most =
+        refine_work_max(count, k_predicted).marker_steps + k_predicted.steps_max * count;
     Tool hardest;
     std::array<Marker, k_markers_per_tool_max> seen;
     for (int reached = -1, tried = 0; reached < most && tried < k_tries; ++tried) {
@@ -142,8 +150,9 @@ class RefineKernel final : public NodeKernel<RefinePose> {
         const bool astray = m < 2 || count < 5;
         const Vector3 off = astray ? numbers.in_box(0.3) : Vector3(Vector3::Zero());
         add_marker(markers_, view * tool.markers_m[m] + off, tool, k_blobs_max);
+        markers_.items[first + m].flags |= k_marker_uneven;
       }
-      const int steps = marker_steps_of(tool, &markers_.items[first], start_.noise);
+      const int steps = marker_steps_of(tool, &markers_.items[first], start_.noise, prediction);
       if (steps <= reached) continue;
       reached = steps;
       hardest = tool;

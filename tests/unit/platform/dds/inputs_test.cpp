@@ -5,6 +5,7 @@
 
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "platform/dds/dds_sink.hpp"
@@ -125,6 +126,38 @@ TEST_F(Inputs, GiveEachChangeOfAButtonOnce) {
   }
   EXPECT_EQ(states, (std::vector<bool>{true, false, true}));
   EXPECT_EQ(undone, 1);
+}
+
+TEST_F(Inputs, SayWhichToolsAreNamedToBeThereOrNot) {
+  std::vector<std::pair<int, bool>> named;
+  DdsSettings settings = test_settings();
+  settings.tool_names = {"pen", "spare pen"};
+  DdsInputs inputs(std::make_shared<Participant>(settings), settings, {},
+                   [&](int tool, bool there) { named.emplace_back(tool, there); });
+  Peer peer(settings);
+  const dds_entity_t add = peer.writer(text_type(), "rt/glint/tool_add", Reliability::reliable,
+                                       Durability::volatile_data, 64);
+  const dds_entity_t remove = peer.writer(text_type(), "rt/glint/tool_remove",
+                                          Reliability::reliable, Durability::volatile_data, 64);
+  ASSERT_TRUE(found(add) && found(remove));
+  const auto say = [&](dds_entity_t writer, std::string name) {
+    const TextMessage message{name.data()};
+    ASSERT_EQ(dds_write(writer, &message), DDS_RETCODE_OK);
+  };
+  const auto heard = [&](std::uint64_t tools, std::uint64_t refused) {
+    return comes_true([&] {
+      inputs.read(milliseconds(2));
+      return inputs.counts().tools == tools && inputs.counts().refused == refused;
+    });
+  };
+  say(remove, "spare pen");
+  EXPECT_TRUE(heard(1, 0));
+  say(add, "no such pen");
+  say(add, std::string(5000, 'p'));
+  EXPECT_TRUE(heard(1, 2));
+  say(add, "spare pen");
+  EXPECT_TRUE(heard(2, 2));
+  EXPECT_EQ(named, (std::vector<std::pair<int, bool>>{{1, false}, {1, true}}));
 }
 
 // Too many joints, lengths that differ, and a description of 5 MB, far beyond what is unpacked; a

@@ -8,6 +8,7 @@
 #include "platform/cells/cell.hpp"
 #include "platform/record/recording_reader.hpp"
 #include "platform/session/sinks.hpp"
+#include "platform/session/tool_roster.hpp"
 #include "tests/unit/platform/dds/isolated_network.hpp"
 #include "tests/unit/platform/dds/peer.hpp"
 #include "tests/unit/platform/dds/samples.hpp"
@@ -57,6 +58,34 @@ TEST_F(RecordedButton, StandsInARunsRecordingAtItsTime) {
   EXPECT_FALSE(events[1].pressed);
   EXPECT_GE(events[0].time, before);
   EXPECT_LE(events[1].time, after);
+}
+
+TEST_F(RecordedButton, AToolNamedOverDdsReachesARunsRoster) {
+  const TemporaryFolder folder;
+  const Cell cell = default_cell();
+  SinkOptions options;
+  options.out = folder.file("");
+  options.with_reader = false;
+  Sinks sinks(cell, options, k_board_start.nanoseconds);
+  ToolRoster roster(cell, &sinks.tool_requests());
+  Peer peer(test_settings());
+  const dds_entity_t remove = peer.writer(text_type(), "rt/glint/tool_remove",
+                                          Reliability::reliable, Durability::volatile_data, 64);
+  ASSERT_TRUE(comes_true([&] {
+    dds_publication_matched_status_t status{};
+    dds_get_publication_matched_status(remove, &status);
+    return status.current_count > 0;
+  }));
+  std::string name = cell.tools.items[0].name.data();
+  const TextMessage message{name.data()};
+  dds_write(remove, &message);
+  ASSERT_TRUE(comes_true([&] { return sinks.inputs()->counts().tools == 1; }));
+  roster.reach(Time{1});
+  ASSERT_TRUE(roster.published().sample());
+  EXPECT_FALSE(roster.published().value().items[0].present());
+  SinkOutcome outcome;
+  sinks.close(outcome);
+  EXPECT_EQ(outcome.heard.tools, 1u);
 }
 
 }  // namespace

@@ -67,5 +67,32 @@ TEST(ToolRoster, PublishesEachChangeOnceInATellingVersion) {
   EXPECT_EQ(tools_in(1), k_all_tools);  // of a recording from before
 }
 
+TEST(ToolRoster, TakesUpWhatWasAskedForBesideTheCellsChanges) {
+  Cell cell = default_cell();
+  cell.tools.count = 2;
+  cell.tools_at_start = 0b01;
+  cell.tool_changes = {{Time{1'000'000'000}, 0b00}};  // the first goes
+  ToolRequests requests;
+  ToolRoster roster(cell, &requests);
+  const auto there_at = [&](std::int64_t ns) {
+    roster.reach(Time{ns});
+    (void)roster.published().sample();
+    return tools_in(roster.published().version());
+  };
+  EXPECT_EQ(there_at(0), 0b01);
+  requests.ask(1, true);
+  EXPECT_EQ(there_at(1000), 0b11);
+  requests.ask(0, false);
+  requests.ask(1, false);
+  requests.ask(0, true);  // of several about one tool the last counts
+  EXPECT_EQ(there_at(2000), 0b01);
+  const std::uint64_t version = roster.published().version();
+  requests.ask(1, false);
+  EXPECT_EQ(there_at(3000), 0b01);
+  EXPECT_EQ(roster.published().version(), version) << "nothing changed";
+  requests.ask(1, true);
+  EXPECT_EQ(there_at(1'000'000'000), 0b10) << "the cell's change names only the first";
+}
+
 }  // namespace
 }  // namespace glint
