@@ -68,13 +68,15 @@ void MovingLeastSquares::gather_neighbours(int point) noexcept {
   near_.count = near;
 }
 
-void MovingLeastSquares::smooth(int point, PointCloud& smoothed) noexcept {
+// Gives the steps that it took.
+int MovingLeastSquares::smooth(int point, PointCloud& smoothed) noexcept {
   gather_neighbours(point);
   cut_ += cell_cut_ ? 1 : 0;
   if (near_.count < k_plane_neighbours_min) {
     ++lonely_;
-    return;
+    return k_surface_steps + k_near_steps * candidates_;
   }
+  const int steps = k_surface_steps + k_near_steps * candidates_ + k_neighbour_steps * near_.count;
   const SurfacePoint surface = local_surface(near_, settings_.radius_m);
   flat_ += surface.curved ? 0 : 1;
   const auto moved = [](float from, double by) {
@@ -86,18 +88,24 @@ void MovingLeastSquares::smooth(int point, PointCloud& smoothed) noexcept {
                     moved(grid_.y()[point], surface.offset_m.y()),
                     moved(grid_.z()[point], surface.offset_m.z()), weight)) {
     ++dropped_;
-    return;
+    return steps;
   }
   sources_[appended_++] = grid_.place_in_cloud(point);
   smoothed.normal_x[at] = static_cast<float>(surface.normal.x());
   smoothed.normal_y[at] = static_cast<float>(surface.normal.y());
   smoothed.normal_z[at] = static_cast<float>(surface.normal.z());
+  return steps;
 }
 
-bool MovingLeastSquares::step(int most, PointCloud& smoothed) noexcept {
+bool MovingLeastSquares::step(SliceSize most, PointCloud& smoothed) noexcept {
   if (!prepared_) return true;
   return walk_.step(
-      grid_, most, [&] { gather_candidates(); }, [&](int point) { smooth(point, smoothed); });
+      grid_, most,
+      [&] {
+        gather_candidates();
+        return k_gather_steps * candidates_;
+      },
+      [&](int point) { return smooth(point, smoothed); });
 }
 
 Reason MovingLeastSquares::reason() const noexcept {

@@ -19,6 +19,10 @@
 
 namespace glint {
 
+// Of a cell for each candidate; of a point beside them, for each candidate, for each neighbour.
+inline constexpr int k_gather_steps = 3, k_surface_steps = 160, k_near_steps = 4,
+                     k_neighbour_steps = 8;
+
 // What a neighbour counts: as much as any other, or as much as the measurements that it is the mean
 // of. Where many measurements make a voxel's point, those in the middle of the noise have far more
 // of them than those at its edge, and equal weights bend the surface.
@@ -45,7 +49,15 @@ class MovingLeastSquares {
   // Begins with this cloud, which must stay as it is until step() says true.
   void begin(const PointCloud& points) noexcept GLINT_NONBLOCKING;
   // Goes on for at most `most` points, appending each on its surface. True when all are there.
-  [[nodiscard]] bool step(int most, PointCloud& smoothed) noexcept GLINT_NONBLOCKING;
+  [[nodiscard]] bool step(SliceSize most, PointCloud& smoothed) noexcept GLINT_NONBLOCKING;
+
+  // Of the last call of step(), at most steps_max() beyond those that it was given.
+  [[nodiscard]] int steps() const noexcept { return walk_.steps(); }
+  [[nodiscard]] static constexpr int steps_max(
+      const MovingLeastSquaresSettings& settings) noexcept {
+    return k_cell_steps_max + k_surface_steps +
+           settings.candidates_max * (k_gather_steps + k_near_steps + k_neighbour_steps);
+  }
 
   // Which point of the cloud the i-th one appended since begin() was.
   [[nodiscard]] int source_of(int i) const noexcept { return sources_[i]; }
@@ -63,7 +75,7 @@ class MovingLeastSquares {
  private:
   void gather_candidates() noexcept;
   void gather_neighbours(int point) noexcept;
-  void smooth(int point, PointCloud& smoothed) noexcept;
+  int smooth(int point, PointCloud& smoothed) noexcept;
 
   MovingLeastSquaresSettings settings_;
   NeighbourGrid grid_;

@@ -26,13 +26,15 @@ std::uint32_t key_of(float x, float y, float z, float inverse) {
 }
 
 // The first cell from `from` on whose key is at least `least`.
-int first_at_least(const NeighbourGrid& grid, int from, std::uint32_t least) {
+int first_at_least(const NeighbourGrid& grid, int from, std::uint32_t least, int& compared) {
   for (int step = 0; step < 8; ++step, ++from) {
+    ++compared;
     if (from == grid.cells() || grid.key(from) >= least) return from;
   }
   int low = from, high = grid.cells();
   while (low < high) {
     const int middle = low + (high - low) / 2;
+    ++compared;
     if (grid.key(middle) < least) {
       low = middle + 1;
     } else {
@@ -68,8 +70,8 @@ void NeighbourGrid::begin(const PointCloud& points, float cell_m) noexcept {
   for (auto& digit : digits_) digit.fill(0);
 }
 
-void NeighbourGrid::sort(int most) noexcept {
-  if (sorted()) return;
+bool NeighbourGrid::sort(int most) noexcept {
+  if (sorted()) return false;
   const int all = phase_ == 0 ? cloud_->count : count_;
   const int end = std::min(all, at_ + std::max(most, 1));
   if (phase_ == 0) {
@@ -80,7 +82,9 @@ void NeighbourGrid::sort(int most) noexcept {
     copy_points(end);
   }
   at_ = end;
-  if (end == all) next_phase();
+  if (end < all) return false;
+  next_phase();
+  return true;
 }
 
 void NeighbourGrid::next_phase() noexcept {
@@ -138,7 +142,8 @@ void NeighbourGrid::copy_points(int end) noexcept {
   }
 }
 
-void NeighbourSweep::rows_around(const NeighbourGrid& grid, int cell, Rows& rows) noexcept {
+int NeighbourSweep::rows_around(const NeighbourGrid& grid, int cell, Rows& rows) noexcept {
+  int compared = 0;
   constexpr auto y = static_cast<std::int64_t>(NeighbourGrid::k_step_y);
   constexpr auto z = static_cast<std::int64_t>(NeighbourGrid::k_step_z);
   constexpr std::array<std::int64_t, k_cell_rows> steps{0, -z - y, -z, -z + y, -y,
@@ -147,10 +152,12 @@ void NeighbourSweep::rows_around(const NeighbourGrid& grid, int cell, Rows& rows
   for (std::size_t i = 0; i < steps.size(); ++i) {
     // Keys begin at one cell along every axis, so that none of these is below 0.
     const auto least = static_cast<std::uint32_t>(key + steps[i] - 1);
-    cells_begin_[i] = first_at_least(grid, cells_begin_[i], least);
-    cells_end_[i] = first_at_least(grid, std::max(cells_end_[i], cells_begin_[i]), least + 3);
+    cells_begin_[i] = first_at_least(grid, cells_begin_[i], least, compared);
+    cells_end_[i] =
+        first_at_least(grid, std::max(cells_end_[i], cells_begin_[i]), least + 3, compared);
     rows[i] = {grid.first_point(cells_begin_[i]), grid.first_point(cells_end_[i])};
   }
+  return compared;
 }
 
 }  // namespace glint

@@ -43,8 +43,8 @@ class NeighbourGrid {
 
   // Begins to sort this cloud, which must stay as it is until sorted() says true.
   void begin(const PointCloud& points, float cell_m) noexcept GLINT_NONBLOCKING;
-  // Goes on for at most `most` points.
-  void sort(int most) noexcept GLINT_NONBLOCKING;
+  // Goes on for at most `most` points. True: a pass over them ended.
+  bool sort(int most) noexcept GLINT_NONBLOCKING;
   [[nodiscard]] bool sorted() const noexcept { return phase_ == 5; }
 
   [[nodiscard]] int count() const noexcept { return count_; }
@@ -92,8 +92,8 @@ class NeighbourSweep {
   using Rows = std::array<Row, k_cell_rows>;
 
   void begin() noexcept { cells_begin_ = cells_end_ = {}; }
-  // Cells must not fall from call to call.
-  void rows_around(const NeighbourGrid& grid, int cell, Rows& rows) noexcept GLINT_NONBLOCKING;
+  // Cells must not fall from call to call. Gives the cells that were compared.
+  int rows_around(const NeighbourGrid& grid, int cell, Rows& rows) noexcept GLINT_NONBLOCKING;
 
  private:
   std::array<int, k_cell_rows> cells_begin_{}, cells_end_{};

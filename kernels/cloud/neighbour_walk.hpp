@@ -8,8 +8,16 @@
 #include <algorithm>
 
 #include "kernels/cloud/neighbour_grid.hpp"
+#include "kernels/slice_size.hpp"
 
 namespace glint {
+
+inline constexpr int k_sort_steps = 4;  // of a point, each of five times
+// Of the sorting itself, at its beginning and between two passes: the digits are cleared and
+// summed.
+inline constexpr int k_sort_turn_steps = 2048;
+// Of finding the rows around a cell.
+inline constexpr int k_cell_steps_max = 2 * k_cell_rows * k_row_search_max;
 
 class NeighbourWalk {
  public:
@@ -18,25 +26,31 @@ class NeighbourWalk {
     sweep_.begin();
     at_ = 0;
     cell_ = -1;
+    taken_ = 0;
   }
   // Around the cell of the point that is looked at.
   [[nodiscard]] const NeighbourSweep::Rows& rows() const noexcept { return rows_; }
 
-  // Sorts first, at most `most` points a call, then calls enter() where a cell begins and look(i)
-  // for each sorted point i, at most `most` of them. True when all were looked at.
+  // Of the last call of step().
+  [[nodiscard]] int steps() const noexcept { return taken_; }
+
+  // Sorts first, then calls enter() where a cell begins and look(i) for each sorted point i, at
+  // most `most` points a call; both say how many steps they took. True when all were looked at.
   template <class Enter, class Look>
-  [[nodiscard]] bool step(NeighbourGrid& grid, int most, Enter enter, Look look) noexcept {
+  [[nodiscard]] bool step(NeighbourGrid& grid, SliceSize most, Enter enter, Look look) noexcept {
     if (!grid.sorted()) {
-      grid.sort(most);
+      const int points = most.items_of(k_sort_steps);
+      taken_ = k_sort_steps * points + (grid.sort(points) ? k_sort_turn_steps : 0);
       return grid.sorted() && grid.count() == 0;
     }
-    const int end = std::min(grid.count(), at_ + std::max(most, 1));
-    for (; at_ < end; ++at_) {
+    taken_ = 0;
+    const int end = grid.count() - at_ < most.items ? grid.count() : at_ + most.items;
+    for (; at_ < end && taken_ < most.steps; ++at_) {
       if (at_ == grid.first_point(cell_ + 1)) {
-        sweep_.rows_around(grid, ++cell_, rows_);
-        enter();
+        taken_ += sweep_.rows_around(grid, ++cell_, rows_);
+        taken_ += enter();
       }
-      look(at_);
+      taken_ += look(at_);
     }
     return at_ == grid.count();
   }
@@ -44,7 +58,7 @@ class NeighbourWalk {
  private:
   NeighbourSweep sweep_;
   NeighbourSweep::Rows rows_{};
-  int at_ = 0, cell_ = -1;
+  int at_ = 0, cell_ = -1, taken_ = 0;
 };
 
 }  // namespace glint

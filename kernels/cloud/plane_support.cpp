@@ -17,7 +17,7 @@ Reason PlaneSupport::prepare(const PlaneSupportSettings& settings, int points,
   if (reason != Reason::none) return reason;
   if (!plane_of_.reserve(points, arena)) return Reason::not_prepared;
   capacity_ = points;
-  points_ = 0;
+  points_ = marked_ = 0;
   prepared_ = true;
   return Reason::none;
 }
@@ -26,13 +26,13 @@ void PlaneSupport::begin(const PointCloud& points, const PlaneSearch& planes) no
   if (!prepared_) return;
   planes_ = &planes;
   points_ = std::min(points.count, capacity_);
-  std::fill_n(plane_of_.data(), points_, PlaneSearch::k_no_plane);
+  marked_ = 0;
   grid_.begin(points, settings_.radius_m);
   walk_.begin();
   taken_off_ = 0;
 }
 
-bool PlaneSupport::is_supported(int point, std::uint8_t plane) const noexcept {
+bool PlaneSupport::is_supported(int point, std::uint8_t plane) noexcept {
   const float x = grid_.x()[point], y = grid_.y()[point], z = grid_.z()[point];
   const float limit = settings_.radius_m * settings_.radius_m;
   int near = 0, on_plane = 0, left = settings_.candidates_max;
@@ -46,20 +46,35 @@ bool PlaneSupport::is_supported(int point, std::uint8_t plane) const noexcept {
       on_plane += planes_->plane_of(grid_.place_in_cloud(i)) == plane ? 1 : 0;
     }
   }
+  looked_at_ = settings_.candidates_max - left;
   return static_cast<float>(on_plane) >= settings_.part_min * static_cast<float>(near);
 }
 
-bool PlaneSupport::step(int most) noexcept {
+bool PlaneSupport::step(SliceSize most) noexcept {
+  steps_ = 0;
   if (!prepared_) return true;
-  return walk_.step(
-      grid_, most, [] {},
+  if (marked_ < points_) {
+    const std::int64_t wanted =
+        std::min<std::int64_t>(most.items, std::max<std::int64_t>(1, most.steps) * k_marked_a_step);
+    const auto marked = static_cast<int>(std::min<std::int64_t>(points_ - marked_, wanted));
+    std::fill_n(plane_of_.data() + marked_, marked, PlaneSearch::k_no_plane);
+    marked_ += marked;
+    steps_ = 1 + marked / k_marked_a_step;
+    return false;
+  }
+  const bool done = walk_.step(
+      grid_, most, [] { return 0; },
       [&](int point) {
         const int place = grid_.place_in_cloud(point);
         const std::uint8_t plane = planes_->plane_of(place);
+        looked_at_ = 0;
         const bool stays = plane == PlaneSearch::k_no_plane || is_supported(point, plane);
         plane_of_[place] = stays ? plane : PlaneSearch::k_no_plane;
         taken_off_ += stays ? 0 : 1;
+        return k_support_steps + k_vote_steps * looked_at_;
       });
+  steps_ = walk_.steps();
+  return done;
 }
 
 }  // namespace glint

@@ -17,6 +17,9 @@
 
 namespace glint {
 
+// Of a point, and of each candidate; points marked in a step.
+inline constexpr int k_support_steps = 8, k_vote_steps = 4, k_marked_a_step = 16;
+
 struct PlaneSupportSettings {
   float radius_m = 0.05f;
   float part_min = 0.4f;
@@ -32,21 +35,27 @@ class PlaneSupport {
   [[nodiscard]] Reason prepare(const PlaneSupportSettings& settings, int points,
                                Arena& arena) noexcept;
 
-  // Begins with the cloud that was searched, marking each point at once as on no plane; both must
+  // Begins with the cloud that was searched; at once each point is on no plane. Both must
   // stay as they are until step() says true.
   void begin(const PointCloud& points, const PlaneSearch& planes) noexcept GLINT_NONBLOCKING;
   // Goes on for at most `most` points. True when all are judged.
-  [[nodiscard]] bool step(int most) noexcept GLINT_NONBLOCKING;
+  [[nodiscard]] bool step(SliceSize most) noexcept GLINT_NONBLOCKING;
+
+  // Of the last call of step(), at most steps_max() beyond those that it was given.
+  [[nodiscard]] int steps() const noexcept { return steps_; }
+  [[nodiscard]] static constexpr int steps_max(const PlaneSupportSettings& settings) noexcept {
+    return k_cell_steps_max + k_support_steps + k_vote_steps * settings.candidates_max;
+  }
 
   // The plane that a point is on and stays on, or PlaneSearch::k_no_plane.
   [[nodiscard]] std::uint8_t plane_of(int point) const noexcept {
-    return point < points_ ? plane_of_[point] : PlaneSearch::k_no_plane;
+    return point < marked_ ? plane_of_[point] : PlaneSearch::k_no_plane;
   }
   // Points taken off their plane.
   [[nodiscard]] int taken_off() const noexcept { return taken_off_; }
 
  private:
-  [[nodiscard]] bool is_supported(int point, std::uint8_t plane) const noexcept;
+  [[nodiscard]] bool is_supported(int point, std::uint8_t plane) noexcept;
 
   PlaneSupportSettings settings_;
   NeighbourGrid grid_;
@@ -54,7 +63,7 @@ class PlaneSupport {
   const PlaneSearch* planes_ = nullptr;
   Column<std::uint8_t> plane_of_;
   bool prepared_ = false;
-  int points_ = 0, capacity_ = 0, taken_off_ = 0;
+  int points_ = 0, marked_ = 0, capacity_ = 0, taken_off_ = 0, looked_at_ = 0, steps_ = 0;
 };
 
 }  // namespace glint

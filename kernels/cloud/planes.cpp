@@ -38,29 +38,35 @@ Reason PlaneSearch::reason() const noexcept {
   return cloud_ != nullptr && cloud_->count > capacity_ ? Reason::cloud_full : Reason::none;
 }
 
-bool PlaneSearch::step(int most) noexcept {
+bool PlaneSearch::step(SliceSize most) noexcept {
+  steps_ = 0;
   if (!prepared_ || phase_ == Phase::done) return true;
-  const int wanted = std::max(most, 1);
-  const auto end_of = [&](int all) { return std::min(all, at_ + wanted); };
+  steps_ = k_plane_turn_steps;
+  // The first item not to be looked at in this call.
+  const auto end_of = [&](int all, int steps_each) {
+    const int items = std::min(all - at_, most.items_of(steps_each));
+    steps_ += items * steps_each;
+    return at_ + items;
+  };
   switch (phase_) {
     case Phase::list:
-      list_free(end_of(points_));
+      list_free(end_of(points_, k_list_steps));
       if (at_ == points_) next_phase();
       break;
     case Phase::sample:
-      draw_sample(end_of(sample_size_));
+      draw_sample(end_of(sample_size_, k_draw_steps));
       if (at_ == sample_size_) next_phase();
       break;
     case Phase::tries:
-      try_planes(wanted);
+      try_planes(most);
       if (at_ == settings_.tries || scored_ == settings_.scored_max) next_phase();
       break;
     case Phase::fit:
-      add_to_fit(end_of(free_count_));
+      add_to_fit(end_of(free_count_, k_fit_steps));
       if (at_ == free_count_) finish_fit();
       break;
     case Phase::take:
-      take_points(end_of(free_count_));
+      take_points(end_of(free_count_, k_take_steps));
       if (at_ == free_count_) next_phase();
       break;
     case Phase::done:
@@ -118,14 +124,17 @@ void PlaneSearch::draw_sample(int end) noexcept {
   }
 }
 
-void PlaneSearch::try_planes(int most) noexcept {
-  for (int work = 0; work < most && at_ < settings_.tries && scored_ < settings_.scored_max;
+void PlaneSearch::try_planes(SliceSize most) noexcept {
+  for (int work = 0; work < most.items && steps_ - k_plane_turn_steps < most.steps &&
+                     at_ < settings_.tries && scored_ < settings_.scored_max;
        ++work, ++at_) {
+    steps_ += k_try_steps;
     CandidatePlane candidate;
     const std::uint64_t drawn = random_at(settings_.seed, count_, k_plane_sample + at_);
     if (!sample_.candidate_of(drawn, settings_.gate, candidate)) continue;
     ++scored_;
     work += sample_size_;
+    steps_ += k_score_steps * sample_size_;
     const int found = sample_.score(candidate, settings_.gate);
     if (found > best_score_) {
       best_score_ = found;

@@ -21,11 +21,17 @@
 #include "kernels/cloud/plane_sample.hpp"
 #include "kernels/cloud/plane_sums.hpp"
 #include "kernels/nonblocking.hpp"
+#include "kernels/slice_size.hpp"
 
 namespace glint {
 
 inline constexpr int k_planes_max = 32;
 inline constexpr int k_plane_fits = 5;
+
+// Of a point that is listed, drawn, fitted or taken; of three that are tried; of each point of the
+// sample that is scored; of a call, with what stands between two phases.
+inline constexpr int k_list_steps = 3, k_draw_steps = 24, k_fit_steps = 10, k_take_steps = 6,
+                     k_try_steps = 24, k_score_steps = 2, k_plane_turn_steps = 256;
 
 struct PlaneSettings {
   PlaneGate gate;
@@ -60,7 +66,13 @@ class PlaneSearch {
   // capacity the first points are looked at. Points without a normal are on no plane.
   void begin(const PointCloud& points) noexcept GLINT_NONBLOCKING;
   // Goes on for at most `most` points, tries or scored samples. True when no plane is left.
-  [[nodiscard]] bool step(int most) noexcept GLINT_NONBLOCKING;
+  [[nodiscard]] bool step(SliceSize most) noexcept GLINT_NONBLOCKING;
+
+  // Of the last call of step(), at most steps_max() beyond those that it was given.
+  [[nodiscard]] int steps() const noexcept { return steps_; }
+  [[nodiscard]] static constexpr int steps_max() noexcept {
+    return k_plane_turn_steps + k_score_steps * k_plane_sample + k_try_steps;
+  }
 
   [[nodiscard]] int count() const noexcept { return count_; }
   [[nodiscard]] const Plane& plane(int i) const noexcept {
@@ -77,7 +89,7 @@ class PlaneSearch {
   enum class Phase : std::uint8_t { list, sample, tries, fit, take, done };
   void list_free(int end) noexcept;
   void draw_sample(int end) noexcept;
-  void try_planes(int most) noexcept;
+  void try_planes(SliceSize most) noexcept;
   [[nodiscard]] bool is_on(const CandidatePlane& candidate, int point) const noexcept;
   void add_to_fit(int end) noexcept;
   void finish_fit() noexcept;
@@ -88,7 +100,7 @@ class PlaneSearch {
   const PointCloud* cloud_ = nullptr;
   bool prepared_ = false;
   Phase phase_ = Phase::done;
-  int capacity_ = 0, points_ = 0, at_ = 0;
+  int capacity_ = 0, points_ = 0, at_ = 0, steps_ = 0;
   int free_count_ = 0, sample_size_ = 0, scored_ = 0, best_score_ = 0, fits_ = 0;
   CandidatePlane best_;
   PlaneSums sums_;

@@ -33,31 +33,36 @@ bool RadiusOutlier::has_neighbours(int point) noexcept {
   const FourFloats x = all_four(xs[point]), y = all_four(ys[point]), z = all_four(zs[point]);
   const FourFloats limit = all_four(settings_.radius_m * settings_.radius_m);
   int left = settings_.candidates_max, near = 0;
+  looked_at_ = 0;
   for (const NeighbourSweep::Row& row : walk_.rows()) {
     for (int i = row.begin; i < row.end; i += 4) {
       if (left <= 0) {
         ++undecided_;
+        looked_at_ = settings_.candidates_max;
         return false;
       }
       const FourFloats dx = load_four(xs + i) - x, dy = load_four(ys + i) - y,
                        dz = load_four(zs + i) - z;
       const FourMasks within = (dx * dx + dy * dy) + dz * dz <= limit;
       near += count_of(within & first_lanes(std::min(row.end - i, left)));
-      if (near > settings_.neighbours_min) return true;
       left -= 4;
+      looked_at_ = settings_.candidates_max - left;
+      if (near > settings_.neighbours_min) return true;
     }
   }
   return false;
 }
 
-bool RadiusOutlier::step(int most, PointCloud& kept) noexcept {
+bool RadiusOutlier::step(SliceSize most, PointCloud& kept) noexcept {
   if (!prepared_) return true;
   return walk_.step(
-      grid_, most, [] {},
+      grid_, most, [] { return 0; },
       [&](int point) {
-        if (!has_neighbours(point)) return;
-        const float weight = cloud_->weight[grid_.place_in_cloud(point)];
-        if (!kept.add(grid_.x()[point], grid_.y()[point], grid_.z()[point], weight)) ++dropped_;
+        if (has_neighbours(point)) {
+          const float weight = cloud_->weight[grid_.place_in_cloud(point)];
+          if (!kept.add(grid_.x()[point], grid_.y()[point], grid_.z()[point], weight)) ++dropped_;
+        }
+        return k_outlier_steps + looked_at_;
       });
 }
 

@@ -17,6 +17,8 @@
 
 namespace glint {
 
+inline constexpr int k_outlier_steps = 16;  // of a point, beside one for each candidate
+
 struct RadiusOutlierSettings {
   float radius_m = 0.05f;
   int neighbours_min = 9;
@@ -35,7 +37,13 @@ class RadiusOutlier {
   // Begins with this cloud, which must stay as it is until step() says true.
   void begin(const PointCloud& points) noexcept GLINT_NONBLOCKING;
   // Goes on for at most `most` points, appending those that stay. True when all are judged.
-  [[nodiscard]] bool step(int most, PointCloud& kept) noexcept GLINT_NONBLOCKING;
+  [[nodiscard]] bool step(SliceSize most, PointCloud& kept) noexcept GLINT_NONBLOCKING;
+
+  // Of the last call of step(), at most steps_max() beyond those that it was given.
+  [[nodiscard]] int steps() const noexcept { return walk_.steps(); }
+  [[nodiscard]] static constexpr int steps_max(const RadiusOutlierSettings& settings) noexcept {
+    return k_cell_steps_max + k_outlier_steps + settings.candidates_max;
+  }
 
   // Points left out because `kept` was full, or the grid; beyond the grid; undecided.
   [[nodiscard]] int dropped() const noexcept { return dropped_ + grid_.dropped(); }
@@ -52,7 +60,7 @@ class RadiusOutlier {
   NeighbourWalk walk_;
   const PointCloud* cloud_ = nullptr;
   bool prepared_ = false;
-  int dropped_ = 0, undecided_ = 0;
+  int dropped_ = 0, undecided_ = 0, looked_at_ = 0;
 };
 
 }  // namespace glint

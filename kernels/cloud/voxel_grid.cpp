@@ -32,7 +32,7 @@ std::size_t VoxelGrid::bytes(int voxels) noexcept {
 
 Reason VoxelGrid::prepare(const VoxelGridSettings& settings, int voxels, Arena& arena) noexcept {
   capacity_ = count_ = 0;
-  dropped_ = out_of_range_ = 0;
+  dropped_ = out_of_range_ = probes_ = 0;
   if (voxels < 1 || voxels > k_cloud_points_max) return Reason::out_of_range;
   if (!(settings.voxel_m > 0 && std::isfinite(1 / settings.voxel_m))) return Reason::out_of_range;
   slots_bits_ = slot_bits_for(voxels);
@@ -56,6 +56,7 @@ int VoxelGrid::find_or_add(std::uint64_t key) noexcept {
   std::uint64_t slot = (key * 0x9E3779B97F4A7C15u) >> (64 - slots_bits_);
   for (int probe = 0; probe < k_voxel_probes_max; ++probe, slot = (slot + 1) & mask) {
     const auto at = static_cast<int>(slot);
+    ++probes_;
     const std::int32_t found = slots_[at];
     if (found == 0) {
       if (count_ == capacity_) return -1;

@@ -46,6 +46,8 @@ class VoxelGrid {
   int write(int from, int most, PointCloud& to) const noexcept GLINT_NONBLOCKING;
 
   [[nodiscard]] int count() const noexcept { return count_; }
+  // Slots looked at since prepare().
+  [[nodiscard]] std::int64_t probes() const noexcept { return probes_; }
   // Points left out: without a place for a new voxel; beyond the grid or not finite.
   [[nodiscard]] std::int64_t dropped() const noexcept { return dropped_; }
   [[nodiscard]] std::int64_t out_of_range() const noexcept { return out_of_range_; }
@@ -67,7 +69,7 @@ class VoxelGrid {
   Column<std::int32_t> slots_;  // 1 + a voxel's index, or 0
   int slots_bits_ = 0;
   int capacity_ = 0, count_ = 0;
-  std::int64_t dropped_ = 0, out_of_range_ = 0;
+  std::int64_t dropped_ = 0, out_of_range_ = 0, probes_ = 0;
 };
 
 }  // namespace glint

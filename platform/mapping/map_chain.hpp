@@ -6,25 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "kernels/cloud/depth_points.hpp"
 #include "kernels/cloud/leave_out_capsules.hpp"
-#include "kernels/cloud/moving_least_squares.hpp"
-#include "kernels/cloud/plane_support.hpp"
-#include "kernels/cloud/planes.hpp"
-#include "kernels/cloud/radius_outlier.hpp"
-#include "kernels/cloud/voxel_grid.hpp"
+#include "kernels/cloud/map_settings.hpp"
 
 namespace glint {
-
-struct MapSettings {
-  DepthPointSettings depth;
-  VoxelGridSettings voxels;
-  RadiusOutlierSettings outliers;
-  MovingLeastSquaresSettings smoothing;
-  PlaneSettings planes;
-  PlaneSupportSettings support;
-  int voxels_max = 1 << 20;
-};
 
 struct MapCounts {
   std::int64_t measured = 0;  // points of all pictures
