@@ -20,7 +20,7 @@ inline constexpr int k_labelings_max = 8;              // kept for each tool, be
 inline constexpr int k_lens_steps_max = 40;            // of a search in a lens table, a projection
 inline constexpr int k_ray_steps_max = 20;             // of finding a ray through a lens
 inline constexpr int k_search_steps_max = 4'096;       // of the correspondence search, a tool
-inline constexpr int k_background_steps_max = 50'000;  // of one background slice
+inline constexpr int k_background_steps_max = 50'000;  // of one background slice (slice_size.hpp)
 
 // The problem that one cell takes on: at most the constants above. Nodes stop at these, and what a
 // chain may need at worst is computed from them; a smaller cell has a smaller bound.

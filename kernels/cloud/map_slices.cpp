@@ -166,6 +166,8 @@ int MapSlices::add_points() noexcept {
   totals_.measured += points_.count;
   if (at_ >= pixels) {
     ++totals_.pictures;
+    totals_.voxels = voxels_.count();
+    totals_.dropped = voxels_.dropped();
     ++pictures_since_;
     stage_ = Stage::idle;
     picture_ = {};
@@ -198,8 +200,6 @@ void MapSlices::publish() noexcept {
   out_ = 1 - out_;
   stage_ = Stage::idle;
   ++totals_.maps;
-  totals_.voxels = voxels_.count();
-  totals_.dropped = voxels_.dropped();
   totals_.out_of_range = voxels_.out_of_range() + outliers_.out_of_range();
   totals_.kept = kept_.count;
   totals_.smoothed = map().count;

@@ -68,7 +68,7 @@ class MapSlices {
   [[nodiscard]] const PointCloud& map() const noexcept { return maps_[out_]; }
   [[nodiscard]] const MapTotals& totals() const noexcept { return totals_; }
 
- private:
+  // What is under way: points of a picture, then those of a new map.
   enum class Stage : std::uint8_t {
     idle,
     points,
@@ -79,7 +79,9 @@ class MapSlices {
     support,
     snap
   };
+  [[nodiscard]] Stage stage() const noexcept { return stage_; }
 
+ private:
   [[nodiscard]] PointCloud& next() noexcept { return maps_[1 - out_]; }
   [[nodiscard]] int step_of_stage(int most_steps) noexcept;
   [[nodiscard]] int add_points() noexcept;

@@ -50,11 +50,11 @@ bool PlaneSearch::step(SliceSize most) noexcept {
   };
   switch (phase_) {
     case Phase::list:
-      list_free(end_of(points_, k_list_steps));
+      list_free(end_of(points_, k_plane_list_steps));
       if (at_ == points_) next_phase();
       break;
     case Phase::sample:
-      draw_sample(end_of(sample_size_, k_draw_steps));
+      draw_sample(end_of(sample_size_, k_plane_draw_steps));
       if (at_ == sample_size_) next_phase();
       break;
     case Phase::tries:
@@ -62,11 +62,11 @@ bool PlaneSearch::step(SliceSize most) noexcept {
       if (at_ == settings_.tries || scored_ == settings_.scored_max) next_phase();
       break;
     case Phase::fit:
-      add_to_fit(end_of(free_count_, k_fit_steps));
+      add_to_fit(end_of(free_count_, k_plane_fit_steps));
       if (at_ == free_count_) finish_fit();
       break;
     case Phase::take:
-      take_points(end_of(free_count_, k_take_steps));
+      take_points(end_of(free_count_, k_plane_take_steps));
       if (at_ == free_count_) next_phase();
       break;
     case Phase::done:
@@ -128,13 +128,13 @@ void PlaneSearch::try_planes(SliceSize most) noexcept {
   for (int work = 0; work < most.items && steps_ - k_plane_turn_steps < most.steps &&
                      at_ < settings_.tries && scored_ < settings_.scored_max;
        ++work, ++at_) {
-    steps_ += k_try_steps;
+    steps_ += k_plane_try_steps;
     CandidatePlane candidate;
     const std::uint64_t drawn = random_at(settings_.seed, count_, k_plane_sample + at_);
     if (!sample_.candidate_of(drawn, settings_.gate, candidate)) continue;
     ++scored_;
     work += sample_size_;
-    steps_ += k_score_steps * sample_size_;
+    steps_ += k_plane_score_steps * sample_size_;
     const int found = sample_.score(candidate, settings_.gate);
     if (found > best_score_) {
       best_score_ = found;

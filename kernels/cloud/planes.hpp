@@ -30,8 +30,9 @@ inline constexpr int k_plane_fits = 5;
 
 // Of a point that is listed, drawn, fitted or taken; of three that are tried; of each point of the
 // sample that is scored; of a call, with what stands between two phases.
-inline constexpr int k_list_steps = 3, k_draw_steps = 24, k_fit_steps = 10, k_take_steps = 6,
-                     k_try_steps = 24, k_score_steps = 2, k_plane_turn_steps = 256;
+inline constexpr int k_plane_list_steps = 3, k_plane_draw_steps = 24, k_plane_fit_steps = 10,
+                     k_plane_take_steps = 6, k_plane_try_steps = 24, k_plane_score_steps = 2,
+                     k_plane_turn_steps = 256;
 
 struct PlaneSettings {
   PlaneGate gate;
@@ -71,7 +72,7 @@ class PlaneSearch {
   // Of the last call of step(), at most steps_max() beyond those that it was given.
   [[nodiscard]] int steps() const noexcept { return steps_; }
   [[nodiscard]] static constexpr int steps_max() noexcept {
-    return k_plane_turn_steps + k_score_steps * k_plane_sample + k_try_steps;
+    return k_plane_turn_steps + k_plane_score_steps * k_plane_sample + k_plane_try_steps;
   }
 
   [[nodiscard]] int count() const noexcept { return count_; }

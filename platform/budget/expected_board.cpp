@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "glint_build_signature.hpp"
-#include "nodes/background.hpp"
+#include "nodes/mapper.hpp"
 #include "nodes/output.hpp"
 #include "nodes/tracker.hpp"
 

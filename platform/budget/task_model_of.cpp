@@ -4,7 +4,7 @@
 
 #include "graph/describe.hpp"
 #include "graph/plan_tables.hpp"
-#include "nodes/background.hpp"
+#include "nodes/mapper.hpp"
 #include "nodes/output.hpp"
 #include "nodes/tracker.hpp"
 #include "platform/input_error.hpp"

@@ -11,6 +11,7 @@
 #include "kernels/wire/can_frames.hpp"
 #include "platform/cells/calibration_files.hpp"
 #include "platform/cells/cell_headset.hpp"
+#include "platform/cells/cell_mapping.hpp"
 #include "platform/cells/cell_timing.hpp"
 #include "platform/cells/toml_reader.hpp"
 #include "platform/cells/tool_file.hpp"
@@ -271,7 +272,10 @@ Cell cell_from_text(const std::string& text, const std::string& file, const Cell
   read_deadlines(root.table("deadlines"), cell);
   read_overrun(root.table("overrun"), cell);
   read_budget(root.table("budget"), cell);
-  read_background(root.table("background"), cell);
+  read_background(
+      root.table("background"), root.table("mapping"),
+      [&](const std::string& path, const std::string& key) { return parser.resolved(path, key); },
+      cell);
   read_sinks(root, cell);
   read_robot(root.table("robot"), cell);
   if (const NamedFile* named = parser.named_by(root, "motion")) cell.motion = motion_of(*named);

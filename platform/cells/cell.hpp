@@ -88,11 +88,20 @@ struct BudgetSettings {
   int search_steps = 768;
 };
 
-// What runs beneath the frame and tick groups, slice by slice; mapping has yet to come, and work of
-// declared length stands in for it.
+// What runs beneath the frame and tick groups, slice by slice.
 struct BackgroundSettings {
-  Duration period = milliseconds(100);  // from one slice's release to the next; its deadline
-  int steps = k_background_steps_max;   // of the longest slice
+  Duration period = milliseconds(10);  // from one slice's release to the next; its deadline
+  int steps = k_background_steps_max;  // of a slice, beside what its last point takes
+};
+
+// A map of the place, made in those slices.
+struct MappingSettings {
+  std::string source;                   // a folder of depth pictures with poses
+  Duration period = milliseconds(200);  // from one to the next; they are shown to and fro
+  int pictures_a_map = 10;              // after so many more there is a new map
+  int stride = 1;                       // of the pixels taken, along both sides
+  double voxel_m = 0.01;
+  int voxels_max = 1 << 17;
 };
 
 struct Cell {
@@ -122,6 +131,7 @@ struct Cell {
   OverrunSettings overrun;
   BudgetSettings budget;
   std::optional<BackgroundSettings> background;  // nothing: there is no such group
+  std::optional<MappingSettings> mapping;        // nothing: its slices have nothing to do
   CanSettings can;
   DdsCellSettings dds;
   RecordSettings record;

@@ -63,17 +63,6 @@ void read_overrun(const toml::table* table, Cell& cell) {
   reader.done();
 }
 
-void read_background(const toml::table* table, Cell& cell) {
-  if (table == nullptr) return;
-  TomlReader reader(*table, cell.file, "background.");
-  BackgroundSettings background;
-  background.period = from_ms(reader.real("period_ms", background.period.seconds() * 1e3, 1, 1000));
-  background.steps =
-      static_cast<int>(reader.integer("steps", background.steps, 1, k_background_steps_max));
-  reader.done();
-  cell.background = background;
-}
-
 void read_budget(const toml::table* table, Cell& cell) {
   static const toml::table k_empty;
   TomlReader reader(table != nullptr ? *table : k_empty, cell.file, "budget.");

@@ -17,7 +17,6 @@ namespace glint {
 void read_rates(const toml::table* table, Cell& cell);
 void read_deadlines(const toml::table* table, Cell& cell);  // after the rates
 void read_overrun(const toml::table* table, Cell& cell);
-void read_background(const toml::table* table, Cell& cell);
 void read_budget(const toml::table* table, Cell& cell);
 
 }  // namespace glint

@@ -84,7 +84,17 @@ ordered_json background_of(const BackgroundCounts& counts) {
   return {{"slices", counts.slices},
           {"late", counts.late},
           {"skipped", counts.skipped},
-          {"response_us", {{"max", counts.longest_response.seconds() * 1e6}}}};
+          {"response_us", {{"max", counts.longest_response.seconds() * 1e6}}},
+          {"longest_steps", counts.longest_steps},
+          {"pictures", counts.map.pictures},
+          {"pictures_missed", counts.pictures_missed},
+          {"points", counts.map.measured},
+          {"points_left_out", counts.map.left_out},
+          {"points_dropped", counts.map.dropped},
+          {"maps", counts.map.maps},
+          {"voxels", counts.map.voxels},
+          {"map_points", counts.map.smoothed},
+          {"planes", counts.map.planes}};
 }
 
 void latency_row(const char* name, const ordered_json& item) {
@@ -209,6 +219,11 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
                                  std::to_string(background->late) + " late, " +
                                  std::to_string(background->skipped) + " skipped), longest " +
                                  fixed(background->longest_response.seconds() * 1e6, 0, "us"));
+    row("map", std::to_string(background->map.smoothed) + " points on " +
+                   std::to_string(background->map.planes) + " planes, of " +
+                   std::to_string(background->map.voxels) + " voxels in " +
+                   std::to_string(background->map.pictures) + " pictures (" +
+                   std::to_string(background->pictures_missed) + " missed)");
   }
   row("heap allocations after start", result.heap_counted
                                           ? std::to_string(result.heap_allocations_after_start)

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "graph/plan_tables.hpp"
-#include "nodes/background.hpp"
+#include "nodes/mapper.hpp"
 #include "nodes/output.hpp"
 #include "nodes/tracker.hpp"
 #include "platform/cells/cell.hpp"

@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "platform/mapping/cloud_files.hpp"
 #include "platform/rt/allocation_counter.hpp"
 #include "platform/rt/clock.hpp"
 #include "platform/rt/machine_check.hpp"
@@ -112,7 +113,8 @@ void run_live(const Cell& cell, Time epoch, SimulatedSource& source, SessionGrou
   if (background_thread) note(background_thread->report(), result);
 }
 
-// Frames and ticks in the order of their nominal times, in one thread: the same bytes every time.
+// Frames, ticks and slices in the order of their nominal times, in one thread: the same bytes every
+// time.
 void run_in_order(const Cell& cell, Time& now, SimulatedSource& source, SessionGroups& groups,
                   double all_s, const SessionOptions& options, SessionResult& result) {
   const Duration period = tick_period(cell);
@@ -120,6 +122,7 @@ void run_in_order(const Cell& cell, Time& now, SimulatedSource& source, SessionG
   const auto tick_until = [&](Time limit) {
     for (; next_tick < limit; next_tick = next_tick + period) {
       now = next_tick;
+      if (groups.background() != nullptr) groups.background()->reach(now);
       groups.tick(static_cast<std::uint32_t>(result.ticks++), next_tick, next_tick);
     }
   };
@@ -138,6 +141,20 @@ void run_in_order(const Cell& cell, Time& now, SimulatedSource& source, SessionG
   tick_until(last + cell.lost_after);
 }
 
+DepthLoop pictures_of(const Cell& cell) {
+  if (!cell.mapping) return {};
+  return {load_depth_sequence(cell.mapping->source), cell.mapping->period};
+}
+
+// The last map, when nothing runs any more.
+void write_map(BackgroundGroup& background, const std::string& folder, SessionResult& result) {
+  background.finish();
+  if (background.map().count == 0) return;
+  const std::string file = (std::filesystem::path(folder) / "map.ply").string();
+  write_cloud(file, host_cloud_of(background.map()));
+  result.files.push_back(file);
+}
+
 }  // namespace
 
 SessionResult run_session(const Cell& cell, const SessionOptions& options) {
@@ -146,6 +163,7 @@ SessionResult run_session(const Cell& cell, const SessionOptions& options) {
 
 SessionResult run_session(const Cell& cell, sim::Scenario scenario, const SessionOptions& given) {
   const sim::Simulator simulator(std::move(scenario));
+  DepthLoop pictures = pictures_of(cell);
   SessionOptions options = given;
   if (!options.plan.planned) options.plan = plan_by_rule(cell);
   SessionResult result;
@@ -177,9 +195,9 @@ SessionResult run_session(const Cell& cell, sim::Scenario scenario, const Sessio
     trace = std::make_unique<TraceWriter>(file, trace_header(cell, options.plan, unix_offset_ns));
     result.files.push_back(file);
   }
-  auto groups = std::make_unique<SessionGroups>(cell, options,
-                                                static_cast<std::size_t>(simulator.frame_count()),
-                                                sinks, trace.get(), now, unix_offset_ns);
+  auto groups = std::make_unique<SessionGroups>(
+      cell, options, static_cast<std::size_t>(simulator.frame_count()), sinks, trace.get(), now,
+      unix_offset_ns, std::move(pictures));
   if (trace != nullptr) trace->start();
   SimulatedSource source(simulator, sleep, now);
   source.fill();
@@ -191,6 +209,7 @@ SessionResult run_session(const Cell& cell, sim::Scenario scenario, const Sessio
                  options, result);
   }
 
+  if (groups->background() != nullptr) write_map(*groups->background(), options.out, result);
   groups->report(result);
   result.duration_s = simulator.scenario().duration.seconds();
   result.accuracy = judge(result.outcomes, source.truths(), cell.tools, cell.lost_after);

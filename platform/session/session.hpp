@@ -40,7 +40,7 @@ struct SessionResult : SinkOutcome {
   bool heap_counted = false;
   std::uint64_t worker_overruns = 0;  // waits for another worker beyond their declared spins
   OverrunCounts frame_overruns, tick_overruns;
-  std::optional<BackgroundCounts> background;  // of a live run of a cell that has one
+  std::optional<BackgroundCounts> background;  // where the cell has one
   std::uint64_t page_faults_after_start = 0;   // of the frame and tick threads
   MachineCheck machine;                        // what spoils a live run's timing
   std::uint64_t trace_spans = 0, trace_dropped = 0;

@@ -61,7 +61,7 @@ nlohmann::ordered_json group_json(const char* name, const GroupPlan<G>& plan) {
 
 SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, std::size_t frames,
                              Sinks& sinks, TraceWriter* trace, const Clock& now,
-                             std::int64_t unix_offset_ns)
+                             std::int64_t unix_offset_ns, DepthLoop pictures)
     : frame_runner_(runner_settings(options.plan.frame, k_frame_group, cell, options, trace)),
       tick_runner_(runner_settings(options.plan.tick, k_tick_group, cell, options, trace)),
       counters_(&sinks.overruns()),
@@ -77,8 +77,9 @@ SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, st
   robot_.publish(1, 0);
   outcomes_.resize(frames);
   frame_.tell_head_to(sinks.dds());
-  if (cell.realtime && options.plan.background) {
-    background_ = std::make_unique<BackgroundGroup>(cell, *options.plan.background, trace);
+  if (options.plan.background) {
+    background_ = std::make_unique<BackgroundGroup>(cell, *options.plan.background, trace,
+                                                    std::move(pictures));
   }
 }
 
@@ -86,6 +87,9 @@ void SessionGroups::process(const ArrivedFrame& arrived) noexcept {
   frame_.process(arrived);
   counters_->frame.store(frame_runner_.overruns().total(), std::memory_order_relaxed);
   if (processed_ < outcomes_.size()) outcomes_[processed_++] = outcome_of(frame_.newest());
+  if (background_ == nullptr) return;
+  background_->tracked().write_slot() = capsules_of(frame_.newest());
+  background_->tracked().publish(processed_, arrived.frame.arrival.nanoseconds);
 }
 
 void SessionGroups::tick(std::uint32_t number, Time nominal, Time woken) noexcept {
@@ -113,8 +117,7 @@ void SessionGroups::report(SessionResult& result) {
 
 std::string trace_header(const Cell& cell, const RunPlan& plan, std::int64_t epoch_unix_ns) {
   nlohmann::ordered_json groups{group_json("frame", plan.frame), group_json("tick", plan.tick)};
-  if (cell.realtime && plan.background)
-    groups.push_back(group_json("background", *plan.background));
+  if (plan.background) groups.push_back(group_json("background", *plan.background));
   return nlohmann::ordered_json{{"groups", groups},
                                 {"epoch_unix_ns", epoch_unix_ns},
                                 {"board", plan.board},

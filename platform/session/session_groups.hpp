@@ -21,7 +21,8 @@ class SessionGroups {
  public:
   // `trace` may be null; it is not yet started.
   SessionGroups(const Cell& cell, const SessionOptions& options, std::size_t frames, Sinks& sinks,
-                TraceWriter* trace, const Clock& now, std::int64_t unix_offset_ns);
+                TraceWriter* trace, const Clock& now, std::int64_t unix_offset_ns,
+                DepthLoop pictures);
 
   void process(const ArrivedFrame& arrived) noexcept;
   void tick(std::uint32_t number, Time nominal, Time woken) noexcept;
@@ -29,7 +30,7 @@ class SessionGroups {
   // What changes by plan or was asked for, up to this time; not by a real-time thread.
   void reach(Time now) { roster_.reach(now); }
 
-  // Null where the cell has none, or where no clock runs.
+  // Null where the cell has none.
   [[nodiscard]] BackgroundGroup* background() noexcept { return background_.get(); }
 
   // When all groups have ended.

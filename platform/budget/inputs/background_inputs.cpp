@@ -1,33 +1,126 @@
-#include "nodes/background.hpp"
+// A map at each of its stages: of a room, of a clump, of points far apart, of a shell of points
+// that are all just too far from each other.
+#include <map>
+#include <vector>
+
+#include "kernels/elementary.hpp"
+#include "nodes/mapper.hpp"
 #include "platform/budget/inputs/node_kernel.hpp"
 #include "platform/budget/inputs/numbers.hpp"
 
 namespace glint {
 namespace {
 
-class BackgroundKernel final : public inputs::NodeKernel<BackgroundSlice> {
+constexpr int k_side = 48, k_pictures = 2, k_voxels = 4096;
+constexpr int k_scenes = 4, k_stages = 7;
+
+MapSettings measured_settings() {
+  MapSettings settings;
+  settings.voxels_max = k_voxels;
+  settings.planes.points_min = 100;
+  for (int* most : {&settings.outliers.candidates_max, &settings.smoothing.candidates_max,
+                    &settings.support.candidates_max}) {
+    *most = k_map_candidates_max;
+  }
+  return settings;
+}
+
+// Depth of the scenes. The clump's voxels are so small that each cell is full of points.
+struct MeasuredScene {
+  std::vector<float> depth;
+  std::vector<LeftOut> left_out;
+  MapSettings settings = measured_settings();
+  CameraModel camera;
+
+  explicit MeasuredScene(int kind) {
+    camera.width = camera.height = k_side;
+    camera.fx = camera.fy = 40, camera.cx = camera.cy = 0.5 * k_side;
+    inputs::Numbers numbers(InputKind::worst, static_cast<std::uint64_t>(kind));
+    for (int i = 0; i < k_side * k_side; ++i) {
+      const double x = (i % k_side + 0.5 - camera.cx) / camera.fx;
+      const double y = (i / k_side + 0.5 - camera.cy) / camera.fy;
+      double z = y > 0 ? std::min(1.4, 0.3 / y) : 1.4;                  // floor and wall
+      if (kind == 1) z = 0.12;                                          // a clump
+      if (kind == 2) z = numbers.within(0.2, 3.9);                      // far apart
+      if (kind == 3) z = (0.1 + 0.05 * (i % 2)) / (1 + x * x + y * y);  // layers
+      depth.push_back(static_cast<float>(z + 0.002 * numbers.normal()));
+    }
+    if (kind == 1 || kind == 3) settings.voxels.voxel_m = 0.002f;
+    if (kind == 3) settings.outliers.neighbours_min = k_map_candidates_max;
+    if (kind == 2) left_out.assign(k_left_out_max, {Vector3(9, 9, 9), Vector3(9, 8, 9), 0.1});
+    if (kind == 2) {
+      camera.lens = Lens::brown;  // its rays are searched for
+      camera.distortion = {-0.28, 0.07, 1e-3, -1e-3, 0.0};
+    }
+  }
+};
+
+class MapKernel final : public inputs::NodeKernel<ExtendMap> {
  public:
-  BackgroundKernel() : NodeKernel("BackgroundSlice") {}
+  MapKernel() : NodeKernel("ExtendMap") {}
   void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
     inputs::Numbers numbers(kind, number);
+    // Worst 0 smooths a clump: every candidate is a neighbour.
+    const bool worst = at_its_worst(kind);
+    const auto turn = static_cast<int>(number % (k_scenes * k_stages));
+    begun_ = &begun(worst ? (turn + 1) % k_scenes : numbers.below(k_scenes),
+                    worst ? 1 + (turn / k_scenes + 3) % k_stages : 1 + numbers.below(k_stages));
+    start_ = begun_->node;
     start_.limits = limits;
-    start_.steps = kind == InputKind::worst || kind == InputKind::searched
-                       ? limits.background_steps
-                       : 1 + numbers.below(limits.background_steps);
-    seed_.value = numbers.bits();
+    if (!worst) start_.limits.background_steps = 1 + numbers.below(limits.background_steps);
     rewind();
   }
-  void run() noexcept override { node_(seed_, digest_); }
+  void rewind() override {
+    std::copy(begun_->memory.begin(), begun_->memory.end(), begun_->node.memory.begin());
+    NodeKernel::rewind();
+  }
+  void run() noexcept override { node_(begun_->shown, progress_); }
 
  private:
-  BackgroundSeed seed_;
-  BackgroundDigest digest_;
+  // A node with its memory as a stage begins.
+  struct Begun {
+    ExtendMap node;
+    ShownDepth shown;
+    std::vector<std::byte> memory;
+  };
+
+  const Begun& begun(int scene, int stage) {
+    Begun& out = begun_at_[scene * (k_stages + 1) + stage];
+    if (out.shown.number > 0) return out;
+    const MeasuredScene& of = scenes_.try_emplace(scene, scene).first->second;
+    std::vector<std::byte>& memory = memory_[scene];
+    memory.assign(MapSlices::bytes(of.settings), std::byte{});
+    out.node.settings = of.settings;
+    out.node.pictures_a_map = k_pictures;
+    out.node.memory = memory;
+    (void)out.node.prepare();
+    out.node.limits.background_steps = 1;
+    for (int p = 1; p <= k_pictures; ++p) {
+      const Pose moved{Quaternion::Identity(), Vector3(0.05 * p, 0, 0)};
+      out.shown = {{{k_side, k_side, of.depth}, of.camera, moved, of.left_out},
+                   Time{},
+                   static_cast<std::uint64_t>(p)};
+      out.node(out.shown, progress_);
+      while (!out.node.map().idle() && static_cast<int>(out.node.map().stage()) < stage) {
+        out.node(out.shown, progress_);
+      }
+      if (static_cast<int>(out.node.map().stage()) == stage) break;
+    }
+    out.memory = memory;
+    return out;
+  }
+
+  std::map<int, MeasuredScene> scenes_;
+  std::map<int, std::vector<std::byte>> memory_;  // of the nodes of a scene: one at a time
+  std::map<int, Begun> begun_at_;
+  const Begun* begun_ = nullptr;
+  MapProgress progress_;
 };
 
 }  // namespace
 
 void add_background_kernels(std::vector<std::unique_ptr<MeasuredKernel>>& kernels) {
-  kernels.push_back(std::make_unique<BackgroundKernel>());
+  kernels.push_back(std::make_unique<MapKernel>());
 }
 
 }  // namespace glint

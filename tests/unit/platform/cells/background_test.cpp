@@ -25,7 +25,7 @@ TEST(CellBackground, TakesPeriodAndStepsAndGivesThemToTheLimits) {
   EXPECT_EQ(limits_of(cell).background_steps, 700);
   const Cell bare = cell_from_text("[background]\n", "cell.toml");
   ASSERT_TRUE(bare.background);
-  EXPECT_EQ(bare.background->period, milliseconds(100));
+  EXPECT_EQ(bare.background->period, milliseconds(10));
   EXPECT_EQ(bare.background->steps, k_background_steps_max);
 }
 
@@ -47,6 +47,35 @@ TEST(CellBackground, RefusesWhatIsOutOfRangeByItsLine) {
   for (const auto& [text, said] : cases) {
     EXPECT_EQ(complaint_about("[background]\n" + std::string(text) + "\n"), said);
   }
+}
+
+TEST(CellMapping, HasABackgroundAndSettingsOfItsOwn) {
+  EXPECT_FALSE(default_cell().mapping);
+  const Cell cell = cell_from_text(
+      "[mapping]\nsource = \"pictures\"\nperiod_ms = 40\npictures_a_map = 3\nstride = 2\n"
+      "voxel_mm = 20\nvoxels_max = 5000\n",
+      "there/cell.toml");
+  ASSERT_TRUE(cell.mapping && cell.background);
+  EXPECT_EQ(cell.mapping->source, "there/pictures");
+  EXPECT_EQ(cell.mapping->period, milliseconds(40));
+  EXPECT_EQ(cell.mapping->pictures_a_map, 3);
+  EXPECT_EQ(cell.mapping->stride, 2);
+  EXPECT_DOUBLE_EQ(cell.mapping->voxel_m, 0.02);
+  EXPECT_EQ(cell.mapping->voxels_max, 5000);
+  EXPECT_EQ(cell.background->period, milliseconds(10));
+}
+
+TEST(CellMapping, RefusesWhatIsMissingOrOutOfRangeByItsLine) {
+  EXPECT_EQ(complaint_about("[mapping]\nstride = 1\n"),
+            "cell.toml:1: [mapping] without a source; expected source = \"FOLDER\", of depth "
+            "pictures with poses");
+  const std::string source = "[mapping]\nsource = \"f\"\n";
+  EXPECT_EQ(complaint_about(source + "stride = 0\n"),
+            "cell.toml:3: mapping.stride is 0; expected a whole number from 1 to 64");
+  EXPECT_EQ(complaint_about(source + "voxel_mm = 0\n"),
+            "cell.toml:3: mapping.voxel_mm is 0; expected a number from 1 to 1000");
+  EXPECT_NE(complaint_about(source + "folder = 0\n").find("unknown key mapping.folder"),
+            std::string::npos);
 }
 
 }  // namespace

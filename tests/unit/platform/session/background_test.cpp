@@ -1,5 +1,5 @@
-// The background group of a run: its slices in real time, and that nothing which leaves a session
-// depends on it.
+// The background group of a run: its slices live and in order, the map that they make, and that
+// nothing which leaves a session depends on it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,9 +7,12 @@
 
 #include "platform/budget/export/trace_file.hpp"
 #include "platform/input_error.hpp"
+#include "platform/mapping/cloud_files.hpp"
+#include "platform/mapping/map_chain.hpp"
 #include "platform/rt/clock.hpp"
 #include "platform/session/background_group.hpp"
 #include "platform/session/replay.hpp"
+#include "tests/unit/platform/session/depth_folder.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
 
 namespace glint {
@@ -20,10 +23,27 @@ Cell with_background(Cell cell, Duration period, int steps) {
   return cell;
 }
 
+// A map of this folder's pictures, a slice every half millisecond.
+Cell with_mapping(Cell cell, const DepthFolder& folder) {
+  cell = with_background(std::move(cell), microseconds(500), k_background_steps_max);
+  cell.mapping.emplace();
+  cell.mapping->source = folder.path;
+  cell.mapping->period = milliseconds(50);
+  cell.mapping->pictures_a_map = 4;
+  cell.mapping->voxel_m = 0.02;
+  cell.mapping->voxels_max = 20'000;
+  return cell;
+}
+
 BackgroundCounts counted_for(Duration time, Duration period, int steps) {
-  const Cell cell = with_background(default_cell(), period, steps);
+  Cell cell = with_background(default_cell(), period, steps);
+  cell.mapping.emplace().voxels_max = 20'000;
   const RunPlan plan = plan_by_rule(cell);
-  BackgroundGroup group(cell, *plan.background, nullptr);
+  const TemporaryFolder pictures;
+  DepthFolder folder(pictures.path());
+  folder.add_room(2);
+  BackgroundGroup group(cell, *plan.background, nullptr,
+                        {load_depth_sequence(folder.path), microseconds(1)});
   std::atomic<bool> stop{false};
   const Time epoch = monotonic_now();
   RealTimeThread thread(BackgroundGroup::thread_settings(*plan.background),
@@ -42,11 +62,13 @@ TEST(BackgroundGroup, RunsOneSliceAPeriodAndSkipsWhatItDidNotReach) {
   EXPECT_GT(counts.longest_response.nanoseconds, 0);
 }
 
-// 50,000 steps, each of which needs the one before, take longer than 20 us anywhere.
+// No slice with something to do takes less than 100 ns.
 TEST(BackgroundGroup, CountsAsSkippedWhatComesWhileASliceStillRuns) {
-  const BackgroundCounts counts = counted_for(milliseconds(50), microseconds(20), 50'000);
+  const BackgroundCounts counts = counted_for(milliseconds(50), {100}, 50'000);
   EXPECT_EQ(counts.late, counts.slices);
   EXPECT_GE(counts.skipped, counts.slices);
+  EXPECT_GT(counts.longest_steps, 40'000);
+  EXPECT_LE(counts.longest_steps, 50'000 + k_map_item_steps_max);
 }
 
 TEST(BackgroundGroup, EndsSoonAfterItIsToldHoweverLongItsPeriod) {
@@ -63,13 +85,75 @@ TEST(BackgroundRun, InOrderGivesTheSameBytesWithAndWithoutOne) {
   const SessionResult other =
       short_run(with_background(cell, milliseconds(10), 50'000), with.path());
   EXPECT_EQ(one.output_sha256, other.output_sha256);
-  EXPECT_FALSE(other.background);
+  EXPECT_FALSE(one.background);
+  ASSERT_TRUE(other.background);
+  EXPECT_GE(other.background->slices, 50u);
+  EXPECT_EQ(other.background->map.pictures, 0);
+}
+
+// In order the same slices run every time, and their map is the plain chain's.
+TEST(BackgroundRun, InOrderMakesTheMapThatTheChainMakesOfTheSamePictures) {
+  const TemporaryFolder plain, first, again, pictures;
+  DepthFolder folder(pictures.path());
+  folder.add_room(3);
+  const Cell cell = with_mapping(short_cell(0.5), folder);
+  const SessionResult without = short_run(short_cell(0.5), plain.path());
+  const SessionResult one = short_run(cell, first.path());
+  const SessionResult two = short_run(cell, again.path());
+  EXPECT_EQ(one.output_sha256, without.output_sha256);
+  EXPECT_EQ(two.output_sha256, without.output_sha256);
+  ASSERT_TRUE(one.background && two.background);
+  const BackgroundCounts& counts = *one.background;
+  EXPECT_EQ(counts.slices, two.background->slices);
+  EXPECT_EQ(counts.longest_steps, two.background->longest_steps);
+  EXPECT_EQ(counts.late + counts.skipped, 0u);
+  EXPECT_GE(counts.map.pictures, 6);
+  EXPECT_GE(counts.map.maps, 2);
+  EXPECT_GE(counts.map.planes, 2);
+  EXPECT_EQ(counts.map.pictures + counts.pictures_missed,
+            two.background->map.pictures + two.background->pictures_missed);
+
+  const HostCloud map = read_cloud(first.path() + "/map.ply");
+  const HostCloud same = read_cloud(again.path() + "/map.ply");
+  EXPECT_EQ(map.points, same.points);
+  EXPECT_EQ(map.normals, same.normals);
+  EXPECT_EQ(static_cast<int>(map.points.size()), counts.map.smoothed);
+  // To and fro, without those that were missed: as many as were shown, in their turn.
+  ASSERT_EQ(counts.pictures_missed, 0);
+  MapChain chain(map_settings_of(cell));
+  const DepthLoop loop(load_depth_sequence(folder.path), cell.mapping->period);
+  for (std::int64_t n = 1; n <= counts.map.pictures; ++n) {
+    const DepthFrame& frame = loop.picture(n);
+    chain.add_frame(frame.picture(), loop.camera(), frame.T_world_camera);
+  }
+  chain.finish();
+  chain.snap();
+  EXPECT_EQ(counts.map.left_out, 0);
+  EXPECT_EQ(host_cloud_of(chain.map()).points, map.points);
+}
+
+TEST(BackgroundRun, LeavesThePenOutOfItsMap) {
+  const TemporaryFolder out, pictures;
+  DepthFolder folder(pictures.path());
+  // Walls before and behind where the default scenario holds the pen, 0.63 m from here.
+  for (const double z : {0.55, 0.6, 0.65, 0.7}) {
+    folder.add(
+        std::vector<float>(DepthFolder::k_width * DepthFolder::k_height, static_cast<float>(z)),
+        {Quaternion::Identity(), Vector3(0.467, 0, -1)});
+  }
+  Cell cell = with_mapping(short_cell(1.0), folder);
+  const SessionResult run = short_run(cell, out.path());
+  EXPECT_GT(run.accuracy.tracked_fraction(), 0.9);
+  EXPECT_GT(run.background->map.left_out, 100);
 }
 
 TEST(BackgroundRun, LiveRunsItsSlicesTracesThemAndReplaysToTheSameHash) {
   const TemporaryFolder folder;
-  Cell cell = with_background(short_cell(1.0), milliseconds(20), 1'000);
-  cell.text += "\n[background]\nperiod_ms = 20\nsteps = 1000\n";
+  const TemporaryFolder pictures;
+  DepthFolder room(pictures.path());
+  room.add_room(2);
+  Cell cell = with_mapping(short_cell(1.0), room);
+  cell.text += "\n[background]\nperiod_ms = 2\n[mapping]\nsource = \"nowhere\"\n";
   cell.realtime = true;
   cell.dds.on = false;
   SessionOptions options;
@@ -78,11 +162,13 @@ TEST(BackgroundRun, LiveRunsItsSlicesTracesThemAndReplaysToTheSameHash) {
   const SessionResult run = run_session(cell, options);
   ASSERT_TRUE(run.background);
   EXPECT_GE(run.background->slices, 1u);
-  EXPECT_GE(run.background->slices + run.background->skipped, 45u);
+  EXPECT_GE(run.background->slices + run.background->skipped, 1'800u);
+  EXPECT_GE(run.background->map.pictures, 1);
+  EXPECT_GT(read_cloud(folder.path() + "/map.ply").points.size(), 100u);
   const TraceFile trace = read_trace(folder.path() + "/trace.spans");
   ASSERT_EQ(trace.groups.size(), 3u);
   EXPECT_EQ(trace.groups[2].name, "background");
-  EXPECT_EQ(trace.groups[2].nodes, std::vector<std::string>{"BackgroundSlice"});
+  EXPECT_EQ(trace.groups[2].nodes, std::vector<std::string>{"ExtendMap"});
   const auto slices =
       std::count_if(trace.spans.begin(), trace.spans.end(),
                     [](const TraceSpan& span) { return span.group == 2 && is_node(span); });
