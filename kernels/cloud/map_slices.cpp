@@ -9,7 +9,7 @@ namespace {
 
 // Of a pixel, with its ray through a pinhole and its place in the voxels; of each look into a lens,
 // each capsule, each slot of the voxels.
-constexpr int k_pixel_steps = 24, k_lens_step_steps = 16, k_capsule_steps = 12, k_probe_steps = 2;
+constexpr int k_pixel_steps = 60, k_lens_step_steps = 16, k_capsule_steps = 12, k_probe_steps = 2;
 constexpr int k_call_steps = 32, k_begin_steps = 512;  // of a call; of beginning with a cloud
 constexpr int k_write_steps = 12, k_snap_steps = 12;
 
@@ -18,25 +18,20 @@ constexpr int pixel_steps_of(Lens lens) {
   return k_pixel_steps + (lens == Lens::lut ? 1 : k_ray_steps_max) * k_lens_step_steps;
 }
 
-constexpr MapSettings widest() {
-  MapSettings settings;
-  settings.outliers.candidates_max = settings.smoothing.candidates_max =
-      settings.support.candidates_max = k_map_candidates_max;
-  return settings;
-}
+constexpr MapSettings k_widest = in_slices({});
 constexpr int k_points_steps =
     k_call_steps +
     k_map_pixels_at_once * (pixel_steps_of(Lens::brown) + k_left_out_max * k_capsule_steps +
                             k_voxel_probes_max * k_probe_steps);
 static_assert(k_map_item_steps_max - k_call_steps - k_begin_steps >=
-              std::max({k_points_steps, RadiusOutlier::steps_max(widest().outliers),
-                        MovingLeastSquares::steps_max(widest().smoothing), PlaneSearch::steps_max(),
-                        PlaneSupport::steps_max(widest().support),
-                        k_sort_turn_steps + k_sort_steps}));
+              std::max({k_points_steps, RadiusOutlier::steps_max(k_widest.outliers),
+                        MovingLeastSquares::steps_max(k_widest.smoothing), PlaneSearch::steps_max(),
+                        PlaneSupport::steps_max(k_widest.support),
+                        k_sort_turn_steps + k_key_steps}));
 
 bool fits(const MapSettings& s) {
   return s.voxels_max >= 1 && s.voxels_max <= k_cloud_points_max && s.depth.stride >= 1 &&
-         s.smoothing.candidates_max >= 1 && s.smoothing.candidates_max <= k_map_candidates_max &&
+         s.smoothing.candidates_max >= 1 && s.smoothing.candidates_max <= k_map_smoothed_over_max &&
          s.outliers.candidates_max <= k_map_candidates_max &&
          s.support.candidates_max <= k_map_candidates_max;
 }
@@ -164,6 +159,7 @@ int MapSlices::add_points() noexcept {
   totals_.left_out += leave_out_capsules(picture_.left_out, 0, points_);
   (void)voxels_.add(points_, 0, points_.count);
   totals_.measured += points_.count;
+  const int looked_at = at_ - from;
   if (at_ >= pixels) {
     ++totals_.pictures;
     totals_.voxels = voxels_.count();
@@ -173,7 +169,7 @@ int MapSlices::add_points() noexcept {
     picture_ = {};
     if (pictures_since_ >= pictures_a_map_) make_map();
   }
-  return k_call_steps + (at_ - from) * pixel_steps_ +
+  return k_call_steps + looked_at * pixel_steps_ +
          static_cast<int>(voxels_.probes() - probes) * k_probe_steps;
 }
 

@@ -24,9 +24,18 @@
 namespace glint {
 
 // What a map in slices may be asked for: so that no one of its points is a slice of its own.
-inline constexpr int k_map_candidates_max = 1024;
-inline constexpr int k_map_item_steps_max = 20'000;
+inline constexpr int k_map_candidates_max = 1024, k_map_smoothed_over_max = 512;
+inline constexpr int k_map_item_steps_max = 13'000;
 inline constexpr int k_map_pixels_at_once = 8;
+
+// The same with no more candidates than that.
+[[nodiscard]] constexpr MapSettings in_slices(MapSettings settings) noexcept {
+  const auto at_most = [](int& value, int most) { value = value < most ? value : most; };
+  at_most(settings.outliers.candidates_max, k_map_candidates_max);
+  at_most(settings.smoothing.candidates_max, k_map_smoothed_over_max);
+  at_most(settings.support.candidates_max, k_map_candidates_max);
+  return settings;
+}
 
 // A depth picture, and how the camera that took it stood. All borrowed.
 struct MapPicture {

@@ -20,8 +20,8 @@
 namespace glint {
 
 // Of a cell for each candidate; of a point beside them, for each candidate, for each neighbour.
-inline constexpr int k_gather_steps = 3, k_surface_steps = 160, k_near_steps = 4,
-                     k_neighbour_steps = 8;
+inline constexpr int k_gather_steps = 4, k_surface_steps = 600, k_near_steps = 5,
+                     k_neighbour_steps = 12;
 
 // What a neighbour counts: as much as any other, or as much as the measurements that it is the mean
 // of. Where many measurements make a voxel's point, those in the middle of the noise have far more

@@ -70,8 +70,8 @@ void NeighbourGrid::begin(const PointCloud& points, float cell_m) noexcept {
   for (auto& digit : digits_) digit.fill(0);
 }
 
-bool NeighbourGrid::sort(int most) noexcept {
-  if (sorted()) return false;
+void NeighbourGrid::sort(int most) noexcept {
+  if (sorted()) return;
   const int all = phase_ == 0 ? cloud_->count : count_;
   const int end = std::min(all, at_ + std::max(most, 1));
   if (phase_ == 0) {
@@ -82,9 +82,7 @@ bool NeighbourGrid::sort(int most) noexcept {
     copy_points(end);
   }
   at_ = end;
-  if (end < all) return false;
-  next_phase();
-  return true;
+  if (end == all) next_phase();
 }
 
 void NeighbourGrid::next_phase() noexcept {

@@ -43,8 +43,13 @@ class NeighbourGrid {
 
   // Begins to sort this cloud, which must stay as it is until sorted() says true.
   void begin(const PointCloud& points, float cell_m) noexcept GLINT_NONBLOCKING;
-  // Goes on for at most `most` points. True: a pass over them ended.
-  bool sort(int most) noexcept GLINT_NONBLOCKING;
+  // Goes on for at most `most` points.
+  void sort(int most) noexcept GLINT_NONBLOCKING;
+  // Points that the pass under way has not come to.
+  [[nodiscard]] int left_in_pass() const noexcept {
+    return sorted() ? 0 : (phase_ == 0 ? cloud_->count : count_) - at_;
+  }
+  [[nodiscard]] bool keyed() const noexcept { return phase_ > 0; }
   [[nodiscard]] bool sorted() const noexcept { return phase_ == 5; }
 
   [[nodiscard]] int count() const noexcept { return count_; }

@@ -12,12 +12,13 @@
 
 namespace glint {
 
-inline constexpr int k_sort_steps = 4;  // of a point, each of five times
+inline constexpr int k_key_steps = 20, k_sort_steps = 6;  // of a point, once; four times after
 // Of the sorting itself, at its beginning and between two passes: the digits are cleared and
 // summed.
-inline constexpr int k_sort_turn_steps = 2048;
-// Of finding the rows around a cell.
-inline constexpr int k_cell_steps_max = 2 * k_cell_rows * k_row_search_max;
+inline constexpr int k_sort_turn_steps = 4096;
+// Of a cell, beside those of finding the rows around it.
+inline constexpr int k_cell_steps = 100;
+inline constexpr int k_cell_steps_max = k_cell_steps + 2 * k_cell_rows * k_row_search_max;
 
 class NeighbourWalk {
  public:
@@ -39,15 +40,17 @@ class NeighbourWalk {
   template <class Enter, class Look>
   [[nodiscard]] bool step(NeighbourGrid& grid, SliceSize most, Enter enter, Look look) noexcept {
     if (!grid.sorted()) {
-      const int points = most.items_of(k_sort_steps);
-      taken_ = k_sort_steps * points + (grid.sort(points) ? k_sort_turn_steps : 0);
+      const int left = grid.left_in_pass(), each = grid.keyed() ? k_sort_steps : k_key_steps;
+      const int points = std::min(most.items_of(each), left);
+      taken_ = each * points + (points == left ? k_sort_turn_steps : 0);
+      grid.sort(points);
       return grid.sorted() && grid.count() == 0;
     }
     taken_ = 0;
     const int end = grid.count() - at_ < most.items ? grid.count() : at_ + most.items;
     for (; at_ < end && taken_ < most.steps; ++at_) {
       if (at_ == grid.first_point(cell_ + 1)) {
-        taken_ += sweep_.rows_around(grid, ++cell_, rows_);
+        taken_ += k_cell_steps + sweep_.rows_around(grid, ++cell_, rows_);
         taken_ += enter();
       }
       taken_ += look(at_);

@@ -18,7 +18,7 @@
 namespace glint {
 
 // Of a point, and of each candidate; points marked in a step.
-inline constexpr int k_support_steps = 8, k_vote_steps = 4, k_marked_a_step = 16;
+inline constexpr int k_support_steps = 8, k_vote_steps = 6, k_marked_a_step = 16;
 
 struct PlaneSupportSettings {
   float radius_m = 0.05f;

@@ -30,7 +30,7 @@ inline constexpr int k_plane_fits = 5;
 
 // Of a point that is listed, drawn, fitted or taken; of three that are tried; of each point of the
 // sample that is scored; of a call, with what stands between two phases.
-inline constexpr int k_plane_list_steps = 3, k_plane_draw_steps = 24, k_plane_fit_steps = 10,
+inline constexpr int k_plane_list_steps = 6, k_plane_draw_steps = 24, k_plane_fit_steps = 10,
                      k_plane_take_steps = 6, k_plane_try_steps = 24, k_plane_score_steps = 2,
                      k_plane_turn_steps = 256;
 

@@ -62,7 +62,7 @@ bool RadiusOutlier::step(SliceSize most, PointCloud& kept) noexcept {
           const float weight = cloud_->weight[grid_.place_in_cloud(point)];
           if (!kept.add(grid_.x()[point], grid_.y()[point], grid_.z()[point], weight)) ++dropped_;
         }
-        return k_outlier_steps + looked_at_;
+        return k_outlier_steps + k_candidate_steps * looked_at_;
       });
 }
 

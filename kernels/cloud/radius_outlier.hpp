@@ -17,7 +17,7 @@
 
 namespace glint {
 
-inline constexpr int k_outlier_steps = 16;  // of a point, beside one for each candidate
+inline constexpr int k_outlier_steps = 40, k_candidate_steps = 2;  // of a point, of a candidate
 
 struct RadiusOutlierSettings {
   float radius_m = 0.05f;
@@ -42,7 +42,7 @@ class RadiusOutlier {
   // Of the last call of step(), at most steps_max() beyond those that it was given.
   [[nodiscard]] int steps() const noexcept { return walk_.steps(); }
   [[nodiscard]] static constexpr int steps_max(const RadiusOutlierSettings& settings) noexcept {
-    return k_cell_steps_max + k_outlier_steps + settings.candidates_max;
+    return k_cell_steps_max + k_outlier_steps + k_candidate_steps * (settings.candidates_max + 3);
   }
 
   // Points left out because `kept` was full, or the grid; beyond the grid; undecided.

@@ -41,11 +41,7 @@ MapSettings map_settings_of(const Cell& cell) {
   settings.depth.stride = cell.mapping->stride;
   settings.voxels.voxel_m = static_cast<float>(cell.mapping->voxel_m);
   settings.voxels_max = cell.mapping->voxels_max;
-  for (int* most : {&settings.outliers.candidates_max, &settings.smoothing.candidates_max,
-                    &settings.support.candidates_max}) {
-    *most = k_map_candidates_max;
-  }
-  return settings;
+  return in_slices(settings);
 }
 
 BackgroundGroup::BackgroundGroup(const Cell& cell, const GroupPlan<Background>& plan,

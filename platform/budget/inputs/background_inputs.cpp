@@ -1,5 +1,6 @@
 // A map at each of its stages: of a room, of a clump, of points far apart, of a shell of points
 // that are all just too far from each other.
+#include <array>
 #include <map>
 #include <vector>
 
@@ -14,15 +15,42 @@ namespace {
 constexpr int k_side = 48, k_pictures = 2, k_voxels = 4096;
 constexpr int k_scenes = 4, k_stages = 7;
 
+// Where a slice may begin and be dear: at a stage, or so many steps behind its beginning, when the
+// points are sorted. Of layers no outlier is left.
+using Stage = MapSlices::Stage;
+struct Beginning {
+  int scene;
+  Stage stage;
+  int behind;
+  auto operator<=>(const Beginning&) const = default;
+};
+constexpr int k_sorted = (k_key_steps + 4 * k_sort_steps) * k_voxels + 5 * k_sort_turn_steps;
+constexpr std::array<Beginning, 20> k_worst{{{1, Stage::smoothing, k_sorted},
+                                             {0, Stage::smoothing, k_sorted},
+                                             {0, Stage::smoothing, 0},
+                                             {0, Stage::points, 0},
+                                             {1, Stage::points, 0},
+                                             {2, Stage::points, 0},
+                                             {3, Stage::points, 0},
+                                             {0, Stage::voxels, 0},
+                                             {0, Stage::outliers, 0},
+                                             {0, Stage::outliers, k_sorted},
+                                             {1, Stage::outliers, k_sorted},
+                                             {2, Stage::outliers, k_sorted},
+                                             {3, Stage::outliers, k_sorted},
+                                             {0, Stage::planes, 0},
+                                             {1, Stage::planes, 0},
+                                             {0, Stage::planes, 50'000},
+                                             {0, Stage::support, k_sorted},
+                                             {1, Stage::support, k_sorted},
+                                             {0, Stage::snap, 0},
+                                             {1, Stage::snap, 0}}};
+
 MapSettings measured_settings() {
   MapSettings settings;
   settings.voxels_max = k_voxels;
   settings.planes.points_min = 100;
-  for (int* most : {&settings.outliers.candidates_max, &settings.smoothing.candidates_max,
-                    &settings.support.candidates_max}) {
-    *most = k_map_candidates_max;
-  }
-  return settings;
+  return in_slices(settings);
 }
 
 // Depth of the scenes. The clump's voxels are so small that each cell is full of points.
@@ -62,9 +90,9 @@ class MapKernel final : public inputs::NodeKernel<ExtendMap> {
     inputs::Numbers numbers(kind, number);
     // Worst 0 smooths a clump: every candidate is a neighbour.
     const bool worst = at_its_worst(kind);
-    const auto turn = static_cast<int>(number % (k_scenes * k_stages));
-    begun_ = &begun(worst ? (turn + 1) % k_scenes : numbers.below(k_scenes),
-                    worst ? 1 + (turn / k_scenes + 3) % k_stages : 1 + numbers.below(k_stages));
+    const Beginning drawn{numbers.below(k_scenes), static_cast<Stage>(1 + numbers.below(k_stages)),
+                          numbers.one_in(2) ? k_sorted : 0};
+    begun_ = &begun(worst ? k_worst[number % k_worst.size()] : drawn);
     start_ = begun_->node;
     start_.limits = limits;
     if (!worst) start_.limits.background_steps = 1 + numbers.below(limits.background_steps);
@@ -84,8 +112,9 @@ class MapKernel final : public inputs::NodeKernel<ExtendMap> {
     std::vector<std::byte> memory;
   };
 
-  const Begun& begun(int scene, int stage) {
-    Begun& out = begun_at_[scene * (k_stages + 1) + stage];
+  const Begun& begun(Beginning wanted) {
+    const auto [scene, stage, behind] = wanted;
+    Begun& out = begun_at_[wanted];
     if (out.shown.number > 0) return out;
     const MeasuredScene& of = scenes_.try_emplace(scene, scene).first->second;
     std::vector<std::byte>& memory = memory_[scene];
@@ -101,10 +130,15 @@ class MapKernel final : public inputs::NodeKernel<ExtendMap> {
                    Time{},
                    static_cast<std::uint64_t>(p)};
       out.node(out.shown, progress_);
-      while (!out.node.map().idle() && static_cast<int>(out.node.map().stage()) < stage) {
+      while (!out.node.map().idle() && out.node.map().stage() < stage) {
         out.node(out.shown, progress_);
       }
-      if (static_cast<int>(out.node.map().stage()) == stage) break;
+      if (out.node.map().stage() == stage) break;
+    }
+    out.node.limits.background_steps = 1000;
+    for (int gone = 0; gone < behind && out.node.map().stage() == stage;
+         gone += static_cast<int>(out.node.counts()[1])) {
+      out.node(out.shown, progress_);
     }
     out.memory = memory;
     return out;
@@ -112,7 +146,7 @@ class MapKernel final : public inputs::NodeKernel<ExtendMap> {
 
   std::map<int, MeasuredScene> scenes_;
   std::map<int, std::vector<std::byte>> memory_;  // of the nodes of a scene: one at a time
-  std::map<int, Begun> begun_at_;
+  std::map<Beginning, Begun> begun_at_;
   const Begun* begun_ = nullptr;
   MapProgress progress_;
 };

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "nodes/mapper.hpp"
 #include "platform/budget/check.hpp"
 #include "platform/budget/plan_file.hpp"
 #include "platform/budget/slack_table.hpp"
@@ -56,8 +57,9 @@ struct Fixture {
   Plan plan;
 };
 
-// 0.2 ns for the call and for each step.
-constexpr std::int64_t k_slice_ns = 201;
+// 0.2 ns for the call and for each step, its last point's among them: rounded up.
+constexpr std::int64_t k_slice_ns = 2'801;
+static_assert(5 * (k_slice_ns - 1) == k_steps + k_map_item_steps_max);
 
 TEST(BackgroundGroupOfACell, HasItsPeriodAsGapAndDeadlineAndItsSliceAsBound) {
   const Fixture fixture;
@@ -68,7 +70,7 @@ TEST(BackgroundGroupOfACell, HasItsPeriodAsGapAndDeadlineAndItsSliceAsBound) {
   EXPECT_EQ(group.min_gap_ns, 50'000'000);
   EXPECT_EQ(group.deadline_ns, 50'000'000);
   ASSERT_EQ(group.nodes.size(), 1U);
-  EXPECT_EQ(group.nodes[0].name, "BackgroundSlice");
+  EXPECT_EQ(group.nodes[0].name, "ExtendMap");
   EXPECT_EQ(group.nodes[0].bound_ns, k_slice_ns);
   EXPECT_EQ(group.longest_slice_ns, k_slice_ns);
 }
@@ -93,12 +95,13 @@ TEST(BackgroundGroupOfACell, NeedsABoardThatPricesItsSlice) {
     (void)task_model_of(cell_with("[background]\n"), board.table(), board.system, limits);
     ADD_FAILURE() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "flat: no cost of BackgroundSlice; expected one of each of its loops");
+    EXPECT_STREQ(error.what(), "flat: no cost of ExtendMap; expected one of each of its loops");
   }
 }
 
-TEST(BackgroundGroupOfACell, IsPricedByEveryBuiltInBoard) {
+// A board may leave the background out; it then serves every cell that has none.
+TEST(BackgroundGroupOfACell, IsPricedByTheBuiltInBoardsThatNameItsGraph) {
+  int priced = 0;
   for (const std::string& name : built_in_boards()) {
     // Another compiler's build refuses all boards: what is asked here is what they price.
     const Cell cell = cell_with("[background]\n");
@@ -109,10 +112,12 @@ TEST(BackgroundGroupOfACell, IsPricedByEveryBuiltInBoard) {
       if (std::string(error.what()).find(": build is ") == std::string::npos) throw;
       GTEST_SKIP() << error.what();
     }
-    EXPECT_EQ(board.graphs.size(), 3U) << name;
+    if (board.graphs.size() == 2) continue;
+    ++priced;
     const TaskModel model = task_model_of(cell, board.table(), board.system, limits_of(cell));
     EXPECT_GT(model.groups[k_third].longest_slice_ns, k_background_steps_max) << name;
   }
+  EXPECT_GE(priced, 1);
 }
 
 TEST(BackgroundPlanFile, ReadsBackWhatItWrote) {
@@ -141,7 +146,7 @@ TEST(BackgroundPlanFile, EditedByHandIsJudgedAgain) {
   const std::string text = plan_text(fixture.plan, fixture.model);
   const std::size_t from = text.find("\n[[group]]", text.find("name = \"tick\""));
   const std::string third = text.substr(from);
-  ASSERT_NE(third.find("BackgroundSlice"), std::string::npos);
+  ASSERT_NE(third.find("ExtendMap"), std::string::npos);
   for (const char* const core : {"core = 0", "core = 1"}) {
     std::string moved = third;
     moved.replace(moved.find("core = "), 8, core);
@@ -167,11 +172,11 @@ TEST(BackgroundPlanFile, EditedByHandIsJudgedAgain) {
   const auto faults = check_plan(urgent, fixture.model);
   ASSERT_EQ(faults.size(), 2U);
   EXPECT_EQ(faults[0].find("background: priority 60; expected below 45"), 0U) << faults[0];
-  const Plan cheap = fixture.read(edited("bound_ns = 201", "bound_ns = 200"));
+  const Plan cheap = fixture.read(edited("bound_ns = 2801", "bound_ns = 2800"));
   ASSERT_EQ(check_plan(cheap, fixture.model).size(), 1U);
-  EXPECT_NE(check_plan(cheap, fixture.model)[0].find("expected at least its bound, 201 ns"),
+  EXPECT_NE(check_plan(cheap, fixture.model)[0].find("expected at least its bound, 2801 ns"),
             std::string::npos);
-  EXPECT_NE(fixture.refusal(edited("core = ", "core = 9")).find("BackgroundSlice on core 9"),
+  EXPECT_NE(fixture.refusal(edited("core = ", "core = 9")).find("ExtendMap on core 9"),
             std::string::npos);
   EXPECT_NE(fixture.refusal(text.substr(0, from)).find("no group \"background\""),
             std::string::npos);
@@ -185,45 +190,45 @@ TEST(BackgroundCheck, ShowsTheGroupItsSlackAndTheRowsThatItsSliceBlocks) {
   const auto json = check_json(input, {}, result);
   ASSERT_EQ(json["groups"].size(), 3U);
   EXPECT_EQ(json["groups"][2]["name"], "background");
-  EXPECT_NEAR(json["groups"][0]["blocking_us"].get<double>(), 0.201, 1e-9);
-  EXPECT_NEAR(json["groups"][1]["blocking_us"].get<double>(), 0.201, 1e-9);
+  EXPECT_NEAR(json["groups"][0]["blocking_us"].get<double>(), 2.801, 1e-9);
+  EXPECT_NEAR(json["groups"][1]["blocking_us"].get<double>(), 2.801, 1e-9);
   EXPECT_EQ(json["groups"][2]["blocking_us"], 0.0);
-  EXPECT_EQ(json["nodes"].back()["name"], "BackgroundSlice");
+  EXPECT_EQ(json["nodes"].back()["name"], "ExtendMap");
   const std::string table = check_table(input, result);
   EXPECT_NE(table.find("\nbackground "), std::string::npos);
   EXPECT_NE(table.find("  frame: blocked by a slice "), std::string::npos);
   EXPECT_NE(table.find("  tick: blocked by a slice "), std::string::npos);
-  EXPECT_NE(node_slack_rows(result).find("node   BackgroundSlice"), std::string::npos);
+  EXPECT_NE(node_slack_rows(result).find("node   ExtendMap"), std::string::npos);
 }
 
 TEST(BackgroundCheck, ScaledByHandMakesTheSliceAndWhatItBlocksGrow) {
   const Fixture fixture(1);
   const auto found = [&](double factor) {
     CheckOptions options;
-    options.scale["BackgroundSlice"] = factor;
+    options.scale["ExtendMap"] = factor;
     return assess(question_of(fixture.input(), options));
   };
   const Assessment one = found(1), more = found(1.3);
   for (const std::size_t g : {std::size_t{0}, std::size_t{1}}) {
     EXPECT_EQ(one.groups[g].blocking_ns, k_slice_ns);
-    EXPECT_EQ(more.groups[g].blocking_ns, 262);  // 261.3, rounded up
-    EXPECT_EQ(*more.groups[g].response_ns, *one.groups[g].response_ns + 61);
+    EXPECT_EQ(more.groups[g].blocking_ns, 3'642);  // 3641.3, rounded up
+    EXPECT_EQ(*more.groups[g].response_ns, *one.groups[g].response_ns + 841);
   }
-  EXPECT_EQ(more.groups[k_third].times.makespan_ns, 262);
+  EXPECT_EQ(more.groups[k_third].times.makespan_ns, 3'642);
 }
 
 TEST(BackgroundCheck, FindsTheFactorThatASliceMayGrowByAndNoMore) {
-  // Slices of 5 us: a tick of 4 ms has less than a thousand of them.
+  // Slices of 70 us: a tick of 4 ms has less than a thousand of them.
   const Fixture fixture(1, "[background]\n", 5.0);
   const CheckResult result = check(fixture.input(), {});
   const KernelSlack& slack = result.kernels.back();
-  ASSERT_EQ(slack.name, "BackgroundSlice");
+  ASSERT_EQ(slack.name, "ExtendMap");
   ASSERT_TRUE(slack.all_copies);
   ASSERT_LT(*slack.all_copies, k_factor_max);
   CheckOptions options;
-  options.scale["BackgroundSlice"] = *slack.all_copies;
+  options.scale["ExtendMap"] = *slack.all_copies;
   EXPECT_TRUE(assess(question_of(fixture.input(), options)).holds());
-  options.scale["BackgroundSlice"] = *slack.all_copies * 1.001;
+  options.scale["ExtendMap"] = *slack.all_copies * 1.001;
   EXPECT_FALSE(assess(question_of(fixture.input(), options)).holds());
 }
 

@@ -193,7 +193,7 @@ TEST(BoardFile, ExpectsEveryNodeOfBothGroupsAndThisBuild) {
   ASSERT_EQ(expected.optional.size(), 1u);
   EXPECT_EQ(expected.optional[0].graph.name, "Background");
   ASSERT_EQ(expected.optional[0].kernels.size(), 1u);
-  EXPECT_EQ(expected.optional[0].kernels[0].kernel, "BackgroundSlice");
+  EXPECT_EQ(expected.optional[0].kernels[0].kernel, "ExtendMap");
   EXPECT_NE(expected.build.find("-ffp-contract=off"), std::string::npos) << expected.build;
   EXPECT_NE(expected.build.find("-DEIGEN_DONT_VECTORIZE"), std::string::npos) << expected.build;
 }

@@ -1,4 +1,5 @@
-// The pose and output kernels' inputs: what they may do, and that the worst one does all of it.
+// The inputs of the pose, output and background kernels: what they may do, and that the worst one
+// does all of it.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -13,10 +14,20 @@ namespace {
 
 using Kernels = std::vector<std::unique_ptr<MeasuredKernel>>;
 
-Kernels kernels() {
+Kernels whole_kernels() {
   Kernels kernels;
   add_pose_kernels(kernels);
   add_output_kernels(kernels);
+  return kernels;
+}
+// Those that stop where their steps are used up.
+Kernels sliced_kernels() {
+  Kernels kernels;
+  add_background_kernels(kernels);
+  return kernels;
+}
+Kernels all_kernels() {
+  Kernels kernels = whole_kernels();
   add_background_kernels(kernels);
   return kernels;
 }
@@ -55,7 +66,7 @@ std::string shown(const MeasuredKernel& kernel, const graph::LoopCounts& counts)
 }
 
 TEST(PoseInputs, WorstDrivesEveryLoopToItsMaximum) {
-  for (const auto& kernel : kernels()) {
+  for (const auto& kernel : whole_kernels()) {
     for (const Limits& limits : all_limits()) {
       kernel->set_input(InputKind::worst, 0, limits);
       kernel->rewind();
@@ -66,10 +77,24 @@ TEST(PoseInputs, WorstDrivesEveryLoopToItsMaximum) {
   }
 }
 
+// A slice with work left goes beyond its steps by its last item only.
+TEST(BackgroundInputs, WorstUsesAllStepsOfASlice) {
+  for (const auto& kernel : sliced_kernels()) {
+    for (const Limits& limits : all_limits()) {
+      kernel->set_input(InputKind::worst, 0, limits);
+      kernel->rewind();
+      kernel->run();
+      EXPECT_GE(kernel->counts()[1], limits.background_steps) << kernel->name();
+      EXPECT_TRUE(graph::within(kernel->counts(), kernel->worst(limits)))
+          << shown(*kernel, kernel->counts());
+    }
+  }
+}
+
 TEST(PoseInputs, NoInputRunsALoopMoreOftenThanItMay) {
   constexpr InputKind k_kinds[] = {InputKind::typical, InputKind::recorded, InputKind::worst,
                                    InputKind::searched};
-  for (const auto& kernel : kernels()) {
+  for (const auto& kernel : all_kernels()) {
     for (const Limits& limits : all_limits()) {
       for (const InputKind kind : k_kinds) {
         for (std::uint64_t number = 0; number < 24; ++number) {
@@ -85,7 +110,7 @@ TEST(PoseInputs, NoInputRunsALoopMoreOftenThanItMay) {
 }
 
 TEST(PoseInputs, AnInputDoesTheSameEachTimeItRuns) {
-  for (const auto& kernel : kernels()) {
+  for (const auto& kernel : all_kernels()) {
     for (std::uint64_t number = 0; number < 6; ++number) {
       kernel->set_input(InputKind::searched, number, five_tools());
       kernel->run();

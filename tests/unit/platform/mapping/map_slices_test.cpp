@@ -20,11 +20,7 @@ MapSettings small_settings() {
   MapSettings settings;
   settings.voxels_max = 20'000;
   settings.planes.points_min = 100;
-  for (int* most : {&settings.outliers.candidates_max, &settings.smoothing.candidates_max,
-                    &settings.support.candidates_max}) {
-    *most = k_map_candidates_max;
-  }
-  return settings;
+  return in_slices(settings);
 }
 
 // A corner of a room with a ball before it, from six places; a few stray points.
@@ -71,7 +67,12 @@ struct Sliced {
   }
   void run(int steps) {
     while (!map.idle()) {
+      const auto before = static_cast<int>(map.stage());
       const int taken = map.step(steps);
+      // A slice of one step is one thing done, whatever it says of itself.
+      if (steps == 1 && !map.idle()) {
+        ASSERT_LE(static_cast<int>(map.stage()), before + 1);
+      }
       ASSERT_GT(taken, 0);
       ASSERT_LE(taken, steps + k_map_item_steps_max);
       dearest = std::max(dearest, taken);
@@ -176,7 +177,7 @@ TEST(MapSlices, RefuseWhatWouldMakeASliceLonger) {
   EXPECT_EQ(refusal(small_settings(), 1), Reason::none);
   EXPECT_EQ(refusal(small_settings(), 0), Reason::out_of_range);
   MapSettings settings = small_settings();
-  settings.smoothing.candidates_max = k_map_candidates_max + 1;
+  settings.smoothing.candidates_max = k_map_smoothed_over_max + 1;
   EXPECT_EQ(refusal(settings, 1), Reason::out_of_range);
   EXPECT_EQ(MapSlices::bytes(settings), 0u);
   settings = small_settings();
