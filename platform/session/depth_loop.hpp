@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "kernels/units.hpp"
 #include "platform/mapping/depth_sequence.hpp"
 
 namespace glint {
