@@ -24,6 +24,13 @@ Vector3 get_vector(CdrReader& from) {
   return vector;
 }
 
+Pose get_pose(CdrReader& from) {
+  Pose pose;
+  pose.translation = get_vector(from);
+  for (int i = 0; i < 4; ++i) pose.rotation.coeffs()[i] = from.get<double>();  // x, y, z, w
+  return pose;
+}
+
 // One rectangle's rows into the frame; false where their number of bytes is not the rectangle's.
 template <class Pixel>
 bool put_rows(std::span<const std::uint8_t> rows, const Roi& roi, int frame_width,
@@ -120,9 +127,7 @@ std::optional<HeadPose> read_head_pose(MessageBytes bytes) {
   skip_header(from);
   pose.time.nanoseconds = from.get<std::int64_t>();
   pose.valid = from.get<bool>();
-  pose.T_world_camera.translation = get_vector(from);
-  for (int i = 0; i < 4; ++i)  // stored x,y,z,w
-    pose.T_world_camera.rotation.coeffs()[i] = from.get<double>();
+  pose.T_world_camera = get_pose(from);
   if (from.failed()) return std::nullopt;
   return pose;
 }
@@ -217,6 +222,23 @@ std::optional<DroppedInput> read_dropped(MessageBytes bytes) {
   input.reason = static_cast<Reason>(from.get<std::uint8_t>());
   if (from.failed()) return std::nullopt;
   return input;
+}
+
+std::optional<RobotFrameRecord> read_robot_frame(MessageBytes bytes) {
+  CdrReader from(bytes);
+  skip_header(from);
+  RobotFrameRecord frame;
+  frame.version = from.get<std::uint64_t>();
+  frame.time.nanoseconds = from.get<std::int64_t>();
+  const auto state = from.get<std::uint8_t>();
+  frame.in_reference = from.get<bool>();
+  frame.rms_m = from.get<double>();
+  frame.T_world_robot = get_pose(from);
+  if (from.failed() || state > static_cast<std::uint8_t>(RegistrationState::refused)) {
+    return std::nullopt;
+  }
+  frame.state = static_cast<RegistrationState>(state);
+  return frame;
 }
 
 std::optional<ButtonEvent> read_button(MessageBytes bytes) {

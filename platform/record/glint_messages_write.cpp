@@ -100,6 +100,17 @@ void write_message(CdrWriter& to, const DroppedInput& input, Duration unix_offse
   to.put(static_cast<std::uint8_t>(input.reason));
 }
 
+void write_message(CdrWriter& to, const RobotFrameRecord& frame, Duration unix_offset) {
+  to.begin();
+  put_header(to, frame.time + unix_offset, k_world_frame);
+  to.put(frame.version);
+  to.put(frame.time.nanoseconds);
+  to.put(static_cast<std::uint8_t>(frame.state));
+  to.put(frame.in_reference);
+  to.put(frame.rms_m);
+  put_pose(to, frame.T_world_robot);
+}
+
 void write_message(CdrWriter& to, const ButtonEvent& event, Duration unix_offset) {
   to.begin();
   put_header(to, event.time + unix_offset, "");

@@ -20,7 +20,8 @@ enum Kind : std::uint32_t {
   k_choice,
   k_output,
   k_dropped,
-  k_button
+  k_button,
+  k_robot_frame
 };
 
 struct OutputOffer {
@@ -43,6 +44,8 @@ template <>
 constexpr Kind k_kind_of<DroppedInput> = k_dropped;
 template <>
 constexpr Kind k_kind_of<ButtonEvent> = k_button;
+template <>
+constexpr Kind k_kind_of<RobotFrameRecord> = k_robot_frame;
 
 // Short against the seconds that the rings hold, long against a wake-up's cost.
 constexpr auto k_look_again = std::chrono::microseconds(500);
@@ -107,6 +110,9 @@ bool RecorderLane::offer_choice(const ChoiceRecord& choice) noexcept {
 bool RecorderLane::offer_dropped(const DroppedInput& input) noexcept {
   return !keeps_inputs(level_) || offer(input);
 }
+bool RecorderLane::offer_robot_frame(const RobotFrameRecord& frame) noexcept {
+  return !keeps_inputs(level_) || offer(frame);
+}
 bool RecorderLane::offer_button(const ButtonEvent& event) noexcept { return offer(event); }
 
 bool RecorderLane::offer_output(const PoseSample& sample,
@@ -127,6 +133,7 @@ Recorder::Recorder(const std::string& path, const RecordingInfo& info, RecorderS
   frame_lane().ring_.reserve(settings.frame_lane_bytes);
   tick_lane().ring_.reserve(settings.tick_lane_bytes);
   input_lane().ring_.reserve(settings.input_lane_bytes);
+  slice_lane().ring_.reserve(settings.slice_lane_bytes);
   for (RecorderLane& lane : lanes_) {
     lane.ticket_ = &ticket_;
     lane.level_ = info.level;
@@ -196,6 +203,9 @@ void Recorder::write_item(const OfferSlot& offer) {
     }
     case k_dropped:
       writer_.write_dropped(item_in<DroppedInput>(offer));
+      break;
+    case k_robot_frame:
+      writer_.write_robot_frame(item_in<RobotFrameRecord>(offer));
       break;
     case k_button:
       writer_.write_button(item_in<ButtonEvent>(offer));

@@ -28,6 +28,7 @@ struct RecorderSettings {
   std::size_t frame_lane_bytes = std::size_t{26} << 20;  // 24 whole AHAT frames
   std::size_t tick_lane_bytes = std::size_t{4} << 20;    // 5 s of 1 kHz
   std::size_t input_lane_bytes = std::size_t{1} << 16;
+  std::size_t slice_lane_bytes = std::size_t{1} << 16;
   WhenFull when_full = WhenFull::drop;
   int roi_margin_px = 8;  // beyond each region, see roi_layout
   RecordingSettings file;
@@ -44,6 +45,7 @@ class RecorderLane {
   // record: at most k_offered_record_bytes_max, else dropped.
   bool offer_output(const PoseSample& sample, std::span<const std::uint8_t> record) noexcept;
   bool offer_dropped(const DroppedInput& input) noexcept;
+  bool offer_robot_frame(const RobotFrameRecord& frame) noexcept;
   bool offer_button(const ButtonEvent& event) noexcept;  // at every level
 
  private:
@@ -72,6 +74,7 @@ class Recorder {
   [[nodiscard]] RecorderLane& frame_lane() noexcept { return lanes_[0]; }
   [[nodiscard]] RecorderLane& tick_lane() noexcept { return lanes_[1]; }
   [[nodiscard]] RecorderLane& input_lane() noexcept { return lanes_[2]; }
+  [[nodiscard]] RecorderLane& slice_lane() noexcept { return lanes_[3]; }
 
   // Offers that were dropped so far; any thread may ask.
   [[nodiscard]] std::uint64_t dropped() const noexcept;
@@ -88,7 +91,7 @@ class Recorder {
   void write_item(const OfferSlot& offer);
 
   RecordingWriter writer_;
-  std::array<RecorderLane, 3> lanes_;
+  std::array<RecorderLane, 4> lanes_;
   alignas(64) std::atomic<std::uint64_t> ticket_{0};
   std::uint64_t next_ = 0;
   std::atomic<bool> ending_{false};

@@ -18,6 +18,7 @@
 #include "kernels/units.hpp"
 #include "platform/record/button_event.hpp"
 #include "platform/record/choice_record.hpp"
+#include "platform/record/robot_frame_record.hpp"
 #include "platform/sensors/frame_buffer.hpp"
 
 namespace glint {
@@ -81,7 +82,7 @@ struct OutputMessage {
 };
 
 using RecordedMessage = std::variant<FrameMessage, HeadPose, MarkerFrame, ChoiceRecord,
-                                     OutputMessage, DroppedInput, ButtonEvent>;
+                                     OutputMessage, DroppedInput, ButtonEvent, RobotFrameRecord>;
 
 // How a recording ended.
 struct RecordingOutcome {

@@ -72,7 +72,7 @@ struct RecordingWriter::Body {
   CdrWriter cdr;
   std::uint32_t sequence = 0;
   std::uint16_t frame = 0, reflectivity = 0, depth = 0, head_pose = 0, markers = 0, choice = 0,
-                dropped = 0, button = 0, output = 0, transform = 0;
+                dropped = 0, button = 0, robot_frame = 0, output = 0, transform = 0;
   std::vector<ToolChannels> tools;
   Sha256 output_hash;
   McapTexts closing;
@@ -99,6 +99,7 @@ RecordingWriter::Body::Body(const std::string& file, const RecordingInfo& info,
     dropped = channel(k_dropped_topic, "glint_msgs/msg/Dropped");
   }
   output = channel(k_output_topic, "glint_msgs/msg/Output");
+  robot_frame = channel(k_robot_frame_topic, "glint_msgs/msg/RobotFrame");
   button = channel(k_button_topic, "glint_msgs/msg/Button");
   transform = channel(k_transform_topic, "tf2_msgs/msg/TFMessage");
   for (std::size_t i = 0; i < tool_names.size(); ++i) (void)tool(i);
@@ -198,6 +199,12 @@ void RecordingWriter::write_dropped(const DroppedInput& input) {
   if (!keeps_inputs(body_->level)) return;
   write_message(body_->cdr, input, body_->unix_offset);
   body_->write(body_->dropped, input.arrival);
+}
+
+void RecordingWriter::write_robot_frame(const RobotFrameRecord& frame) {
+  if (!keeps_inputs(body_->level)) return;
+  write_message(body_->cdr, frame, body_->unix_offset);
+  body_->write(body_->robot_frame, frame.time);
 }
 
 void RecordingWriter::write_button(const ButtonEvent& event) {

@@ -39,6 +39,7 @@ class RecordingWriter {
   // Also writes /glint/pen_pose, /glint/pen_pose_cov and /tf where the sample has a pose.
   void write_output(const PoseSample& sample, std::span<const std::uint8_t> record);
   void write_dropped(const DroppedInput& input);
+  void write_robot_frame(const RobotFrameRecord& frame);
   void write_button(const ButtonEvent& event);  // at every level: a path is made of these
 
   // Offers that never arrived here: the recording is then marked incomplete.

@@ -84,6 +84,11 @@ constexpr std::array k_definitions{
     Definition{"glint_msgs/Dropped",
                "std_msgs/Header header\nint64 mid_exposure_ns\nint64 arrival_ns\n"
                "uint32 sequence\nuint8 reason\n"},
+    Definition{"glint_msgs/RobotFrame",
+               "uint8 NONE=0\nuint8 GIVEN=1\nuint8 ACCEPTED=2\nuint8 REFUSED=3\n"
+               "std_msgs/Header header\nuint64 version  # as a tick's choice names it\n"
+               "int64 time_ns\nuint8 state\nbool in_reference\nfloat64 rms_m\n"
+               "geometry_msgs/Pose pose  # of the robot in the world, or in the reference body\n"},
     Definition{"glint_msgs/Button",
                "uint8 DRAW=0\nuint8 DELETE_LAST=1\nuint8 UNDO=2\nuint8 FINISH=3\n"
                "std_msgs/Header header\nint64 time_ns\nuint8 button\nbool pressed\n"},

@@ -55,6 +55,11 @@ class Replayer {
   void on(const HeadPose& head) { head_ = head; }
   void on(const DroppedInput&) {}  // said beside the frame, which is there as well
   void on(const ButtonEvent&) {}   // a path is made of it, no pose
+  // It stands in front of every tick that read it.
+  void on(const RobotFrameRecord& frame) {
+    robot_frames_[frame.version] = {frame.state, frame.T_world_robot, frame.rms_m,
+                                    frame.in_reference};
+  }
 
   void on(const FrameMessage& frame) {
     const Frame view = frame.view();
@@ -164,7 +169,12 @@ class Replayer {
       output_->latest<Estimates>().set(*known->second, version, 0);
     }
     if (choice.versions[1] != output_->latest<RobotFrame>().version()) {
-      output_->latest<RobotFrame>().set(robot_, choice.versions[1], 0);
+      const RobotFrame* const robot = robot_frame(choice.versions[1]);
+      if (robot == nullptr) {
+        ++result_.versions_missing;
+        return;
+      }
+      output_->latest<RobotFrame>().set(*robot, choice.versions[1], 0);
     }
     // Ticks that were skipped have numbers, too.
     const auto number =
@@ -181,6 +191,13 @@ class Replayer {
       decided_.push_back(std::move(record));
     }
     compare();
+  }
+
+  // The first version is the cell's own; the others are in the recording.
+  [[nodiscard]] const RobotFrame* robot_frame(std::uint64_t version) const {
+    if (version <= 1) return &robot_;
+    const auto known = robot_frames_.find(version);
+    return known == robot_frames_.end() ? nullptr : &known->second;
   }
 
   // What left at this tick.
@@ -220,6 +237,7 @@ class Replayer {
   std::unique_ptr<PoseSamples> samples_in_time_ = std::make_unique<PoseSamples>();
   std::unique_ptr<PoseSamples> substitute_ = std::make_unique<PoseSamples>();
   RobotFrame robot_;
+  std::map<std::uint64_t, RobotFrame> robot_frames_;
   HeadPose head_;
   std::unique_ptr<Tracker> tracker_ = std::make_unique<Tracker>();
   std::unique_ptr<MarkerTracker> marker_tracker_ = std::make_unique<MarkerTracker>();

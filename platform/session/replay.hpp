@@ -25,7 +25,7 @@ struct ReplayResult {
   std::int64_t overruns = 0;          // decisions about them, taken from the recording
   std::int64_t mismatches = 0;        // records that differ from the recorded ones
   std::int64_t first_mismatch = -1;   // its number
-  std::int64_t versions_missing = 0;  // ticks that read estimates which the recording lacks
+  std::int64_t versions_missing = 0;  // ticks that read what the recording lacks
   std::string output_sha256;          // of the records decided here
   std::string recorded_sha256;        // of the run, as it wrote at its end
   // A recording that ended early has no hash of its own, and its last tick may be cut in two.

@@ -160,6 +160,20 @@ void add_button(Sample& sample, const ButtonEvent& event) {
                  {"pressed", event.pressed}});
 }
 
+void add_robot_frame(Sample& sample, const RobotFrameRecord& frame) {
+  sample.writer.write_robot_frame(frame);
+  sample.expect("/glint/robot_frame", frame.time,
+                {{"header", sample.header(frame.time, "hmd_world")},
+                 {"version", std::to_string(frame.version)},
+                 {"time_ns", number(frame.time.nanoseconds)},
+                 {"state", static_cast<int>(frame.state)},
+                 {"in_reference", frame.in_reference},
+                 {"rms_m", frame.rms_m},
+                 {"pose",
+                  {{"position", xyz(frame.T_world_robot.translation)},
+                   {"orientation", xyzw(frame.T_world_robot.rotation)}}}});
+}
+
 void add_output(Sample& sample, const PoseSample& output) {
   const auto record = record_of(output);
   sample.writer.write_output(output, record);
@@ -216,6 +230,9 @@ void make(const std::string& folder, RecordingLevel level) {
     if (i % 2 == 0) output.frame = ReferenceFrame::world;
     add_output(sample, output);
     add_button(sample, {output.tick, Button::undo, i % 2 == 0});
+    if (level == RecordingLevel::outputs) continue;
+    add_robot_frame(sample, {i + 2, output.tick, RegistrationState::accepted,
+                             sample_head_pose(4).T_world_camera, 0.004, i % 2 == 0});
   }
   const RecordingOutcome outcome = sample.writer.close();
   json attachments = json::array();

@@ -208,6 +208,50 @@ TEST(Recording, KeepsThePensButtonsAtEveryLevel) {
   }
 }
 
+TEST(Recording, KeepsTheRobotsFramesToTheBitWhereTheyAreDecidedFrom) {
+  RobotFrameRecord frame;
+  frame.version = 7;
+  frame.time = {12'345};
+  frame.state = RegistrationState::accepted;
+  frame.T_world_robot = {Quaternion(0.1, 0.7, 1.0 / 3, -0.2), Vector3(1.0 / 7, -2, 3)};
+  frame.rms_m = 0.0041;
+  frame.in_reference = true;
+  for (const RecordingLevel level : {RecordingLevel::full, RecordingLevel::roi,
+                                     RecordingLevel::blobs, RecordingLevel::outputs}) {
+    const TemporaryFolder folder;
+    {
+      RecordingWriter writer(folder.file("run.mcap"), sample_info(level));
+      writer.write_robot_frame(frame);
+    }
+    RecordingReader reader(folder.file("run.mcap"));
+    const auto messages = all_messages(reader);
+    if (level == RecordingLevel::outputs) {
+      EXPECT_TRUE(messages.empty());
+      continue;
+    }
+    ASSERT_EQ(messages.size(), 1U);
+    const auto& back = std::get<RobotFrameRecord>(messages[0]);
+    EXPECT_EQ(back.version, frame.version);
+    EXPECT_EQ(back.time, frame.time);
+    EXPECT_EQ(back.state, frame.state);
+    EXPECT_EQ(back.in_reference, frame.in_reference);
+    EXPECT_EQ(back.rms_m, frame.rms_m);
+    EXPECT_EQ(back.T_world_robot.translation, frame.T_world_robot.translation);
+    EXPECT_EQ(back.T_world_robot.rotation.coeffs(), frame.T_world_robot.rotation.coeffs());
+  }
+}
+
+TEST(Recording, RefusesARobotsFrameThatIsNotWholeOrOfNoState) {
+  CdrWriter writer;
+  RobotFrameRecord frame;
+  write_message(writer, frame, {});
+  EXPECT_TRUE(read_robot_frame(writer.bytes()).has_value());
+  EXPECT_FALSE(read_robot_frame(writer.bytes().first(writer.bytes().size() - 1)).has_value());
+  frame.state = static_cast<RegistrationState>(4);
+  write_message(writer, frame, {});
+  EXPECT_FALSE(read_robot_frame(writer.bytes()).has_value());
+}
+
 TEST(Recording, RefusesAButtonThatIsNotInTheList) {
   CdrWriter writer;
   write_message(writer, ButtonEvent{{1}, Button::finish, true}, {});
