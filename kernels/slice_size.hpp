@@ -25,4 +25,25 @@ struct SliceSize {
   int steps;
 };
 
+// The steps of a slice, as they are used up.
+class StepBudget {
+ public:
+  explicit constexpr StepBudget(int steps = SliceSize::k_steps_max) noexcept : left_(steps) {}
+  void take(int steps) noexcept { left_ -= steps; }
+  [[nodiscard]] bool spent() const noexcept { return left_ <= 0; }
+  // Below 0 by what the last item took beyond it.
+  [[nodiscard]] int left() const noexcept { return left_; }
+  // The first of [from, end) that is not to be done now, where each takes so many steps or fewer;
+  // takes them.
+  [[nodiscard]] int end_of(int from, int end, int steps_each) noexcept {
+    const int items = SliceSize(SliceSize::k_steps_max, left_).items_of(steps_each);
+    const int done = end - from < items ? end - from : items;
+    take(done * steps_each);
+    return from + done;
+  }
+
+ private:
+  int left_;
+};
+
 }  // namespace glint

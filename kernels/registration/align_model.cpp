@@ -6,40 +6,6 @@
 namespace glint {
 namespace {
 
-// The middle of what is seen, in the world: turns about it move it least.
-Vector3 middle_of(std::span<const SceneView> views, const AlignmentScratch& scratch) noexcept {
-  Vector3 sum = Vector3::Zero();
-  int count = 0;
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    const AlignmentScratch::View& memory = scratch.views[v];
-    Vector3 of_view = Vector3::Zero();
-    for (int i = 0; i < memory.seen_count; ++i) {
-      of_view += memory.seen[static_cast<std::size_t>(i)].point.cast<double>();
-    }
-    if (memory.seen_count == 0) continue;
-    const Pose T_world_camera = views[v].T_camera_world.inverse();
-    sum += T_world_camera.rotation * of_view + memory.seen_count * T_world_camera.translation;
-    count += memory.seen_count;
-  }
-  return count > 0 ? Vector3(sum / count) : sum;
-}
-
-// T_world_since: how the model moved in the world since it was rendered.
-AlignmentSums sums_of(std::span<const SceneView> views, const Pose& T_world_since,
-                      const Vector3& middle, const Gate& gate,
-                      const AlignmentScratch& scratch) noexcept {
-  AlignmentSums sums;
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    const AlignmentScratch::View& memory = scratch.views[v];
-    const Pose& T_camera_world = views[v].T_camera_world;
-    const Pose T_world_camera = T_camera_world.inverse();
-    add_pairs(std::span(memory.seen).first(static_cast<std::size_t>(memory.seen_count)),
-              T_camera_world * T_world_since * T_world_camera, gate.matching, gate.gate_m, views[v],
-              {&memory.grid, memory.scene}, T_world_camera.rotation, T_camera_world * middle, sums);
-  }
-  return sums;
-}
-
 Matrix6 covariance_of(const AlignmentSums& sums, const Vector3& middle,
                       const Pose& T_world_base) noexcept {
   const Result<PoseFactor> factor = pose_factor(sums.matrix);
@@ -78,6 +44,17 @@ void AlignmentRun::start(const Pose& T_world_base, const AlignmentSettings& sett
 }
 
 bool AlignmentRun::step(std::span<const SceneView> views, AlignmentScratch& scratch) noexcept {
+  bool more = true, whole = false;
+  for (StepBudget all; more && !whole; all = StepBudget()) {
+    more = step(views, all, scratch);
+    whole = phase_ == Phase::grid || phase_ == Phase::start_view ||
+            (phase_ == Phase::pair && view_ == 0 && at_ == 0);
+  }
+  return more;
+}
+
+bool AlignmentRun::step(std::span<const SceneView> views, StepBudget& budget,
+                        AlignmentScratch& scratch) noexcept {
   if (phase_ == Phase::begin) {
     if (!scene_fits(views, scratch)) {
       result_.reason = Reason::not_prepared;
@@ -91,18 +68,80 @@ bool AlignmentRun::step(std::span<const SceneView> views, AlignmentScratch& scra
     search_scene(views[view_], gate_.step > 2 ? 2 : 1, gate_.gate_m, scratch.views[view_]);
     if (++view_ < views.size()) return true;
     view_ = 0;
-    phase_ = Phase::render;
-  } else if (phase_ == Phase::render) {
-    if (view_ == 0) T_world_rendered_ = result_.T_world_base;
-    render_model(views[view_], T_world_rendered_, gate_.step, scratch.views[view_]);
-    if (++view_ < views.size()) return true;
-    view_ = 0;
-    middle_ = middle_of(views, scratch);
-    phase_ = Phase::move;
-  } else if (phase_ == Phase::move) {
-    move(views, scratch);
+    phase_ = Phase::start_view;
+    return true;
+  }
+  if (phase_ == Phase::start_view) start_view(views, scratch);
+  if (phase_ == Phase::render) {
+    if (!rendering_.step(budget, scratch.views[view_])) return true;
+    phase_ = Phase::middle;
+  } else if (phase_ == Phase::middle) {
+    find_middle(views, budget, scratch);
+  } else if (phase_ == Phase::pair) {
+    pair(views, budget, scratch);
   }
   return phase_ != Phase::done;
+}
+
+void AlignmentRun::start_view(std::span<const SceneView> views,
+                              AlignmentScratch& scratch) noexcept {
+  if (view_ == 0) {
+    T_world_rendered_ = result_.T_world_base;
+    of_all_ = Vector3::Zero();
+    seen_ = 0;
+  }
+  rendering_.start(views[view_], T_world_rendered_, gate_.step, scratch.views[view_]);
+  of_view_ = Vector3::Zero();
+  at_ = 0;
+  phase_ = Phase::render;
+}
+
+// The middle of what is seen, in the world: turns about it move it least.
+void AlignmentRun::find_middle(std::span<const SceneView> views, StepBudget& budget,
+                               const AlignmentScratch& scratch) noexcept {
+  const AlignmentScratch::View& memory = scratch.views[view_];
+  for (const int end = budget.end_of(at_, memory.seen_count, k_middle_steps); at_ < end; ++at_) {
+    of_view_ += memory.seen[static_cast<std::size_t>(at_)].point.cast<double>();
+  }
+  if (at_ < memory.seen_count) return;
+  if (memory.seen_count > 0) {
+    const Pose T_world_camera = views[view_].T_camera_world.inverse();
+    of_all_ += T_world_camera.rotation * of_view_ + memory.seen_count * T_world_camera.translation;
+    seen_ += memory.seen_count;
+  }
+  phase_ = Phase::start_view;
+  if (++view_ < views.size()) return;
+  view_ = 0;
+  middle_ = seen_ > 0 ? Vector3(of_all_ / seen_) : of_all_;
+  begin_pairs();
+}
+
+void AlignmentRun::begin_pairs() noexcept {
+  at_ = 0;
+  sums_ = AlignmentSums{};
+  phase_ = Phase::pair;
+}
+
+void AlignmentRun::pair(std::span<const SceneView> views, StepBudget& budget,
+                        const AlignmentScratch& scratch) noexcept {
+  // How the model moved in the world since it was rendered.
+  const Pose T_world_since = result_.T_world_base * T_world_rendered_.inverse();
+  const AlignmentScratch::View& memory = scratch.views[view_];
+  const Pose& T_camera_world = views[view_].T_camera_world;
+  const Pose T_world_camera = T_camera_world.inverse();
+  const int end = budget.end_of(at_, memory.seen_count, k_pair_steps);
+  add_pairs(std::span(memory.seen)
+                .subspan(static_cast<std::size_t>(at_), static_cast<std::size_t>(end - at_)),
+            T_camera_world * T_world_since * T_world_camera, gate_.matching, gate_.gate_m,
+            views[view_], {&memory.grid, memory.scene}, T_world_camera.rotation,
+            T_camera_world * middle_, sums_);
+  at_ = end;
+  if (at_ < memory.seen_count) return;
+  at_ = 0;
+  if (++view_ < views.size()) return;
+  view_ = 0;
+  budget.take(k_solve_steps);
+  move();
 }
 
 void AlignmentRun::begin_gate() noexcept {
@@ -111,18 +150,15 @@ void AlignmentRun::begin_gate() noexcept {
     gate_.steps_max = std::min(gate_.steps_max, k_alignment_steps_max);
     step_ = 0;
     view_ = 0;
-    phase_ = gate_.matching == Matching::projective ? Phase::render : Phase::grid;
+    phase_ = gate_.matching == Matching::projective ? Phase::start_view : Phase::grid;
     if (gate_.steps_max > 0) return;
     ++number_;
   }
   phase_ = Phase::done;
 }
 
-void AlignmentRun::move(std::span<const SceneView> views,
-                        const AlignmentScratch& scratch) noexcept {
-  const Pose T_world_since = result_.T_world_base * T_world_rendered_.inverse();
-  const AlignmentSums sums = sums_of(views, T_world_since, middle_, gate_, scratch);
-  const Result<AlignmentStep> step = solve(sums);
+void AlignmentRun::move() noexcept {
+  const Result<AlignmentStep> step = solve(sums_);
   ++result_.steps;
   if (!step) {
     result_.reason = Reason::degenerate;
@@ -134,9 +170,11 @@ void AlignmentRun::move(std::span<const SceneView> views,
   const bool rests = step.value.shift.norm() < std::max(wide, settings_.rest_shift_m) &&
                      step.value.turn.norm() < std::max(wide, settings_.rest_turn_rad);
   if (rests || ++step_ == gate_.steps_max) {
-    end_gate(sums);
+    end_gate(sums_);
   } else if (gate_.render_each) {
-    phase_ = Phase::render;
+    phase_ = Phase::start_view;
+  } else {
+    begin_pairs();
   }
 }
 

@@ -22,6 +22,9 @@ namespace glint {
 
 inline constexpr int k_gates_max = 8;
 inline constexpr int k_alignment_steps_max = 60;
+// Of a pair of points, and of a step of Gauss-Newton beside its pairs.
+inline constexpr int k_pair_steps = 80, k_solve_steps = 4000;
+inline constexpr int k_middle_steps = 4;  // of a point, when the middle of all is found
 
 struct Gate {
   double gate_m = 0;
@@ -54,7 +57,9 @@ struct ModelAlignment {
 };
 
 // An alignment in slices: step() after step() until it says false, with the same views and scratch
-// each time. A slice is a grid or a rendering of one view, or one step of Gauss-Newton over all.
+// each time. A slice is a grid or a rendering of one view, or one step of Gauss-Newton over all; or
+// a part of these that takes no more than the budget's steps and those of one point beyond them,
+// where the model is points and all gates are projective.
 class AlignmentRun {
  public:
   // How many slices it takes at most.
@@ -63,6 +68,8 @@ class AlignmentRun {
   void start(const Pose& T_world_base, const AlignmentSettings& settings) noexcept;
   [[nodiscard]] bool step(std::span<const SceneView> views,
                           AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;
+  [[nodiscard]] bool step(std::span<const SceneView> views, StepBudget& budget,
+                          AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;
 
   // Complete when step() has said false.
   [[nodiscard]] const ModelAlignment& result() const noexcept { return result_; }
@@ -70,10 +77,16 @@ class AlignmentRun {
   [[nodiscard]] const Vector3& middle() const noexcept { return middle_; }
 
  private:
-  enum class Phase : std::uint8_t { begin, grid, render, move, done };
+  enum class Phase : std::uint8_t { begin, grid, start_view, render, middle, pair, done };
 
   void begin_gate() noexcept;
-  void move(std::span<const SceneView> views, const AlignmentScratch& scratch) noexcept;
+  void start_view(std::span<const SceneView> views, AlignmentScratch& scratch) noexcept;
+  void find_middle(std::span<const SceneView> views, StepBudget& budget,
+                   const AlignmentScratch& scratch) noexcept;
+  void pair(std::span<const SceneView> views, StepBudget& budget,
+            const AlignmentScratch& scratch) noexcept;
+  void begin_pairs() noexcept;
+  void move() noexcept;
   void end_gate(const AlignmentSums& sums) noexcept;
 
   AlignmentSettings settings_;
@@ -84,6 +97,11 @@ class AlignmentRun {
   Phase phase_ = Phase::done;
   int number_ = 0, step_ = 0;  // of the gate, and in it
   std::size_t view_ = 0;
+  int at_ = 0;  // of the view's points
+  ModelRendering rendering_;
+  Vector3 of_view_ = Vector3::Zero(), of_all_ = Vector3::Zero();  // sums of what is seen
+  int seen_ = 0;
+  AlignmentSums sums_;
 };
 
 // All slices at once. Reason::not_prepared: the scratch is too small for the views.

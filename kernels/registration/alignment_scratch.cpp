@@ -47,12 +47,30 @@ bool scene_fits(std::span<const SceneView> views, const AlignmentScratch& scratc
 
 void render_model(const SceneView& view, const Pose& T_world_base, int step,
                   AlignmentScratch::View& memory) noexcept {
+  ModelRendering run;
+  run.start(view, T_world_base, step, memory);
+  for (StepBudget all; !run.step(all, memory); all = StepBudget()) {
+  }
+}
+
+void ModelRendering::start(const SceneView& view, const Pose& T_world_base, int step,
+                           AlignmentScratch::View& memory) noexcept {
   const DepthBuffer buffer{std::span(memory.z).first(pixels_of(view)),
                            std::span(memory.triangle).first(pixels_of(view)), memory.corners};
   const Pose T_camera_base = view.T_camera_world * T_world_base;
-  memory.seen_count = view.cloud.points.empty()
-                          ? seen_points(view, T_camera_base, step, buffer, memory.seen)
-                          : seen_cloud_points(view, T_camera_base, step, buffer, memory.seen);
+  of_points_ = !view.cloud.points.empty();
+  if (of_points_) {
+    (void)splat_.start(view.cloud, T_camera_base, view.camera, step, buffer, memory.seen);
+  } else {
+    memory.seen_count = seen_points(view, T_camera_base, step, buffer, memory.seen);
+  }
+}
+
+bool ModelRendering::step(StepBudget& budget, AlignmentScratch::View& memory) noexcept {
+  if (!of_points_) return true;
+  if (!splat_.step(budget)) return false;
+  memory.seen_count = splat_.count();
+  return true;
 }
 
 void search_scene(const SceneView& view, int step, double reach_m,
@@ -67,6 +85,29 @@ void search_scene(const SceneView& view, int step, double reach_m,
     }
   }
   (void)memory.grid.build(std::span(memory.scene).first(count), reach_m);
+}
+
+void SceneIndexing::start() noexcept {
+  at_ = 0;
+  count_ = 0;
+  building_ = false;
+}
+
+bool SceneIndexing::step(const SceneView& view, double reach_m, StepBudget& budget,
+                         AlignmentScratch::View& memory) noexcept {
+  if (building_) return memory.grid.build_step(budget);
+  const auto pixels = static_cast<int>(pixels_of(view));
+  for (const int end = budget.end_of(at_, pixels, k_scene_pixel_steps); at_ < end; ++at_) {
+    const auto pixel = static_cast<std::size_t>(at_);
+    const float z = view.depth_m[pixel];
+    if (!(z > 0) || !view.may_be_model(pixel)) continue;
+    memory.scene[count_++] =
+        pixel_point(view.camera, at_ % view.camera.width, at_ / view.camera.width, z);
+  }
+  if (at_ < pixels) return false;
+  (void)memory.grid.begin_build(std::span(memory.scene).first(count_), reach_m);
+  building_ = true;
+  return false;
 }
 
 }  // namespace glint

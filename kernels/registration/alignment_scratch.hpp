@@ -8,6 +8,7 @@
 #include "kernels/nonblocking.hpp"
 #include "kernels/registration/point_grid.hpp"
 #include "kernels/registration/seen_points.hpp"
+#include "kernels/registration/splat_cloud.hpp"
 
 namespace glint {
 
@@ -37,8 +38,35 @@ class AlignmentScratch {
 void render_model(const SceneView& view, const Pose& T_world_base, int step,
                   AlignmentScratch::View& memory) noexcept GLINT_NONBLOCKING;
 
+// The same in slices, step by step until true. A model of triangles is rendered at once.
+class ModelRendering {
+ public:
+  void start(const SceneView& view, const Pose& T_world_base, int step,
+             AlignmentScratch::View& memory) noexcept GLINT_NONBLOCKING;
+  [[nodiscard]] bool step(StepBudget& budget,
+                          AlignmentScratch::View& memory) noexcept GLINT_NONBLOCKING;
+
+ private:
+  CloudSplat splat_;
+  bool of_points_ = false;
+};
+
 // Makes the scene's points, every step-th, ready for searches within reach_m.
 void search_scene(const SceneView& view, int step, double reach_m,
                   AlignmentScratch::View& memory) noexcept GLINT_NONBLOCKING;
+
+// The same of all pixels, in slices.
+inline constexpr int k_scene_pixel_steps = 16;
+class SceneIndexing {
+ public:
+  void start() noexcept;
+  [[nodiscard]] bool step(const SceneView& view, double reach_m, StepBudget& budget,
+                          AlignmentScratch::View& memory) noexcept GLINT_NONBLOCKING;
+
+ private:
+  int at_ = 0;
+  std::size_t count_ = 0;
+  bool building_ = false;
+};
 
 }  // namespace glint

@@ -17,6 +17,9 @@ Vector3 turn_between(const Quaternion& a, const Quaternion& b) noexcept {
   return q.vec() * ((q.w() < 0 ? -angle : angle) / sine);
 }
 
+// Of a call, with what it does once whatever it goes on with.
+constexpr int k_follow_call_steps = 200;
+
 double sigma_of(const Matrix6& covariance, int first) noexcept {
   return std::sqrt(covariance(first, first) + covariance(first + 1, first + 1) +
                    covariance(first + 2, first + 2));
@@ -90,14 +93,40 @@ bool ReferenceFollower::step() noexcept {
   if (phase_ == Phase::idle) return false;
   const std::span<const SceneView> views(&view_, 1);
   if (phase_ == Phase::align) {
-    if (!run_.step(views, scratch_)) phase_ = Phase::judge;
+    if (!run_.step(views, scratch_)) begin_judging();
     return true;
   }
+  bool more = true;
+  for (StepBudget all; more; all = StepBudget()) more = step(all);
+  return false;
+}
+
+int ReferenceFollower::step(int most_steps) noexcept {
+  StepBudget budget(std::max(most_steps, 1));
+  const int before = budget.left();
+  bool more = !idle();
+  while (more && !budget.spent()) more = step(budget);
+  return before - budget.left();
+}
+
+bool ReferenceFollower::step(StepBudget& budget) noexcept {
+  const std::span<const SceneView> views(&view_, 1);
+  budget.take(k_follow_call_steps);
+  if (phase_ == Phase::align) {
+    if (!run_.step(views, budget, scratch_)) begin_judging();
+    return true;
+  }
+  if (!judge_.step(views, budget, scratch_)) return true;
   report_.seen = run_.result();
-  report_.judgement = judge_alignment(views, report_.seen.T_world_base, settings.judge, scratch_);
+  report_.judgement = judge_.result();
   decide();
   phase_ = Phase::idle;
   return false;
+}
+
+void ReferenceFollower::begin_judging() noexcept {
+  judge_.start(run_.result().T_world_base, settings.judge);
+  phase_ = Phase::judge;
 }
 
 FollowOutcome ReferenceFollower::outcome() const noexcept {

@@ -4,7 +4,8 @@
 //           from where it is taken to be and judged; if it is there, near, and surely so, the pose
 //           goes the part 1 - exp(-dt / time_constant) of the way. Else it stays, with the reason.
 // Cost:     slices_max() slices a picture: renderings of the model, steps of Gauss-Newton, and one
-//           judgement, the largest: a rendering, a grid of the picture and a search a pixel.
+//           judgement, the largest: a rendering, a grid of the picture and a search a pixel. Or as
+//           many as it takes, each of so many steps (slice_size.hpp): the same bits.
 // Worst:    a model that fills the picture and does not come to rest.
 // Accuracy: drift is followed drift * time_constant late; what it says of itself is the filtered
 //           noise of the pictures and what the declared drift may have done since.
@@ -45,6 +46,12 @@ struct FollowSettings {
   AlignmentSettings alignment = near_alignment();
   JudgeSettings judge;
 };
+
+// A look for the nearest point where all points crowd into one cell; the end of an alignment; a
+// slice begins with no more of what a budget does not know.
+inline constexpr int k_follow_item_steps_max = k_nearest_steps_max + k_judged_steps + 512;
+static_assert(k_follow_item_steps_max > k_solve_steps + k_pair_steps &&
+              k_follow_item_steps_max > k_splat_item_steps_max);
 
 enum class FollowOutcome : std::uint8_t {
   followed,
@@ -90,6 +97,11 @@ class ReferenceFollower {
   // One slice; true while the picture has more.
   [[nodiscard]] bool step() noexcept GLINT_NONBLOCKING;
   [[nodiscard]] int slices_max() const noexcept;
+  // One slice of so many steps, for a model of points; gives the steps that it took: 0 if there is
+  // no picture under way, else at most most_steps + k_follow_item_steps_max.
+  int step(int most_steps) noexcept GLINT_NONBLOCKING;
+  // Whether no picture is under way: what the last one borrowed may go.
+  [[nodiscard]] bool idle() const noexcept { return phase_ == Phase::idle; }
 
   [[nodiscard]] const FollowReport& report() const noexcept { return report_; }
   // Its covariance holds what the declared drift may have done until then.
@@ -98,11 +110,14 @@ class ReferenceFollower {
  private:
   enum class Phase : std::uint8_t { idle, align, judge };
 
+  [[nodiscard]] bool step(StepBudget& budget) noexcept;
+  void begin_judging() noexcept;
   void decide() noexcept;
   [[nodiscard]] FollowOutcome outcome() const noexcept;
 
   AlignmentScratch scratch_;
   AlignmentRun run_;
+  JudgeRun judge_;
   SceneView view_;
   FollowReport report_;
   FollowedReference reference_;  // without drift

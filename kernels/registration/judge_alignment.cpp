@@ -1,78 +1,123 @@
 #include "kernels/registration/judge_alignment.hpp"
 
-#include <array>
 #include <cmath>
 
 namespace glint {
-namespace {
 
-struct Distances {
-  std::array<int, k_distance_steps + 1> counts{};
-  int count = 0;
+void JudgeRun::start(const Pose& T_world_base, const JudgeSettings& settings) noexcept {
+  T_world_base_ = T_world_base;
+  settings_ = settings;
+  result_ = Judgement{};
+  distances_.fill(0);
+  distance_count_ = 0;
+  view_ = 0;
+  phase_ = Phase::begin;
+}
 
-  void add(double distance_m) noexcept {
-    const double step = distance_m / k_distance_step_m;
-    ++counts[step < k_distance_steps ? static_cast<std::size_t>(step) : k_distance_steps];
-    ++count;
-  }
-  [[nodiscard]] double median_m() const noexcept {
-    int below = 0;
-    for (int i = 0; i <= k_distance_steps; ++i) {
-      below += counts[static_cast<std::size_t>(i)];
-      if (2 * below >= count) return (i + 0.5) * k_distance_step_m;
+bool JudgeRun::step(std::span<const SceneView> views, StepBudget& budget,
+                    AlignmentScratch& scratch) noexcept {
+  if (phase_ == Phase::begin) {
+    if (!scene_fits(views, scratch)) {
+      result_.reason = Reason::not_prepared;
+      phase_ = Phase::done;
+      return true;
     }
-    return 0;
+    begin_view(views);
   }
-};
+  if (phase_ == Phase::done) return true;
+  const SceneView& view = views[view_];
+  AlignmentScratch::View& memory = scratch.views[view_];
+  if (phase_ == Phase::index) {
+    if (!indexing_.step(view, k_distance_steps * k_distance_step_m, budget, memory)) return false;
+    rendering_.start(view, T_world_base_, 1, memory);
+    phase_ = Phase::render;
+  } else if (phase_ == Phase::render) {
+    if (!rendering_.step(budget, memory)) return false;
+    at_ = 0;
+    phase_ = Phase::outline;
+  } else if (phase_ == Phase::outline) {
+    outline(view, budget, memory);
+  } else {
+    look(view, budget, memory);
+    if (at_ == memory.seen_count) {
+      ++view_;
+      begin_view(views);
+    }
+  }
+  return phase_ == Phase::done;
+}
 
-}  // namespace
+void JudgeRun::begin_view(std::span<const SceneView> views) noexcept {
+  at_ = 0;
+  indexing_.start();
+  phase_ = view_ < views.size() ? Phase::index : Phase::done;
+  if (phase_ == Phase::done) result_.median_m = median_m();
+}
+
+void JudgeRun::outline(const SceneView& view, StepBudget& budget,
+                       const AlignmentScratch::View& memory) noexcept {
+  const int pixels = view.camera.width * view.camera.height;
+  const int end = budget.end_of(at_, pixels, k_outline_pixel_steps);
+  add_outline(view, memory.z, memory.triangle, settings_.far_m, at_, end, result_.outline);
+  for (; at_ < end; ++at_) {
+    const auto pixel = static_cast<std::size_t>(at_);
+    if (view.mask.empty() || view.mask[pixel] == 0 || !(view.depth_m[pixel] > 0)) continue;
+    ++result_.mask_pixels;
+    result_.mask_covered += memory.triangle[pixel] >= 0 ? 1 : 0;
+  }
+  if (at_ < pixels) return;
+  at_ = 0;
+  phase_ = Phase::look;
+}
+
+void JudgeRun::look(const SceneView& view, StepBudget& budget,
+                    const AlignmentScratch::View& memory) noexcept {
+  for (; at_ < memory.seen_count && !budget.spent(); ++at_) {
+    budget.take(k_judged_steps);
+    look_at(view, memory.seen[static_cast<std::size_t>(at_)], memory.grid, budget);
+  }
+}
+
+void JudgeRun::look_at(const SceneView& view, const SeenPoint& seen, const PointGrid& grid,
+                       StepBudget& budget) noexcept {
+  const auto pixel = static_cast<std::size_t>(seen.pixel);
+  ++result_.rendered;
+  const float z = view.depth_m[pixel];
+  if (!(z > 0)) return;
+  ++result_.measured;
+  const double behind = static_cast<double>(z - seen.point.z());
+  // What the mask says is something else hides the model from however near.
+  const bool something_else = !view.may_be_model(pixel) && behind < 0;
+  if (something_else || behind < -settings_.far_m) {
+    ++result_.hidden;
+    return;
+  }
+  if (behind > settings_.far_m) ++result_.seen_through;
+  const Nearest nearest =
+      grid.nearest(seen.point, static_cast<float>(k_distance_steps * k_distance_step_m), budget);
+  const double distance = std::sqrt(static_cast<double>(nearest.square_m2));
+  if (nearest.index >= 0 && distance <= settings_.inlier_m) ++result_.inliers;
+  const double step = distance / k_distance_step_m;
+  ++distances_[step < k_distance_steps ? static_cast<std::size_t>(step) : k_distance_steps];
+  ++distance_count_;
+}
+
+double JudgeRun::median_m() const noexcept {
+  int below = 0;
+  for (int i = 0; i <= k_distance_steps; ++i) {
+    below += distances_[static_cast<std::size_t>(i)];
+    if (2 * below >= distance_count_) return (i + 0.5) * k_distance_step_m;
+  }
+  return 0;
+}
 
 Judgement judge_alignment(std::span<const SceneView> views, const Pose& T_world_base,
                           const JudgeSettings& settings, AlignmentScratch& scratch) noexcept {
-  Judgement judgement;
-  if (!scene_fits(views, scratch)) {
-    judgement.reason = Reason::not_prepared;
-    return judgement;
+  JudgeRun run;
+  run.start(T_world_base, settings);
+  for (StepBudget all; !run.step(views, all, scratch); all = StepBudget()) {
   }
-  Distances distances;
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    const SceneView& view = views[v];
-    AlignmentScratch::View& memory = scratch.views[v];
-    search_scene(view, 1, k_distance_steps * k_distance_step_m, memory);
-    render_model(view, T_world_base, 1, memory);
-    const OutlineCounts outline =
-        look_beside_outline(view, memory.z, memory.triangle, settings.far_m);
-    judgement.outline.falls += outline.falls;
-    judgement.outline.goes_on += outline.goes_on;
-    for (std::size_t pixel = 0; pixel < view.mask.size(); ++pixel) {
-      if (view.mask[pixel] == 0 || !(view.depth_m[pixel] > 0)) continue;
-      ++judgement.mask_pixels;
-      judgement.mask_covered += memory.triangle[pixel] >= 0 ? 1 : 0;
-    }
-    for (int i = 0; i < memory.seen_count; ++i) {
-      const SeenPoint& seen = memory.seen[static_cast<std::size_t>(i)];
-      const auto pixel = static_cast<std::size_t>(seen.pixel);
-      ++judgement.rendered;
-      const float z = view.depth_m[pixel];
-      if (!(z > 0)) continue;
-      ++judgement.measured;
-      const double behind = static_cast<double>(z - seen.point.z());
-      // What the mask says is something else hides the model from however near.
-      const bool something_else = !view.may_be_model(pixel) && behind < 0;
-      if (something_else || behind < -settings.far_m) {
-        ++judgement.hidden;
-        continue;
-      }
-      if (behind > settings.far_m) ++judgement.seen_through;
-      const Nearest nearest =
-          memory.grid.nearest(seen.point, static_cast<float>(k_distance_steps * k_distance_step_m));
-      const double distance = std::sqrt(static_cast<double>(nearest.square_m2));
-      if (nearest.index >= 0 && distance <= settings.inlier_m) ++judgement.inliers;
-      distances.add(distance);
-    }
-  }
-  judgement.median_m = distances.median_m();
-  return judgement;
+  return run.result();
 }
 
 }  // namespace glint

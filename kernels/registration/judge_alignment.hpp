@@ -11,6 +11,8 @@
 // Source:   the accept test of the project's own trials: share and seen through together.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 
 #include "kernels/registration/align_model.hpp"
@@ -63,6 +65,41 @@ struct Judgement {
   }
 };
 
+// In slices of at most the budget's steps and those of one look beyond them, step() after step()
+// until it says true, with the same views and scratch each time.
+inline constexpr int k_outline_pixel_steps = 60, k_judged_steps = 40;
+class JudgeRun {
+ public:
+  void start(const Pose& T_world_base, const JudgeSettings& settings) noexcept;
+  [[nodiscard]] bool step(std::span<const SceneView> views, StepBudget& budget,
+                          AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;
+  // Complete when step() has said true.
+  [[nodiscard]] const Judgement& result() const noexcept { return result_; }
+
+ private:
+  enum class Phase : std::uint8_t { begin, index, render, outline, look, done };
+  void outline(const SceneView& view, StepBudget& budget,
+               const AlignmentScratch::View& memory) noexcept;
+  void look(const SceneView& view, StepBudget& budget,
+            const AlignmentScratch::View& memory) noexcept;
+  void look_at(const SceneView& view, const SeenPoint& seen, const PointGrid& grid,
+               StepBudget& budget) noexcept;
+  void begin_view(std::span<const SceneView> views) noexcept;
+  [[nodiscard]] double median_m() const noexcept;
+
+  Pose T_world_base_;
+  JudgeSettings settings_;
+  Judgement result_;
+  SceneIndexing indexing_;
+  ModelRendering rendering_;
+  std::array<int, k_distance_steps + 1> distances_{};
+  int distance_count_ = 0;
+  Phase phase_ = Phase::done;
+  std::size_t view_ = 0;
+  int at_ = 0;
+};
+
+// All slices at once.
 [[nodiscard]] Judgement judge_alignment(std::span<const SceneView> views, const Pose& T_world_base,
                                         const JudgeSettings& settings,
                                         AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;

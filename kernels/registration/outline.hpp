@@ -33,4 +33,9 @@ struct OutlineCounts {
                                                 std::span<const std::int32_t> triangle,
                                                 double far_m) noexcept GLINT_NONBLOCKING;
 
+// The same of pixels [from, to), added to the counts.
+void add_outline(const SceneView& view, std::span<const float> model_z,
+                 std::span<const std::int32_t> triangle, double far_m, int from, int to,
+                 OutlineCounts& counts) noexcept GLINT_NONBLOCKING;
+
 }  // namespace glint

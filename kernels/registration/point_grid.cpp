@@ -75,10 +75,11 @@ Eigen::Vector3i PointGrid::cell_of(const Vector3f& point) const noexcept {
   return {part(point.x()), part(point.y()), part(point.z())};
 }
 
-const PointGrid::Cell* PointGrid::find(std::uint64_t key) const noexcept {
+const PointGrid::Cell* PointGrid::find(std::uint64_t key, int& probes) const noexcept {
   const std::size_t mask = cells_.size() - 1;
   std::size_t at = mixed(key) & mask;
   for (int probe = 0; probe < k_grid_probes_max; ++probe) {
+    ++probes;
     if (cells_[at].key == key) return &cells_[at];
     if (cells_[at].key == 0) return nullptr;
     at = (at + 1) & mask;
@@ -86,43 +87,89 @@ const PointGrid::Cell* PointGrid::find(std::uint64_t key) const noexcept {
   return nullptr;
 }
 
-Reason PointGrid::build(std::span<const Vector3f> points, double reach_m) noexcept {
+Reason PointGrid::begin_build(std::span<const Vector3f> points, double reach_m) noexcept {
+  phase_ = Phase::done;
   if (points.size() > slot_of_.size()) return Reason::not_prepared;
   if (!(reach_m > 0) || !(reach_m < 1e3)) return Reason::out_of_range;
-  std::fill(cells_.begin(), cells_.end(), Cell{});
   reach_m_ = static_cast<float>(reach_m);
   cell_m_ = reach_m_ / k_cells_reach;
-  count_ = 0;
-  const std::size_t mask = cells_.size() - 1;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    slot_of_[i] = -1;
-    if (!is_place(points[i])) continue;
-    const std::uint64_t key = key_of(cell_of(points[i]));
-    std::size_t at = mixed(key) & mask;
-    for (int probe = 0; probe < k_grid_probes_max; ++probe, at = (at + 1) & mask) {
-      if (cells_[at].key != 0 && cells_[at].key != key) continue;
-      cells_[at].key = key;
-      ++cells_[at].end;
-      slot_of_[i] = static_cast<std::int32_t>(at);
-      break;
-    }
-  }
-  std::int32_t begin = 0;
-  for (Cell& cell : cells_) {
-    const std::int32_t size = cell.end;
-    cell.begin = cell.end = begin;
-    begin += size;
-  }
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (slot_of_[i] < 0) continue;
-    Cell& cell = cells_[static_cast<std::size_t>(slot_of_[i])];
-    entries_[static_cast<std::size_t>(cell.end++)] = {points[i], static_cast<std::int32_t>(i)};
-    ++count_;
-  }
+  points_ = points;
+  count_ = at_ = 0;
+  begin_ = 0;
+  phase_ = Phase::clear;
   return Reason::none;
 }
 
+Reason PointGrid::build(std::span<const Vector3f> points, double reach_m) noexcept {
+  const Reason reason = begin_build(points, reach_m);
+  StepBudget all;
+  while (!build_step(all)) all = StepBudget();
+  return reason;
+}
+
+void PointGrid::insert(std::size_t i) noexcept {
+  slot_of_[i] = -1;
+  probes_ = 0;
+  if (!is_place(points_[i])) return;
+  const std::size_t mask = cells_.size() - 1;
+  const std::uint64_t key = key_of(cell_of(points_[i]));
+  std::size_t at = mixed(key) & mask;
+  for (; probes_ < k_grid_probes_max; ++probes_, at = (at + 1) & mask) {
+    if (cells_[at].key != 0 && cells_[at].key != key) continue;
+    cells_[at].key = key;
+    ++cells_[at].end;
+    slot_of_[i] = static_cast<std::int32_t>(at);
+    break;
+  }
+}
+
+bool PointGrid::build_step(StepBudget& budget) noexcept {
+  const auto cells = static_cast<int>(cells_.size()), points = static_cast<int>(points_.size());
+  if (phase_ == Phase::clear) {
+    const int end = budget.end_of(at_, cells, k_grid_clear_steps);
+    std::fill(cells_.begin() + at_, cells_.begin() + end, Cell{});
+    at_ = end;
+    if (at_ < cells) return false;
+    at_ = 0;
+    phase_ = Phase::insert;
+  } else if (phase_ == Phase::insert) {
+    for (; at_ < points && !budget.spent(); ++at_) {
+      insert(static_cast<std::size_t>(at_));
+      budget.take(k_grid_insert_steps + probes_ * k_grid_probe_steps);
+    }
+    if (at_ < points) return false;
+    at_ = 0;
+    phase_ = Phase::sum;
+  } else if (phase_ == Phase::sum) {
+    for (const int end = budget.end_of(at_, cells, k_grid_sum_steps); at_ < end; ++at_) {
+      Cell& cell = cells_[static_cast<std::size_t>(at_)];
+      const std::int32_t size = cell.end;
+      cell.begin = cell.end = begin_;
+      begin_ += size;
+    }
+    if (at_ < cells) return false;
+    at_ = 0;
+    phase_ = Phase::place;
+  } else if (phase_ == Phase::place) {
+    for (const int end = budget.end_of(at_, points, k_grid_place_steps); at_ < end; ++at_) {
+      const auto i = static_cast<std::size_t>(at_);
+      if (slot_of_[i] < 0) continue;
+      Cell& cell = cells_[static_cast<std::size_t>(slot_of_[i])];
+      entries_[static_cast<std::size_t>(cell.end++)] = {points_[i], at_};
+      ++count_;
+    }
+    if (at_ == points) phase_ = Phase::done;
+  }
+  return phase_ == Phase::done;
+}
+
 Nearest PointGrid::nearest(const Vector3f& point, float radius_m) const noexcept {
+  StepBudget all;
+  return nearest(point, radius_m, all);
+}
+
+Nearest PointGrid::nearest(const Vector3f& point, float radius_m,
+                           StepBudget& budget) const noexcept {
   Nearest best;
   best.square_m2 = radius_m * radius_m;
   if (count_ == 0 || !is_place(point)) return best;
@@ -131,7 +178,9 @@ Nearest PointGrid::nearest(const Vector3f& point, float radius_m) const noexcept
   for (const Offset& offset : k_order) {
     const float least = offset.least_m * cell_m_;
     if (least * least > best.square_m2) continue;
-    const Cell* cell = find(key_of(middle + Eigen::Vector3i(offset.x, offset.y, offset.z)));
+    int probes = 0;
+    const Cell* cell = find(key_of(middle + Eigen::Vector3i(offset.x, offset.y, offset.z)), probes);
+    budget.take(k_grid_find_steps + probes * k_grid_probe_steps);
     if (cell == nullptr) continue;
     for (std::int32_t i = cell->begin; i < cell->end && left > 0; ++i, --left) {
       const Entry& entry = entries_[static_cast<std::size_t>(i)];
@@ -144,6 +193,7 @@ Nearest PointGrid::nearest(const Vector3f& point, float radius_m) const noexcept
       }
     }
   }
+  budget.take((k_grid_points_looked_at - left) * k_grid_point_steps);
   return best;
 }
 

@@ -16,11 +16,23 @@
 #include "kernels/nonblocking.hpp"
 #include "kernels/reason.hpp"
 #include "kernels/registration/triangle.hpp"
+#include "kernels/slice_size.hpp"
 
 namespace glint {
 
 inline constexpr int k_grid_points_looked_at = 4096;  // of one search
 inline constexpr int k_grid_probes_max = 64;          // of one look-up of a cell
+
+// Of cleared, of counted, of summed cells or points and of placed points; of a cell that is looked
+// up and of each probe; of a point that is looked at.
+inline constexpr int k_grid_clear_steps = 1, k_grid_insert_steps = 24, k_grid_sum_steps = 3,
+                     k_grid_place_steps = 8, k_grid_find_steps = 10, k_grid_probe_steps = 2,
+                     k_grid_point_steps = 4;
+inline constexpr int k_grid_insert_steps_max =
+    k_grid_insert_steps + k_grid_probes_max * k_grid_probe_steps;
+inline constexpr int k_nearest_steps_max =
+    125 * (k_grid_find_steps + k_grid_probes_max * k_grid_probe_steps) +
+    k_grid_points_looked_at * k_grid_point_steps;
 
 struct Nearest {
   std::int32_t index = -1;  // of the point as it was given; -1: none within the radius
@@ -38,9 +50,17 @@ class PointGrid {
   [[nodiscard]] Reason build(std::span<const Vector3f> points,
                              double reach_m) noexcept GLINT_NONBLOCKING;
 
-  // radius_m: at most the reach.
+  // The same in slices: begin, then step by step until true. The points must stay as they are.
+  [[nodiscard]] Reason begin_build(std::span<const Vector3f> points,
+                                   double reach_m) noexcept GLINT_NONBLOCKING;
+  [[nodiscard]] bool build_step(StepBudget& budget) noexcept GLINT_NONBLOCKING;
+
+  // radius_m: at most the reach. Takes at most k_nearest_steps_max steps.
   [[nodiscard]] Nearest nearest(const Vector3f& point,
                                 float radius_m) const noexcept GLINT_NONBLOCKING;
+
+  [[nodiscard]] Nearest nearest(const Vector3f& point, float radius_m,
+                                StepBudget& budget) const noexcept GLINT_NONBLOCKING;
 
   [[nodiscard]] int size() const { return count_; }
 
@@ -53,7 +73,9 @@ class PointGrid {
     Vector3f point;
     std::int32_t index;
   };
-  [[nodiscard]] const Cell* find(std::uint64_t key) const noexcept;
+  enum class Phase : std::uint8_t { clear, insert, sum, place, done };
+  [[nodiscard]] const Cell* find(std::uint64_t key, int& probes) const noexcept;
+  void insert(std::size_t point) noexcept;
   [[nodiscard]] std::uint64_t key_of(const Eigen::Vector3i& cell) const noexcept;
   [[nodiscard]] Eigen::Vector3i cell_of(const Vector3f& point) const noexcept;
 
@@ -63,6 +85,11 @@ class PointGrid {
   float cell_m_ = 1;
   float reach_m_ = 0;
   int count_ = 0;
+  std::span<const Vector3f> points_;  // while it is built
+  Phase phase_ = Phase::done;
+  int at_ = 0;
+  std::int32_t begin_ = 0;
+  int probes_ = 0;  // of the last insert
 };
 
 }  // namespace glint

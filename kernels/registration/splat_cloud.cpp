@@ -78,64 +78,128 @@ class Splatter {
 
 }  // namespace
 
-Reason splat_cloud(const ModelCloud& model, const Pose& T_camera_model, const Pinhole& camera,
-                   const DepthBuffer& buffer) noexcept {
+Reason CloudSplat::start(const ModelCloud& model, const Pose& T_camera_model, const Pinhole& camera,
+                         int raster, const DepthBuffer& buffer,
+                         std::span<SeenPoint> points) noexcept {
+  model_ = model, T_camera_model_ = T_camera_model, camera_ = camera, raster_ = raster;
+  buffer_ = buffer, points_ = points;
   const std::int64_t pixels = std::int64_t{camera.width} * camera.height;
-  if (camera.width < 1 || camera.height < 1 ||
-      buffer.z_m.size() != static_cast<std::size_t>(pixels) ||
-      buffer.triangle.size() != buffer.z_m.size() || model.points.size() != model.normals.size() ||
-      buffer.corners.size() < model.points.size() || model.points.size() > k_model_points_max) {
-    return Reason::out_of_range;
+  count_ = 0;
+  at_ = 0;
+  tests_left_ = pixels * k_splat_tests_a_pixel;
+  const bool fits =
+      camera.width >= 1 && camera.height >= 1 &&
+      buffer.z_m.size() == static_cast<std::size_t>(pixels) &&
+      buffer.triangle.size() == buffer.z_m.size() && model.points.size() == model.normals.size() &&
+      buffer.corners.size() >= model.points.size() && model.points.size() <= k_model_points_max;
+  phase_ = fits ? Phase::clear : Phase::done;
+  reason_ = fits ? Reason::none : Reason::out_of_range;
+  return reason_;
+}
+
+bool CloudSplat::step(StepBudget& budget) noexcept {
+  if (phase_ == Phase::clear) {
+    const auto pixels = static_cast<int>(buffer_.z_m.size());
+    const int from = at_;
+    at_ += static_cast<int>(std::min<std::int64_t>(
+        pixels - at_, std::max<std::int64_t>(budget.left(), 1) * k_splat_cleared_a_step));
+    budget.take(1 + (at_ - from) / k_splat_cleared_a_step);
+    std::fill(buffer_.z_m.begin() + from, buffer_.z_m.begin() + at_, 0.0f);
+    std::fill(buffer_.triangle.begin() + from, buffer_.triangle.begin() + at_, -1);
+    if (at_ < pixels) return false;
+    at_ = 0;
+    phase_ = Phase::splat;
+  } else if (phase_ == Phase::splat) {
+    splat_points(budget);
+  } else if (phase_ == Phase::gather) {
+    gather_points(budget);
   }
-  std::fill(buffer.z_m.begin(), buffer.z_m.end(), 0.0f);
-  std::fill(buffer.triangle.begin(), buffer.triangle.end(), -1);
-  const Splatter splatter(model, T_camera_model, camera);
-  std::int64_t tests_left = pixels * k_splat_tests_a_pixel;
-  for (std::size_t i = 0; i < model.points.size(); ++i) {
+  return phase_ == Phase::done;
+}
+
+void CloudSplat::splat_points(StepBudget& budget) noexcept {
+  const Splatter splatter(model_, T_camera_model_, camera_);
+  const auto end = static_cast<int>(model_.points.size());
+  for (; at_ < end && !budget.spent(); ++at_) {
+    const auto i = static_cast<std::size_t>(at_);
     const Disc disc = splatter.disc(i);
-    ProjectedCorner& at = buffer.corners[i];
+    budget.take(k_splat_point_steps);
+    ProjectedCorner& at = buffer_.corners[i];
     at = ProjectedCorner{};
     const auto z = static_cast<double>(disc.middle.z());
     if (!(z > k_render_near_m)) continue;
-    at = {camera.fx * static_cast<double>(disc.middle.x()) / z + camera.cx,
-          camera.fy * static_cast<double>(disc.middle.y()) / z + camera.cy, 1 / z};
-    const double radius =
-        static_cast<double>(k_disc_radius * model.spacing_m) * std::max(camera.fx, camera.fy) / z;
+    at = {camera_.fx * static_cast<double>(disc.middle.x()) / z + camera_.cx,
+          camera_.fy * static_cast<double>(disc.middle.y()) / z + camera_.cy, 1 / z};
+    const double radius = static_cast<double>(k_disc_radius * model_.spacing_m) *
+                          std::max(camera_.fx, camera_.fy) / z;
     const int reach = 1 + static_cast<int>(std::min<double>(radius, k_splat_reach - 1));
-    if (!(at.u >= -reach && at.v >= -reach && at.u < camera.width + reach &&
-          at.v < camera.height + reach)) {
+    if (!(at.u >= -reach && at.v >= -reach && at.u < camera_.width + reach &&
+          at.v < camera_.height + reach)) {
       continue;
     }
-    tests_left -= (2 * reach + 1) * (2 * reach + 1);
-    if (tests_left < 0) return Reason::search_full;
-    splatter.splat(i, disc, reach, buffer);
+    const int tests = (2 * reach + 1) * (2 * reach + 1);
+    tests_left_ -= tests;
+    if (tests_left_ < 0) {
+      reason_ = Reason::search_full;
+      at_ = end;
+      break;
+    }
+    budget.take(tests * k_splat_test_steps);
+    splatter.splat(i, disc, reach, buffer_);
   }
-  return Reason::none;
+  if (at_ < end) return;
+  at_ = raster_ / 2 * camera_.width + raster_ / 2;
+  const bool some = raster_ >= 1 && raster_ / 2 < camera_.width && !points_.empty();
+  phase_ = some ? Phase::gather : Phase::done;
+}
+
+void CloudSplat::gather_points(StepBudget& budget) noexcept {
+  const Splatter splatter(model_, T_camera_model_, camera_);
+  const int pixels = camera_.width * camera_.height;
+  const auto next = [&](int pixel) {
+    const int x = pixel % camera_.width + raster_;
+    return x < camera_.width ? pixel + raster_
+                             : (pixel / camera_.width + raster_) * camera_.width + raster_ / 2;
+  };
+  for (; at_ < pixels && !budget.spent(); at_ = next(at_)) {
+    budget.take(k_splat_pixel_steps);
+    const std::int32_t number = buffer_.triangle[static_cast<std::size_t>(at_)];
+    if (number < 0) continue;
+    if (count_ == points_.size()) break;
+    budget.take(k_splat_seen_steps);
+    const int x = at_ % camera_.width, y = at_ / camera_.width;
+    const Disc disc = splatter.disc(static_cast<std::size_t>(number));
+    const float z = splatter.met(disc, x, y, k_seen_radius);
+    if (!(z > 0)) continue;
+    points_[count_].point = pixel_point(camera_, x, y, z);
+    points_[count_].normal = disc.height > 0 ? Vector3f(-disc.normal) : disc.normal;
+    points_[count_].pixel = at_;
+    ++count_;
+  }
+  if (at_ >= pixels || count_ == points_.size()) phase_ = Phase::done;
+}
+
+Reason splat_cloud(const ModelCloud& model, const Pose& T_camera_model, const Pinhole& camera,
+                   const DepthBuffer& buffer) noexcept {
+  CloudSplat run;
+  if (const Reason reason = run.start(model, T_camera_model, camera, 1, buffer, {});
+      reason != Reason::none) {
+    return reason;
+  }
+  for (StepBudget all; !run.step(all); all = StepBudget()) {
+  }
+  return run.reason();
 }
 
 int seen_cloud_points(const SceneView& view, const Pose& T_camera_base, int step,
                       const DepthBuffer& buffer, std::span<SeenPoint> points) noexcept {
-  const Pinhole& camera = view.camera;
-  const Reason reason = splat_cloud(view.cloud, T_camera_base, camera, buffer);
-  if (reason == Reason::out_of_range || step < 1) return 0;
-  const Splatter splatter(view.cloud, T_camera_base, camera);
-  std::size_t count = 0;
-  for (int y = step / 2; y < camera.height; y += step) {
-    for (int x = step / 2; x < camera.width; x += step) {
-      const int pixel = y * camera.width + x;
-      const std::int32_t number = buffer.triangle[static_cast<std::size_t>(pixel)];
-      if (number < 0) continue;
-      if (count == points.size()) return static_cast<int>(count);
-      const Disc disc = splatter.disc(static_cast<std::size_t>(number));
-      const float z = splatter.met(disc, x, y, k_seen_radius);
-      if (!(z > 0)) continue;
-      points[count].point = pixel_point(camera, x, y, z);
-      points[count].normal = disc.height > 0 ? Vector3f(-disc.normal) : disc.normal;
-      points[count].pixel = pixel;
-      ++count;
-    }
+  CloudSplat run;
+  if (run.start(view.cloud, T_camera_base, view.camera, step, buffer, points) != Reason::none) {
+    return 0;
   }
-  return static_cast<int>(count);
+  for (StepBudget all; !run.step(all); all = StepBudget()) {
+  }
+  return run.count();
 }
 
 }  // namespace glint
