@@ -3,7 +3,10 @@
 namespace glint {
 
 ToolRoster::ToolRoster(const Cell& cell, ToolRequests* requests)
-    : cell_(&cell), requests_(requests), planned_(cell.tools_at_start), there_(cell.tools_at_start) {
+    : cell_(&cell),
+      requests_(requests),
+      planned_(cell.tools_at_start),
+      there_(cell.tools_at_start) {
   publish(there_, Time{});
 }
 
