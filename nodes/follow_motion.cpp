@@ -79,6 +79,7 @@ void FollowMotion::operator()(
     tool.reason = verdict.reason;
     tool.few_mask = 0;
     tool.stands = false;
+    tool.in_use = true;
     if (tool.identity != set.items[t].identity) {
       tool.motion.forget();
       tool.identity = set.items[t].identity;
@@ -108,7 +109,10 @@ void FollowMotion::operator()(
     tool.noise = tool.motion.noise_scale();
     tool.stands = is_sure(tool.estimate.covariance, sure);
   }
-  for (; place < k_tools_per_slice; ++place) followed.items[place] = {};
+  // To clear what is clear would cost more than to follow a tool.
+  for (; place < k_tools_per_slice; ++place) {
+    if (followed.items[place].in_use) followed.items[place] = {};
+  }
 }
 
 }  // namespace glint

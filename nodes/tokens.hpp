@@ -135,6 +135,7 @@ struct FollowedTool {
   std::uint32_t identity = 0;  // of the tool that it is of
   std::uint8_t few_mask = 0;   // one or two markers moved it on in place of a pose: which; 0: none
   bool stands = false;         // its pose is sure enough to be called measured
+  bool in_use = false;         // else it is as it was made
 };
 // Of one slice: tool t is number t / k_tool_slices.
 struct FollowedTools {

@@ -87,17 +87,18 @@ void TrackTools::operator()(const FrameVerdict& verdict, const Anchor& anchor,
   const ToolSet& set = tools.value();
   const int count = tools_within(set, limits);
   counts_ = {{1, count}};
+  // Beyond those that this token held before all is clear; to clear it again would cost more than
+  // to track a tool.
+  for (int t = count; t < std::min(estimates.tool_count, k_tools_max); ++t) {
+    estimates.tracks[t] = Track{};
+    estimates.arm_m[t] = Vector3::Zero();
+  }
   estimates.verdict = verdict;
   estimates.tool_count = count;
   estimates.reference_known = anchor.state.known();
   estimates.T_world_reference = anchor.T_world_reference;
-  for (int t = 0; t < k_tools_max; ++t) {
+  for (int t = 0; t < count; ++t) {
     Track& track = estimates.tracks[t];
-    if (t >= count) {
-      track = Track{};
-      estimates.arm_m[t] = Vector3::Zero();
-      continue;
-    }
     const Tool& shape = set.items[t];
     estimates.arm_m[t] = shape.tip_m - shape.middle_m();
     track = last.value().tracks[t];
