@@ -109,19 +109,21 @@ int ReferenceFollower::step(int most_steps) noexcept {
   return before - budget.left();
 }
 
+// The budget is not spent when it comes, so that each call goes on by something.
 bool ReferenceFollower::step(StepBudget& budget) noexcept {
   const std::span<const SceneView> views(&view_, 1);
-  budget.take(k_follow_call_steps);
+  bool more = true;
   if (phase_ == Phase::align) {
     if (!run_.step(views, budget, scratch_)) begin_judging();
-    return true;
+  } else if (judge_.step(views, budget, scratch_)) {
+    report_.seen = run_.result();
+    report_.judgement = judge_.result();
+    decide();
+    phase_ = Phase::idle;
+    more = false;
   }
-  if (!judge_.step(views, budget, scratch_)) return true;
-  report_.seen = run_.result();
-  report_.judgement = judge_.result();
-  decide();
-  phase_ = Phase::idle;
-  return false;
+  budget.take(k_follow_call_steps);
+  return more;
 }
 
 void ReferenceFollower::begin_judging() noexcept {
