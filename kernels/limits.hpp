@@ -35,6 +35,7 @@ struct Limits {
   int ray_steps = k_ray_steps_max;    // what the cell's lens takes: ray_steps_needed()
   int search_steps = k_search_steps_max;
   int background_steps = k_background_steps_max;
+  int reference_steps = k_background_steps_max;  // of a slice of following a robot; 0: none is
   int reflectivity_bytes = k_reflectivity_bytes_max;
   int centroid_pixels_a_blob = k_centroid_pixels_a_blob;
   int range_pixels_a_blob = k_range_pixels_a_blob;

@@ -10,6 +10,7 @@
 #include "graph/loops.hpp"
 #include "kernels/cloud/map_slices.hpp"
 #include "kernels/limits.hpp"
+#include "kernels/registration/scene_view.hpp"
 #include "kernels/units.hpp"
 
 namespace glint {
@@ -17,7 +18,14 @@ namespace glint {
 // The depth picture that the background group looks at. What it borrows must stay until the
 // group's progress says that it is done with it.
 struct ShownDepth {
+  // Pixels of the same picture, few enough to find a robot in (k_scene_pixels_max).
+  struct Scene {
+    Pinhole camera;
+    std::span<const float> depth_m;  // along the axis; none: no robot is looked for
+  };
+
   MapPicture picture;
+  Scene scene;
   Time time;
   std::uint64_t number = 0;  // another number is another picture; 0: there is none
 };

@@ -51,5 +51,6 @@ void add_image_kernels(std::vector<std::unique_ptr<MeasuredKernel>>& kernels);
 void add_pose_kernels(std::vector<std::unique_ptr<MeasuredKernel>>& kernels);
 void add_output_kernels(std::vector<std::unique_ptr<MeasuredKernel>>& kernels);
 void add_background_kernels(std::vector<std::unique_ptr<MeasuredKernel>>& kernels);
+void add_following_kernels(std::vector<std::unique_ptr<MeasuredKernel>>& kernels);
 
 }  // namespace glint

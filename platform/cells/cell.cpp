@@ -278,6 +278,7 @@ Cell cell_from_text(const std::string& text, const std::string& file, const Cell
       cell);
   read_sinks(root, cell);
   read_robot(root.table("robot"), cell);
+  check_followed_robot(root.table("mapping"), cell);
   if (const NamedFile* named = parser.named_by(root, "motion")) cell.motion = motion_of(*named);
   if (const NamedFile* named = parser.named_by(root, "correction")) {
     cell.correction = correction_of(*named);
@@ -309,6 +310,8 @@ Limits limits_of(const Cell& cell) {
   limits.runs_per_band = cell.budget.runs_per_band;
   limits.search_steps = cell.budget.search_steps;
   if (cell.background) limits.background_steps = cell.background->steps;
+  const bool follows = cell.mapping && !cell.mapping->model.empty();
+  limits.reference_steps = follows ? limits.background_steps : 0;
   return limits;
 }
 

@@ -102,6 +102,9 @@ struct MappingSettings {
   int stride = 1;                       // of the pixels taken, along both sides
   double voxel_m = 0.01;
   int voxels_max = 1 << 17;
+  // Of the robot that is followed in the same pictures; empty: none is.
+  std::string model;           // of `glint reference --export-model`
+  std::vector<double> joints;  // their positions, in the model's order: radians, metres
 };
 
 struct Cell {

@@ -32,6 +32,8 @@ void read_mapping(const toml::table& table, const ResolvedPath& path, Cell& cell
   mapping.stride = number("stride", mapping.stride, 1, 64);
   mapping.voxel_m = 1e-3 * reader.real("voxel_mm", mapping.voxel_m * 1e3, 1, 1000);
   mapping.voxels_max = number("voxels_max", mapping.voxels_max, 1, 1 << 22);
+  mapping.model = path(reader.text("model", ""), "mapping.model");
+  mapping.joints = reader.numbers("joints");
   reader.done();
 }
 
@@ -43,6 +45,14 @@ void read_background(const toml::table* background, const toml::table* mapping,
   if (mapping == nullptr) return;
   if (!cell.background) cell.background.emplace();
   read_mapping(*mapping, path, cell);
+}
+
+void check_followed_robot(const toml::table* mapping, const Cell& cell) {
+  if (!cell.mapping || cell.mapping->model.empty()) return;
+  if (cell.robot_given && !cell.robot_in_reference) return;
+  throw InputError(cell.file + ":" + std::to_string(mapping->source().begin.line) +
+                   ": mapping.model is followed from where [robot] says; expected a [robot] with "
+                   "frame = \"world\"");
 }
 
 }  // namespace glint

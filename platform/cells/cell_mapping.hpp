@@ -14,5 +14,7 @@ namespace glint {
 using ResolvedPath = std::function<std::string(const std::string& path, const std::string& key)>;
 void read_background(const toml::table* background, const toml::table* mapping,
                      const ResolvedPath& path, Cell& cell);
+// When the robot was read, too: one that is followed stands in the world.
+void check_followed_robot(const toml::table* mapping, const Cell& cell);
 
 }  // namespace glint

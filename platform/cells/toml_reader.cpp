@@ -120,6 +120,14 @@ std::optional<std::vector<double>> TomlReader::reals(const char* key, std::size_
   return values;
 }
 
+std::vector<double> TomlReader::numbers(const char* key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return {};
+  const toml::array* array = node->as_array();
+  if (array == nullptr) complain(*node, key, "a list of numbers in [ ]");
+  return reals(key, array->size()).value_or(std::vector<double>{});
+}
+
 std::vector<std::string> TomlReader::texts(const char* key) {
   std::vector<std::string> values;
   const toml::node* node = find(key);

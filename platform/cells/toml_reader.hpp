@@ -35,6 +35,8 @@ class TomlReader {
                                    std::initializer_list<const char*> allowed);
   // Exactly `count` numbers, or nothing where the key is absent.
   [[nodiscard]] std::optional<std::vector<double>> reals(const char* key, std::size_t count);
+  // As many as there are; none where the key is absent.
+  [[nodiscard]] std::vector<double> numbers(const char* key);
   [[nodiscard]] std::vector<std::string> texts(const char* key);
   // Pairs of numbers: [[from, to], ..].
   [[nodiscard]] std::vector<std::pair<double, double>> intervals(const char* key);

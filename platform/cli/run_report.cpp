@@ -94,7 +94,12 @@ ordered_json background_of(const BackgroundCounts& counts) {
           {"maps", counts.map.maps},
           {"voxels", counts.map.voxels},
           {"map_points", counts.map.smoothed},
-          {"planes", counts.map.planes}};
+          {"planes", counts.map.planes},
+          {"references",
+           {{"followed", counts.robot.followed},
+            {"jumps_refused", counts.robot.jumps},
+            {"unsure", counts.robot.unsure},
+            {"last", name_of(counts.robot.last)}}}};
 }
 
 void latency_row(const char* name, const ordered_json& item) {
@@ -224,6 +229,12 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
                    std::to_string(background->map.voxels) + " voxels in " +
                    std::to_string(background->map.pictures) + " pictures (" +
                    std::to_string(background->pictures_missed) + " missed)");
+    const RobotProgress& robot = background->robot;
+    if (robot.last != FollowOutcome::no_reference) {
+      row("robot", "followed in " + std::to_string(robot.followed) + " pictures, " +
+                       std::to_string(robot.jumps) + " jumps refused, " +
+                       std::to_string(robot.unsure) + " told too little");
+    }
   }
   row("heap allocations after start", result.heap_counted
                                           ? std::to_string(result.heap_allocations_after_start)

@@ -13,6 +13,9 @@ namespace {
 // How long the end of a session may go unseen.
 constexpr Duration k_look = milliseconds(20);
 
+// Of where the cell says that the robot is: 10 mm and a degree.
+constexpr double k_given_variance_m2 = 1e-4, k_given_variance_rad2 = 3e-4;
+
 RunnerSettings<Background> background_settings(const Cell& cell, const GroupPlan<Background>& plan,
                                                TraceWriter* trace) {
   RunnerSettings<Background> settings;
@@ -45,10 +48,11 @@ MapSettings map_settings_of(const Cell& cell) {
 }
 
 BackgroundGroup::BackgroundGroup(const Cell& cell, const GroupPlan<Background>& plan,
-                                 TraceWriter* trace, DepthLoop pictures)
+                                 TraceWriter* trace, BackgroundScene scene, RobotSinks sinks)
     : runner_(background_settings(cell, plan, trace)),
       period_(cell.background->period),
-      pictures_(std::move(pictures)) {
+      scene_(std::move(scene)),
+      sinks_(sinks) {
   ExtendMap& map = graph_.node<ExtendMap>();
   map.limits = limits_of(cell);
   if (cell.mapping) {
@@ -57,6 +61,13 @@ BackgroundGroup::BackgroundGroup(const Cell& cell, const GroupPlan<Background>& 
     memory_.resize(MapSlices::bytes(map.settings));
     map.memory = memory_;
   }
+  FollowRobot& robot = graph_.node<FollowRobot>();
+  robot.limits = map.limits;
+  robot.model = scene_.robot.cloud();
+  robot.T_world_robot = cell.T_world_robot;
+  robot.covariance.diagonal() << k_given_variance_m2, k_given_variance_m2, k_given_variance_m2,
+      k_given_variance_rad2, k_given_variance_rad2, k_given_variance_rad2;
+  robot.pixels_max = k_scene_pixels_max;
   if (const graph::Prepared ready = graph_.prepare(); !ready) {
     throw InputError(cell.file +
                      ": mapping: " + std::string(name_of(static_cast<Reason>(ready.reason))) +
@@ -92,20 +103,42 @@ void BackgroundGroup::reach(Time now) noexcept {
 }
 
 void BackgroundGroup::slice(Time nominal, Time now) noexcept {
-  if (std::as_const(graph_).output<MapProgress>().free) show(pictures_.newest(nominal));
+  if (is_free()) show(scene_.pictures.newest(nominal));
   const std::uint64_t activation = ++counts_.slices;
   (void)runner_.run(graph_, {activation, static_cast<std::uint32_t>(activation), nominal, now, 0});
   runner_.settle(graph_);
   const MapProgress& progress = std::as_const(graph_).output<MapProgress>();
-  counts_.longest_steps = std::max(counts_.longest_steps, progress.steps);
+  const RobotProgress& robot = std::as_const(graph_).output<RobotProgress>();
+  counts_.longest_steps = std::max({counts_.longest_steps, progress.steps, robot.steps});
   counts_.map = progress.totals;
+  if (robot.followed > counts_.robot.followed) tell_robot(robot);
+  jumps_ = robot.jumps;
+  counts_.robot = robot;
+}
+
+bool BackgroundGroup::is_free() const noexcept {
+  return graph_.output<MapProgress>().free && graph_.output<RobotProgress>().free;
+}
+
+// Recorded first: what stands in front of a value stands in front of whoever read it.
+void BackgroundGroup::tell_robot(const RobotProgress& robot) noexcept {
+  ++robot_version_;
+  const RobotFrame& frame = robot.frame;
+  if (sinks_.lane != nullptr) {
+    (void)sinks_.lane->offer_robot_frame({robot_version_, robot.time, frame.state,
+                                          frame.T_world_robot, frame.rms_m, frame.in_reference});
+  }
+  if (sinks_.published == nullptr) return;
+  sinks_.published->write_slot() = frame;
+  sinks_.published->publish(robot_version_, robot.time.nanoseconds);
 }
 
 void BackgroundGroup::show(std::int64_t number) noexcept {
   if (number <= shown_) return;
   counts_.pictures_missed += number - shown_ - 1;
   shown_ = number;
-  const DepthFrame& frame = pictures_.picture(number);
+  const DepthLoop& pictures = scene_.pictures;
+  const DepthFrame& frame = pictures.picture(number);
   (void)tracked_.sample();
   const auto end = std::copy_n(
       frame.left_out.begin(), std::min(frame.left_out.size(), left_out_.size()), left_out_.begin());
@@ -113,16 +146,17 @@ void BackgroundGroup::show(std::int64_t number) noexcept {
   const auto room = static_cast<std::size_t>(left_out_.end() - end);
   const auto all = std::copy_n(held.begin(), std::min(held.size(), room), end);
   const auto count = static_cast<std::size_t>(all - left_out_.begin());
-  graph_.input<ShownDepth>() = {{frame.picture(), pictures_.camera(), frame.T_world_camera,
-                                 std::span(left_out_).first(count)},
-                                pictures_.time_of(number),
-                                static_cast<std::uint64_t>(number)};
+  graph_.input<ShownDepth>() = {
+      {frame.picture(), pictures.camera(), frame.T_world_camera, std::span(left_out_).first(count)},
+      pictures.scene(number),
+      pictures.time_of(number),
+      static_cast<std::uint64_t>(number)};
 }
 
 void BackgroundGroup::finish() noexcept {
   ExtendMap& node = graph_.node<ExtendMap>();
   const auto run_on = [&] {
-    while (!std::as_const(graph_).output<MapProgress>().free) graph_.activate();
+    while (!is_free()) graph_.activate();
   };
   run_on();
   node.make_map();

@@ -1,4 +1,5 @@
-// The background group of a run: a slice of mapping at every period, beneath frames and ticks.
+// The background group of a run: a slice of mapping and of following the robot at every period,
+// beneath frames and ticks.
 //
 // Live it runs at the lowest priority of the plan, or where real-time rights are refused at the
 // system's idle priority, so that no tick and no frame waits for it. In order its slices run at
@@ -14,6 +15,8 @@
 #include "graph/latest.hpp"
 #include "nodes/mapper.hpp"
 #include "platform/cells/cell.hpp"
+#include "platform/record/recorder.hpp"
+#include "platform/robot/robot_cloud.hpp"
 #include "platform/rt/real_time_thread.hpp"
 #include "platform/session/depth_loop.hpp"
 #include "platform/session/group_runner.hpp"
@@ -30,6 +33,19 @@ struct BackgroundCounts {
   int longest_steps = 0;             // of a slice
   std::int64_t pictures_missed = 0;  // taken while another was looked at, and not shown
   MapTotals map;
+  RobotProgress robot;
+};
+
+// What the group looks at and for; the robot's points stand in its base's frame.
+struct BackgroundScene {
+  DepthLoop pictures;
+  PosedCloud robot;
+};
+
+// Where a robot that is followed is told, in front of every tick that reads it; both may be null.
+struct RobotSinks {
+  graph::TripleBuffer<RobotFrame>* published = nullptr;  // holds version 1: the cell's own
+  RecorderLane* lane = nullptr;
 };
 
 // What the cell's map is made by. Throws InputError where it would refuse a slice's bound.
@@ -39,7 +55,7 @@ class BackgroundGroup {
  public:
   // The cell has a background. `trace` may be null; it is not yet started. Takes all its memory.
   BackgroundGroup(const Cell& cell, const GroupPlan<Background>& plan, TraceWriter* trace,
-                  DepthLoop pictures);
+                  BackgroundScene scene, RobotSinks sinks = {});
 
   // The thread that run() wants to be called in.
   [[nodiscard]] static ThreadSettings thread_settings(const GroupPlan<Background>& plan);
@@ -52,6 +68,9 @@ class BackgroundGroup {
   // The frame group's: what is tracked stays out of the map.
   [[nodiscard]] graph::TripleBuffer<TrackedCapsules>& tracked() noexcept { return tracked_; }
 
+  // Pictures so far that show the robot where no drift takes it; any thread may ask.
+  [[nodiscard]] std::int64_t jumps() const noexcept { return jumps_; }
+
   // When run() has returned: a last map of all pictures that were shown whole.
   void finish() noexcept;
   [[nodiscard]] const BackgroundCounts& counts() const noexcept { return counts_; }
@@ -60,12 +79,17 @@ class BackgroundGroup {
  private:
   void slice(Time nominal, Time now) noexcept;
   void show(std::int64_t number) noexcept;
+  [[nodiscard]] bool is_free() const noexcept;
+  void tell_robot(const RobotProgress& robot) noexcept;
 
   Background graph_;
   std::vector<std::byte> memory_;
   GroupRunner<Background> runner_;
   Duration period_;
-  DepthLoop pictures_;
+  BackgroundScene scene_;
+  RobotSinks sinks_;
+  std::uint64_t robot_version_ = 1;
+  std::atomic<std::int64_t> jumps_{0};
   std::int64_t shown_ = 0;
   std::int64_t next_ = 0;  // slice in order
   graph::TripleBuffer<TrackedCapsules> tracked_;

@@ -1,6 +1,7 @@
 #include "platform/session/session.hpp"
 
 #include <atomic>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <thread>
@@ -52,6 +53,18 @@ void counted(Body body) {
   AllocationCounter::disarm();
 }
 
+// A line when the robot is first seen to have jumped; not by a real-time thread.
+void tell_jumps(const SessionGroups& groups, std::int64_t& told) {
+  const BackgroundGroup* const background = groups.background();
+  const std::int64_t jumps = background != nullptr ? background->jumps() : 0;
+  if (told == 0 && jumps > 0) {
+    std::fprintf(stderr,
+                 "the robot is seen where no drift takes it: refused; the run goes on from where "
+                 "it was\n");
+  }
+  told = jumps;
+}
+
 // Frames when they arrive, ticks and slices by the clock, each group in a thread of its own.
 void run_live(const Cell& cell, Time epoch, SimulatedSource& source, SessionGroups& groups,
               Time last, const SessionOptions& options, SessionResult& result) {
@@ -93,10 +106,12 @@ void run_live(const Cell& cell, Time epoch, SimulatedSource& source, SessionGrou
                               [background, epoch, &ended] { background->run(epoch, ended); });
   }
   const double all_s = static_cast<double>(end.nanoseconds) * 1e-9;
+  std::int64_t jumps_told = 0;
   while (!frames_done ||
          (reached_ns < (end - tick_period(cell)).nanoseconds && !stopped(options))) {
     if (options.progress) options.progress(static_cast<double>(reached_ns) * 1e-9, all_s);
     groups.reach(Time{reached_ns});
+    tell_jumps(groups, jumps_told);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   frame_thread.join();
@@ -128,12 +143,14 @@ void run_in_order(const Cell& cell, Time& now, SimulatedSource& source, SessionG
   };
   ArrivedFrame arrived;
   Time last;
+  std::int64_t jumps_told = 0;
   while (!stopped(options) && source.wait(arrived)) {
     tick_until(arrived.frame.arrival);
     now = last = arrived.frame.arrival;
     groups.reach(now);
     groups.process(arrived);
     source.give_back(arrived);
+    tell_jumps(groups, jumps_told);
     if (options.progress) {
       options.progress(static_cast<double>(now.nanoseconds) * 1e-9, all_s);
     }
@@ -141,9 +158,15 @@ void run_in_order(const Cell& cell, Time& now, SimulatedSource& source, SessionG
   tick_until(last + cell.lost_after);
 }
 
-DepthLoop pictures_of(const Cell& cell) {
-  if (!cell.mapping) return {};
-  return {load_depth_sequence(cell.mapping->source), cell.mapping->period};
+BackgroundScene scene_of(const Cell& cell) {
+  BackgroundScene scene;
+  if (!cell.mapping) return scene;
+  const MappingSettings& mapping = *cell.mapping;
+  scene.pictures = {load_depth_sequence(mapping.source), mapping.period};
+  if (mapping.model.empty()) return scene;
+  scene.robot =
+      posed_cloud(read_robot_cloud(mapping.model), mapping.joints, cell.file + ": mapping.joints");
+  return scene;
 }
 
 // The last map, when nothing runs any more.
@@ -163,7 +186,7 @@ SessionResult run_session(const Cell& cell, const SessionOptions& options) {
 
 SessionResult run_session(const Cell& cell, sim::Scenario scenario, const SessionOptions& given) {
   const sim::Simulator simulator(std::move(scenario));
-  DepthLoop pictures = pictures_of(cell);
+  BackgroundScene scene = scene_of(cell);
   SessionOptions options = given;
   if (!options.plan.planned) options.plan = plan_by_rule(cell);
   SessionResult result;
@@ -197,7 +220,7 @@ SessionResult run_session(const Cell& cell, sim::Scenario scenario, const Sessio
   }
   auto groups = std::make_unique<SessionGroups>(
       cell, options, static_cast<std::size_t>(simulator.frame_count()), sinks, trace.get(), now,
-      unix_offset_ns, std::move(pictures));
+      unix_offset_ns, std::move(scene));
   if (trace != nullptr) trace->start();
   SimulatedSource source(simulator, sleep, now);
   source.fill();

@@ -61,7 +61,7 @@ nlohmann::ordered_json group_json(const char* name, const GroupPlan<G>& plan) {
 
 SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, std::size_t frames,
                              Sinks& sinks, TraceWriter* trace, const Clock& now,
-                             std::int64_t unix_offset_ns, DepthLoop pictures)
+                             std::int64_t unix_offset_ns, BackgroundScene scene)
     : frame_runner_(runner_settings(options.plan.frame, k_frame_group, cell, options, trace)),
       tick_runner_(runner_settings(options.plan.tick, k_tick_group, cell, options, trace)),
       counters_(&sinks.overruns()),
@@ -78,8 +78,10 @@ SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, st
   outcomes_.resize(frames);
   frame_.tell_head_to(sinks.dds());
   if (options.plan.background) {
-    background_ = std::make_unique<BackgroundGroup>(cell, *options.plan.background, trace,
-                                                    std::move(pictures));
+    Recorder* const recorder = sinks.recorder();
+    background_ = std::make_unique<BackgroundGroup>(
+        cell, *options.plan.background, trace, std::move(scene),
+        RobotSinks{&robot_, recorder != nullptr ? &recorder->slice_lane() : nullptr});
   }
 }
 

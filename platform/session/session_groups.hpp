@@ -22,7 +22,7 @@ class SessionGroups {
   // `trace` may be null; it is not yet started.
   SessionGroups(const Cell& cell, const SessionOptions& options, std::size_t frames, Sinks& sinks,
                 TraceWriter* trace, const Clock& now, std::int64_t unix_offset_ns,
-                DepthLoop pictures);
+                BackgroundScene scene);
 
   void process(const ArrivedFrame& arrived) noexcept;
   void tick(std::uint32_t number, Time nominal, Time woken) noexcept;
@@ -32,6 +32,8 @@ class SessionGroups {
 
   // Null where the cell has none.
   [[nodiscard]] BackgroundGroup* background() noexcept { return background_.get(); }
+
+  [[nodiscard]] const BackgroundGroup* background() const noexcept { return background_.get(); }
 
   // When all groups have ended.
   void report(SessionResult& result);

@@ -8,6 +8,7 @@ std::vector<std::unique_ptr<MeasuredKernel>> measured_kernels() {
   add_pose_kernels(kernels);
   add_output_kernels(kernels);
   add_background_kernels(kernels);
+  add_following_kernels(kernels);
   return kernels;
 }
 

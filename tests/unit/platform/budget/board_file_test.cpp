@@ -192,8 +192,9 @@ TEST(BoardFile, ExpectsEveryNodeOfBothGroupsAndThisBuild) {
   EXPECT_GE(expected.kernels.size(), 13u);
   ASSERT_EQ(expected.optional.size(), 1u);
   EXPECT_EQ(expected.optional[0].graph.name, "Background");
-  ASSERT_EQ(expected.optional[0].kernels.size(), 1u);
+  ASSERT_EQ(expected.optional[0].kernels.size(), 2u);
   EXPECT_EQ(expected.optional[0].kernels[0].kernel, "ExtendMap");
+  EXPECT_EQ(expected.optional[0].kernels[1].kernel, "FollowRobot");
   EXPECT_NE(expected.build.find("-ffp-contract=off"), std::string::npos) << expected.build;
   EXPECT_NE(expected.build.find("-DEIGEN_DONT_VECTORIZE"), std::string::npos) << expected.build;
 }

@@ -24,11 +24,13 @@ Kernels whole_kernels() {
 Kernels sliced_kernels() {
   Kernels kernels;
   add_background_kernels(kernels);
+  add_following_kernels(kernels);
   return kernels;
 }
 Kernels all_kernels() {
   Kernels kernels = whole_kernels();
   add_background_kernels(kernels);
+  add_following_kernels(kernels);
   return kernels;
 }
 
@@ -47,7 +49,7 @@ Limits one_tool() {
   limits.tools = 1;
   limits.markers_per_tool = 4;
   limits.lens_steps = k_lens_steps_max;
-  limits.background_steps = 100;
+  limits.background_steps = limits.reference_steps = 100;
   return limits;
 }
 

@@ -43,7 +43,7 @@ BackgroundCounts counted_for(Duration time, Duration period, int steps) {
   DepthFolder folder(pictures.path());
   folder.add_room(2);
   BackgroundGroup group(cell, *plan.background, nullptr,
-                        {load_depth_sequence(folder.path), microseconds(1)});
+                        {{load_depth_sequence(folder.path), microseconds(1)}, {}});
   std::atomic<bool> stop{false};
   const Time epoch = monotonic_now();
   RealTimeThread thread(BackgroundGroup::thread_settings(*plan.background),
@@ -168,11 +168,11 @@ TEST(BackgroundRun, LiveRunsItsSlicesTracesThemAndReplaysToTheSameHash) {
   const TraceFile trace = read_trace(folder.path() + "/trace.spans");
   ASSERT_EQ(trace.groups.size(), 3u);
   EXPECT_EQ(trace.groups[2].name, "background");
-  EXPECT_EQ(trace.groups[2].nodes, std::vector<std::string>{"ExtendMap"});
+  EXPECT_EQ(trace.groups[2].nodes, (std::vector<std::string>{"ExtendMap", "FollowRobot"}));
   const auto slices =
       std::count_if(trace.spans.begin(), trace.spans.end(),
                     [](const TraceSpan& span) { return span.group == 2 && is_node(span); });
-  EXPECT_EQ(static_cast<std::uint64_t>(slices), run.background->slices);
+  EXPECT_EQ(static_cast<std::uint64_t>(slices), 2 * run.background->slices);
   EXPECT_EQ(replay(run.recording_file, {}).output_sha256, run.output_sha256);
 }
 
@@ -199,7 +199,7 @@ TEST(BackgroundRun, TakesItsCorePriorityAndBoundsFromAPlan) {
   ASSERT_TRUE(run.background);
   EXPECT_EQ(run.background->cores, std::vector<int>{1});
   EXPECT_EQ(run.background->priority, 42);
-  EXPECT_EQ(run.background->bounds_ns, std::vector<std::int64_t>{10});
+  EXPECT_EQ(run.background->bounds_ns, (std::vector<std::int64_t>{10, 10}));
   const ThreadSettings thread = BackgroundGroup::thread_settings(*run.background);
   EXPECT_EQ(thread.core, 1);
   EXPECT_EQ(thread.priority, 42);

@@ -1,0 +1,96 @@
+// A robot that is followed: a slice begins with a picture, or so many steps behind.
+#include <algorithm>
+#include <vector>
+
+#include "nodes/follow_robot.hpp"
+#include "platform/budget/inputs/node_kernel.hpp"
+#include "platform/budget/inputs/numbers.hpp"
+
+namespace glint {
+namespace {
+
+constexpr int k_view_side = 40, k_model_side = 24, k_views = 4, k_behind_steps = 20'000;
+constexpr int k_behinds = 48;  // as many slices as the longest picture has
+
+// A bent sheet with a rim, and the depth that a camera has of it before a wall.
+struct SheetScene {
+  std::vector<Vector3f> points, normals;
+  std::vector<float> depth;
+  Pose T_camera_sheet;
+
+  explicit SheetScene(int kind) {
+    inputs::Numbers numbers(InputKind::worst, static_cast<std::uint64_t>(kind) + 100);
+    // The last one is so near that it fills the picture.
+    T_camera_sheet.translation = Vector3(0, 0, kind == k_views - 1 ? 0.25 : 0.6 + 0.1 * kind);
+    for (int i = 0; i < k_model_side * k_model_side; ++i) {
+      const double x = 0.01 * (i % k_model_side - k_model_side / 2);
+      const double y = 0.01 * (i / k_model_side - k_model_side / 2);
+      points.push_back(Vector3(x, y, 2 * x * x - 3 * x * y).cast<float>());
+      normals.push_back(Vector3(-4 * x + 3 * y, 3 * x, 1).normalized().cast<float>());
+    }
+    for (int i = 0; i < k_view_side * k_view_side; ++i) {
+      const double x = (i % k_view_side + 0.5) / k_view_side - 0.5;
+      const double y = (i / k_view_side + 0.5) / k_view_side - 0.5;
+      const double z = T_camera_sheet.translation.z();
+      const bool on = std::abs(x * z) < 0.12 && std::abs(y * z) < 0.12;
+      const double at = on ? z + (2 * x * x - 3 * x * y) * z * z : 1.9;
+      depth.push_back(static_cast<float>(at + 0.003 * numbers.normal()));
+    }
+  }
+};
+
+class RobotKernel final : public inputs::NodeKernel<FollowRobot> {
+ public:
+  RobotKernel() : NodeKernel("FollowRobot") {
+    for (int i = 0; i < k_views; ++i) scenes_.emplace_back(i);
+  }
+  void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
+    inputs::Numbers numbers(kind, number);
+    const bool worst = at_its_worst(kind);
+    const SheetScene& scene = scenes_[worst ? (number + k_views - 1) % k_views
+                                            : static_cast<std::uint64_t>(numbers.below(k_views))];
+    start_ = FollowRobot{};
+    start_.model = {scene.points, scene.normals, 0.01f};
+    start_.T_world_robot = scene.T_camera_sheet;
+    start_.T_world_robot.translation += numbers.in_box(0.006);
+    start_.covariance = Matrix6::Identity() * 1e-4;
+    start_.pixels_max = k_view_side * k_view_side;
+    (void)start_.prepare();
+    shown_.scene = {
+        {k_view_side, k_view_side, k_view_side, k_view_side, 0.5 * k_view_side, 0.5 * k_view_side},
+        scene.depth};
+    shown_.time = Time{1'000'000'000};
+    shown_.number = 1;
+    limits_ = limits;
+    if (!worst && limits.reference_steps > 0) {
+      limits_.reference_steps = 1 + numbers.below(limits.reference_steps);
+    }
+    behind_ = worst ? static_cast<int>(number / k_views % k_behinds) : numbers.below(k_behinds);
+    rewind();
+  }
+  // What a slice under way points at is the node's own: it gets there again.
+  void rewind() override {
+    NodeKernel::rewind();
+    node_.limits = limits_;
+    node_.limits.reference_steps = k_behind_steps;
+    for (int i = 0; i < behind_; ++i) node_(shown_, progress_);
+    if (behind_ > 0 && progress_.free) NodeKernel::rewind();  // the picture has no more of them
+    node_.limits = limits_;
+  }
+  void run() noexcept override { node_(shown_, progress_); }
+
+ private:
+  std::vector<SheetScene> scenes_;
+  ShownDepth shown_;
+  RobotProgress progress_;
+  Limits limits_;
+  int behind_ = 0;
+};
+
+}  // namespace
+
+void add_following_kernels(std::vector<std::unique_ptr<MeasuredKernel>>& kernels) {
+  kernels.push_back(std::make_unique<RobotKernel>());
+}
+
+}  // namespace glint

@@ -1,0 +1,112 @@
+// A robot that is followed while a session runs, and what a replay makes of it.
+#include <gtest/gtest.h>
+
+#include "kernels/registration/render_depth.hpp"
+#include "platform/input_error.hpp"
+#include "platform/robot/robot_cloud.hpp"
+#include "platform/session/replay.hpp"
+#include "tests/unit/kernels/registration/box_model.hpp"
+#include "tests/unit/platform/session/depth_folder.hpp"
+#include "tests/unit/platform/session/short_run.hpp"
+
+namespace glint {
+namespace {
+
+// Depth of a robot without joints, which stands where the cell says and then a little more aside
+// from picture to picture; a jump at the end, if there is to be one.
+struct FollowedRobot {
+  TemporaryFolder folder;
+  Cell cell;
+
+  FollowedRobot(const char* level, double jump_m) : cell(short_cell(1.5, level)) {
+    const test::Model model;
+    const test::SampledModel sampled(model, 0.006f);
+    RobotCloud robot;
+    robot.name = "box";
+    robot.links = {"base"};
+    robot.points.assign(sampled.cloud().points.begin(), sampled.cloud().points.end());
+    robot.normals.assign(sampled.cloud().normals.begin(), sampled.cloud().normals.end());
+    robot.point_links.assign(robot.points.size(), 0);
+    robot.spacing_m = sampled.cloud().spacing_m;
+    write_robot_cloud(folder.path() + "/robot.ply", robot);
+
+    DepthFolder depth(folder.path());
+    constexpr int k_shown = 12;
+    for (int i = 0; i < k_shown; ++i) {
+      Pose truth = test::k_truth;
+      truth.translation.x() += 5e-4 * i + (i > k_shown / 2 ? jump_m : 0);
+      std::vector<float> z(DepthFolder::k_width * DepthFolder::k_height);
+      std::vector<std::int32_t> face(z.size());
+      std::vector<ProjectedCorner> corners(64);
+      EXPECT_EQ(render_depth({model.corners, model.faces}, truth,
+                             {DepthFolder::k_width, DepthFolder::k_height, DepthFolder::k_focal,
+                              DepthFolder::k_focal, 40, 30},
+                             {z, face, corners}),
+                Reason::none);
+      for (float& at : z) at = at == 0 ? 1.9f : at;
+      depth.add(z, cell.T_world_robot * test::k_truth.inverse());
+    }
+    cell.background = BackgroundSettings{microseconds(250), k_background_steps_max};
+    MappingSettings& mapping = cell.mapping.emplace();
+    mapping.source = folder.path();
+    mapping.model = folder.path() + "/robot.ply";
+    mapping.period = milliseconds(100);
+    mapping.pictures_a_map = 100;
+    mapping.voxels_max = 20'000;
+  }
+};
+
+class RobotThatDrifts : public testing::TestWithParam<const char*> {};
+
+TEST_P(RobotThatDrifts, IsFollowedAndReplaysAlike) {
+  const FollowedRobot robot(GetParam(), 0);
+  const TemporaryFolder plain;
+  const SessionResult run = short_run(robot.cell, robot.folder.path());
+  const SessionResult without = short_run(short_cell(1.5, GetParam()), plain.path());
+  ASSERT_TRUE(run.background);
+  EXPECT_GE(run.background->robot.followed, 8) << name_of(run.background->robot.last);
+  EXPECT_EQ(run.background->robot.jumps, 0);
+  EXPECT_EQ(run.background->robot.frame.state, RegistrationState::accepted);
+  const double moved =
+      (run.background->robot.frame.T_world_robot.translation - robot.cell.T_world_robot.translation)
+          .norm();
+  EXPECT_GT(moved, 2e-4);
+  EXPECT_LT(moved, 6e-3);
+  EXPECT_NE(run.output_sha256, without.output_sha256);
+  for (const int workers : {1, 2}) {
+    ReplayOptions options;
+    options.workers = workers;
+    const ReplayResult result = replay(run.recording_file, options);
+    EXPECT_TRUE(result.agrees()) << result.mismatches << " differ, first " << result.first_mismatch;
+    EXPECT_EQ(result.versions_missing, 0);
+    EXPECT_EQ(result.output_sha256, run.output_sha256);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AtEveryLevel, RobotThatDrifts, testing::Values("full", "roi", "blobs"),
+                         [](const auto& level) { return std::string(level.param); });
+
+TEST(RobotThatJumps, IsRefusedAndStaysWhereItWas) {
+  const FollowedRobot robot("roi", 0.03);
+  const SessionResult run = short_run(robot.cell, robot.folder.path());
+  ASSERT_TRUE(run.background);
+  EXPECT_GE(run.background->robot.followed, 3);
+  EXPECT_GE(run.background->robot.jumps, 3) << name_of(run.background->robot.last);
+  EXPECT_NEAR(run.background->robot.shift_m, 0.03, 0.01);
+  EXPECT_LT(
+      (run.background->robot.frame.T_world_robot.translation - robot.cell.T_world_robot.translation)
+          .norm(),
+      6e-3);
+  EXPECT_EQ(replay(run.recording_file, {}).output_sha256, run.output_sha256);
+}
+
+TEST(RobotThatIsFollowed, NeedsItsModelAndAsManyJoints) {
+  FollowedRobot robot("roi", 0);
+  robot.cell.mapping->joints = {0.1};
+  EXPECT_THROW((void)short_run(robot.cell, robot.folder.path()), InputError);
+  robot.cell.mapping->model = "nowhere.ply";
+  EXPECT_THROW((void)short_run(robot.cell, robot.folder.path()), InputError);
+}
+
+}  // namespace
+}  // namespace glint
