@@ -24,6 +24,7 @@ class Checker {
       if (!check_places(g)) continue;
       check_precedence(g);
       check_overlap(g);
+      check_one_core(g);
     }
     if (faults_.empty()) check_capacity();
     if (const auto complaint = check_bus_load(plan_.traffic, plan_.bus)) add(*complaint);
@@ -117,6 +118,16 @@ class Checker {
         add(name(g, a) + " and " + name(g, b) + " overlap on core " +
             std::to_string(place_[a]->core) + "; expected one after the other");
       }
+    }
+  }
+
+  void check_one_core(std::size_t g) {
+    if (!model_.groups[g].resumable) return;
+    for (std::size_t n = 1; n < place_.size(); ++n) {
+      if (place_[n]->core == place_[0]->core) continue;
+      add(name(g, n) + ": core " + std::to_string(place_[n]->core) + "; expected " +
+          std::to_string(place_[0]->core) + ", as " + model_.groups[g].nodes[0].name +
+          ": what runs in slices has one thread");
     }
   }
 

@@ -102,9 +102,12 @@ Plan synthesize(const TaskModel& model, std::int64_t search_nodes_max) {
   std::vector<ExactSchedule> found;
   std::vector<std::size_t> movable;
   for (std::size_t g = 0; g < model.groups.size(); ++g) {
-    found.push_back(exact_schedule(model.groups[g], model.cores, model.system.core_handover_ns,
-                                   search_nodes_max));
+    // What runs in slices has one thread.
+    const int cores = model.groups[g].resumable ? 1 : model.cores;
+    found.push_back(
+        exact_schedule(model.groups[g], cores, model.system.core_handover_ns, search_nodes_max));
     shortest.push_back(first_node_first(found.back().orders));
+    shortest.back().resize(static_cast<std::size_t>(model.cores));
     if (g > 0 && on_one_core(shortest.back())) movable.push_back(g);
   }
 

@@ -62,6 +62,29 @@ TEST(BackgroundPlan, IsOptimalForEachOfThreeGroupsOnOneCoreAndOnSeveral) {
   }
 }
 
+// Two nodes that could run side by side, but there is one thread for what runs in slices.
+TEST(BackgroundPlan, KeepsASlicesNodesOnOneCore) {
+  TaskModel model = three_groups(2);
+  TaskNode second = model.groups[k_background].nodes[0];
+  second.name = "Second";
+  second.after.clear();
+  model.groups[k_background].nodes.push_back(second);
+  Plan plan = synthesize(model);
+  EXPECT_TRUE(check_plan(plan, model).empty());
+  int first_core = -1;
+  for (const PlannedNode& node : plan.nodes) {
+    if (node.group != static_cast<int>(k_background)) continue;
+    if (first_core < 0) first_core = node.core;
+    EXPECT_EQ(node.core, first_core);
+  }
+  PlannedNode& moved = plan.nodes.back();
+  ASSERT_EQ(moved.group, static_cast<int>(k_background));
+  moved.core = 1 - moved.core;
+  const auto faults = check_plan(plan, model);
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_NE(faults[0].find("what runs in slices has one thread"), std::string::npos) << faults[0];
+}
+
 TEST(BackgroundPlan, GivesSlicesTheLowestPriorityWhateverTheirDeadline) {
   for (const std::int64_t period : {2 * k_ms, 10 * k_ms, 1'000 * k_ms}) {
     const TaskModel model = three_groups(1, 100 * k_us, period);
