@@ -21,7 +21,7 @@ enum Kind : std::uint32_t {
   k_output,
   k_dropped,
   k_button,
-  k_robot_frame
+  k_robot_frame_record
 };
 
 struct OutputOffer {
@@ -45,7 +45,7 @@ constexpr Kind k_kind_of<DroppedInput> = k_dropped;
 template <>
 constexpr Kind k_kind_of<ButtonEvent> = k_button;
 template <>
-constexpr Kind k_kind_of<RobotFrameRecord> = k_robot_frame;
+constexpr Kind k_kind_of<RobotFrameRecord> = k_robot_frame_record;
 
 // Short against the seconds that the rings hold, long against a wake-up's cost.
 constexpr auto k_look_again = std::chrono::microseconds(500);
@@ -204,7 +204,7 @@ void Recorder::write_item(const OfferSlot& offer) {
     case k_dropped:
       writer_.write_dropped(item_in<DroppedInput>(offer));
       break;
-    case k_robot_frame:
+    case k_robot_frame_record:
       writer_.write_robot_frame(item_in<RobotFrameRecord>(offer));
       break;
     case k_button:
