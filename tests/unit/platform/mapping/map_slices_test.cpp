@@ -24,13 +24,13 @@ MapSettings small_settings() {
 }
 
 // A corner of a room with a ball before it, from six places; a few stray points.
-struct Corner {
+struct CornerOfARoom {
   CameraModel camera;
   std::vector<std::vector<float>> depth;
   std::vector<Pose> poses;
   std::vector<LeftOut> left_out{{Vector3(0, 0, 0.2), Vector3(0, 0, 3), 0.05}};
 
-  Corner() {
+  CornerOfARoom() {
     camera.width = k_width, camera.height = k_height;
     camera.fx = camera.fy = 60, camera.cx = 32, camera.cy = 24;
     std::mt19937_64 random(7);
@@ -96,7 +96,7 @@ bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
 class OfAnySize : public testing::TestWithParam<int> {};
 
 TEST_P(OfAnySize, SlicesGiveTheChainsBits) {
-  const Corner corner;
+  const CornerOfARoom corner;
   const MapSettings settings = small_settings();
   Sliced sliced(settings, 3);
   MapChain chain(settings);
@@ -128,7 +128,7 @@ TEST_P(OfAnySize, SlicesGiveTheChainsBits) {
 INSTANTIATE_TEST_SUITE_P(MapSlices, OfAnySize, testing::Values(1, 137, 5'000, 50'000, 1 << 29));
 
 TEST(MapSlices, KeepWhatIsOutWholeWhileTheNextIsMade) {
-  const Corner corner;
+  const CornerOfARoom corner;
   Sliced sliced(small_settings(), 1);
   EXPECT_EQ(sliced.map.map().count, 0);
   ASSERT_TRUE(sliced.map.look(corner.picture(0)));
@@ -147,7 +147,7 @@ TEST(MapSlices, KeepWhatIsOutWholeWhileTheNextIsMade) {
 }
 
 TEST(MapSlices, MakeAMapOfWhatThereIsWhenAsked) {
-  const Corner corner;
+  const CornerOfARoom corner;
   const MapSettings settings = small_settings();
   Sliced sliced(settings, 1'000);
   sliced.map.make_map();  // of nothing: none
@@ -189,7 +189,7 @@ TEST(MapSlices, RefuseWhatWouldMakeASliceLonger) {
 }
 
 TEST(MapSlices, RefuseAPictureThatIsNotWhole) {
-  const Corner corner;
+  const CornerOfARoom corner;
   Sliced sliced(small_settings(), 1);
   MapPicture picture = corner.picture(0);
   picture.picture.height += 1;
@@ -199,7 +199,7 @@ TEST(MapSlices, RefuseAPictureThatIsNotWhole) {
 
 TEST(MapSlices, TakeNothingFromTheHeap) {
   if (!AllocationCounter::available()) GTEST_SKIP() << "allocations are not counted here";
-  const Corner corner;
+  const CornerOfARoom corner;
   Sliced sliced(small_settings(), 1);
   const HeapCount heap;
   ASSERT_TRUE(sliced.map.look(corner.picture(0)));
