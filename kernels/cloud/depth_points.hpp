@@ -35,7 +35,7 @@ struct DepthPointSettings {
 
 // Looks at pixels [from, from + most) of those that are taken, numbered along the rows; gives the
 // first not yet looked at, which is pixels_of() at the end. Adds what does not fit to `dropped`.
-[[nodiscard]] int pixels_of(const DepthPicture& picture, int stride) noexcept;
+[[nodiscard]] int pixels_of(const DepthPicture& picture, int stride) noexcept GLINT_NONBLOCKING;
 int add_depth_points(const DepthPicture& picture, const CameraModel& camera,
                      const Pose& T_world_camera, const DepthPointSettings& settings, int from,
                      int most, PointCloud& points, int& dropped) noexcept GLINT_NONBLOCKING;

@@ -65,7 +65,8 @@ class AlignmentRun {
   // How many slices it takes at most.
   [[nodiscard]] static int slices_max(const AlignmentSettings& settings, int views) noexcept;
 
-  void start(const Pose& T_world_base, const AlignmentSettings& settings) noexcept;
+  void start(const Pose& T_world_base,
+             const AlignmentSettings& settings) noexcept GLINT_NONBLOCKING;
   [[nodiscard]] bool step(std::span<const SceneView> views,
                           AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;
   [[nodiscard]] bool step(std::span<const SceneView> views, StepBudget& budget,

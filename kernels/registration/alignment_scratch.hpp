@@ -59,7 +59,7 @@ void search_scene(const SceneView& view, int step, double reach_m,
 inline constexpr int k_scene_pixel_steps = 16;
 class SceneIndexing {
  public:
-  void start() noexcept;
+  void start() noexcept GLINT_NONBLOCKING;
   [[nodiscard]] bool step(const SceneView& view, double reach_m, StepBudget& budget,
                           AlignmentScratch::View& memory) noexcept GLINT_NONBLOCKING;
 

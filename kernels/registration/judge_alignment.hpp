@@ -70,7 +70,7 @@ struct Judgement {
 inline constexpr int k_outline_pixel_steps = 60, k_judged_steps = 40;
 class JudgeRun {
  public:
-  void start(const Pose& T_world_base, const JudgeSettings& settings) noexcept;
+  void start(const Pose& T_world_base, const JudgeSettings& settings) noexcept GLINT_NONBLOCKING;
   [[nodiscard]] bool step(std::span<const SceneView> views, StepBudget& budget,
                           AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;
   // Complete when step() has said true.
