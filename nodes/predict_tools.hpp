@@ -4,7 +4,7 @@
 //           (kernels/motion/integrate_motion.hpp), their covariance in closed form
 //           (predict_motion.hpp); then world -> robot; then from the markers' middle to the tip.
 // States:   measured while the newest accepted pose is at most 1.5 nominal frame gaps old,
-//           predicted until lost_after, then lost: DESIGN contract, so no tuning.
+//           predicted until lost_after, then lost: a contract of the output, so no tuning.
 // Cost:     one pass over the tools; those with a pose cost, the others hardly.
 // Worst:    all with a pose and expressed in the robot's frame. Where the tool is going makes no
 //           difference.

@@ -22,11 +22,6 @@ struct SeenMarkers {
   [[nodiscard]] std::size_t whole_count() const {
     return static_cast<std::size_t>(std::count(whole.begin(), whole.begin() + count, true));
   }
-  [[nodiscard]] Vector3 mean_m() const {  // tool frame
-    Vector3 sum = Vector3::Zero();
-    for (std::size_t i = 0; i < count; ++i) sum += items[i].model_m;
-    return sum / static_cast<double>(count);
-  }
 };
 
 SeenMarkers without(const SeenMarkers& seen, int left_out) {
@@ -108,7 +103,7 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
   // Few markers may tell little of a turn, and their likeliest pose too much: agreed_pose.hpp.
   if (kept.whole_count() <= k_agree_by_chance_most && prediction.follows_motion) {
     const AgreedPose agreed =
-        agreed_pose({kept.items.data(), kept.count}, kept.mean_m(), expected, within.steps_max);
+        agreed_pose({kept.items.data(), kept.count}, expected, within.steps_max);
     ++counts_[2];
     counts_[3] += agreed.steps;
     counts_[4] += agreed.steps * static_cast<int>(kept.count);

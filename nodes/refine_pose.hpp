@@ -24,7 +24,7 @@ inline constexpr int k_predicted_left_least = 3;
 // covariance grown to what its residuals show, and where four times the noise would not do either
 // it is none: its reason is bad_fit. So it is where three markers, or what was forgiven, put the
 // tool where its followed motion cannot have brought it. The mask names the markers that count.
-// What no more than three tell a filter is read near where it expects the tool.
+// What no more than three whole ones tell a filter is read near where it expects the tool.
 struct RefinePose {
   static constexpr std::array<std::string_view, 5> k_loops = {"call", "tools", "fits", "steps",
                                                               "marker_steps"};

@@ -1,17 +1,16 @@
-// A map that grows picture by picture, in slices of bounded work: what runs beneath everything
-// else.
+// A map that grows picture by picture, in slices of bounded work.
 //
 // What:     a picture's points, without those within the tracked pen and hands, go into the voxels;
 //           after every pictures_a_map pictures voxels, outliers, smoothing, planes and the move
 //           onto them make a new map beside the one that is out, which it then replaces whole.
 // Cost:     a slice ends once its steps (slice_size.hpp) are used up; a map of v voxels takes some
 //           300 v steps, a picture 30 a pixel.
-// Worst:    the last point of a slice goes k_map_item_steps_max beyond its steps. Pictures that
-// come
-//           while a map is made wait for it: their owner leaves some out. Voxels beyond voxels_max
-//           are counted and left out.
+// Worst:    the last point of a slice goes k_map_item_steps_max beyond its steps. While a map is
+//           made pictures wait for it: their owner leaves some out. Voxels beyond voxels_max are
+//           counted and left out.
 // Accuracy: that of the chain: slices of any size give the same bits.
-// Source:   the chain of Puljiz et al., as DESIGN's background group has it.
+// Source:   Puljiz et al., Inside-out Infrared Marker Tracking via Head Mounted Displays for Smart
+//           Robot Programming (the chain).
 #pragma once
 
 #include <array>

@@ -7,9 +7,10 @@
 
 namespace glint {
 
-AgreedPose agreed_pose(std::span<const WeightedMarker> markers, const Vector3& mean_m,
-                       const ExpectedPose& expected, int steps_max) noexcept {
+AgreedPose agreed_pose(std::span<const WeightedMarker> markers, const ExpectedPose& expected,
+                       int steps_max) noexcept {
   AgreedPose agreed;
+  const Vector3 mean_m = mean_of(markers);
   const Result<PoseFactor> known = pose_factor(expected.covariance);
   if (!known) {
     agreed.reason = Reason::degenerate;

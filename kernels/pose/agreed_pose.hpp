@@ -33,8 +33,8 @@ struct AgreedPose {
   Reason reason = Reason::none;
 };
 
-// mean_m: of the markers, in the tool's frame.
-[[nodiscard]] AgreedPose agreed_pose(std::span<const WeightedMarker> markers, const Vector3& mean_m,
+// Of one marker or more.
+[[nodiscard]] AgreedPose agreed_pose(std::span<const WeightedMarker> markers,
                                      const ExpectedPose& expected,
                                      int steps_max) noexcept GLINT_NONBLOCKING;
 

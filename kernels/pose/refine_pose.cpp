@@ -32,12 +32,6 @@ struct Minimum {
   [[nodiscard]] double misfit() const { return fit.chi_square + surprise; }
 };
 
-Vector3 mean_of(MarkerSpan markers) {
-  Vector3 sum = Vector3::Zero();
-  for (const WeightedMarker& marker : markers) sum += marker.model_m;
-  return sum / static_cast<double>(markers.size());
-}
-
 RigidFit rigid_start(MarkerSpan markers) {
   std::array<Vector3, k_markers_per_tool_max> model, measured;
   for (std::size_t i = 0; i < markers.size(); ++i) {

@@ -10,6 +10,8 @@
 // Source:   whitening by the inverse Cholesky factor, e.g. Foerstner and Wrobel 2016, section 4.2.
 #pragma once
 
+#include <span>
+
 #include "kernels/geometry.hpp"
 #include "kernels/nonblocking.hpp"
 #include "kernels/pose/local_rays.hpp"
@@ -33,6 +35,13 @@ struct WeightedMarker {
 
   [[nodiscard]] Vector3 measured_m() const { return ray * range_m; }
 };
+
+// Of one or more, in the tool's frame.
+[[nodiscard]] inline Vector3 mean_of(std::span<const WeightedMarker> markers) noexcept {
+  Vector3 sum = Vector3::Zero();
+  for (const WeightedMarker& marker : markers) sum += marker.model_m;
+  return sum / static_cast<double>(markers.size());
+}
 
 // model_m: the marker in the tool's frame; rays: the lens around its measured pixel; range_m: to
 // its centre, a sphere's radius behind the surface. Reason::out_of_range: a range or a variance

@@ -3,8 +3,8 @@
 //
 // Values of which the newest counts are handed over in triple buffers, as Latest<> reads them; a
 // button's changes go one by one to whoever records them, for each of them counts, and so do tools
-// that are named to be there or not. Every message is
-// bounded before it is unpacked; what is too large or makes no sense is refused and counted.
+// that are named to be there or not. Every message is bounded before it is unpacked; what is too
+// large or makes no sense is refused and counted.
 #pragma once
 
 #include <array>
@@ -24,8 +24,8 @@
 namespace glint {
 
 struct HeardCounts {
-  std::uint64_t joints = 0, descriptions = 0, guesses = 0, buttons = 0,
-                tools = 0;  // messages taken
+  // Messages taken.
+  std::uint64_t joints = 0, descriptions = 0, guesses = 0, buttons = 0, tools = 0;
   std::uint64_t refused = 0;
   [[nodiscard]] bool any() const {
     return joints + descriptions + guesses + buttons + tools + refused > 0;

@@ -27,10 +27,10 @@ struct FindReferenceSettings {
   double visible_share_min = 0.4;
   // From one place of the camera without a mask: what hides the robot may as well be taken for it.
   double visible_share_min_alone = 0.75;
-  double outline_share_min_alone = 0.34;
-  // Flat things explain a robot that lies down on them, but do not end where it does. Twice the
-  // most that any such pose had in simulated scenes of an xArm7; alone of a Panda, too (0.17).
+  // Flat things explain a robot that lies down on them, but do not end where it does: twice the
+  // most that any such pose had in simulated scenes, of an xArm7 and, from one place, a Panda, too.
   double outline_share_min = 0.25;
+  double outline_share_min_alone = 0.34;
   double mask_share_min = 0.7;  // of the mask's pixels that the model covers
   double sigma_max_m = 0.02;    // of the base's position, along the axis that is known worst
   double sigma_max_rad = 0.035;

@@ -72,8 +72,7 @@ int marker_steps_of(const Tool& tool, const Marker* seen, const MarkerNoise& noi
   }
   const std::size_t count = static_cast<std::size_t>(tool.marker_count);
   const ExpectedPose expected = {prediction.T_camera_tool, prediction.covariance, tool.middle_m()};
-  const int steps =
-      agreed_pose({markers.data(), count}, tool.middle_m(), expected, k_predicted.steps_max).steps;
+  const int steps = agreed_pose({markers.data(), count}, expected, k_predicted.steps_max).steps;
   return refine_pose({markers.data(), count}, tool.tip_m, nullptr, k_predicted).work.marker_steps +
          steps * tool.marker_count;
 }

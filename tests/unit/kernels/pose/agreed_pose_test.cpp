@@ -56,7 +56,7 @@ TEST(AgreedPose, LeadsAFilterToWhereMarkersAndExpectationAgree) {
     const auto markers = test::weighted_view(tool, truth, k_usual, 1, random);
     ExpectedPose expected{truth, known_to(0.002, 0.02), mean};
     expected.T_camera_tool.translation += Vector3(0.002, -0.001, 0.002);
-    const AgreedPose agreed = agreed_pose(markers, mean, expected, k_steps);
+    const AgreedPose agreed = agreed_pose(markers, expected, k_steps);
     ASSERT_EQ(agreed.reason, Reason::none);
     const PosePrior prior{expected.T_camera_tool, pose_factor(expected.covariance).value.inverse(),
                           mean};
@@ -102,8 +102,8 @@ double honesty(const Reading& reading) {
 }
 
 TEST(AgreedPose, LeadsNoFilterAwayWhereOnlyACosineTellsATurn) {
-  const double agreed = honesty([](const auto& markers, const Vector3& mean, ExpectedPose& known) {
-    const AgreedPose found = agreed_pose(markers, mean, known, k_steps);
+  const double agreed = honesty([](const auto& markers, const Vector3&, ExpectedPose& known) {
+    const AgreedPose found = agreed_pose(markers, known, k_steps);
     ASSERT_EQ(found.reason, Reason::none);
     known = fused(known, found.T_camera_tool, found.covariance);
   });
@@ -133,7 +133,7 @@ TEST(AgreedPose, ItsReferenceGoesStraightOnHoweverFarTheStepTurns) {
     const auto loose = test::weighted_view(four, truth, unsure, 1, random);
     std::copy(loose.begin() + 2, loose.end(), markers.begin() + 2);
     const ExpectedPose expected{truth, known_to(0.003, 0.02), reference};
-    const AgreedPose agreed = agreed_pose(markers, mean, expected, k_steps);
+    const AgreedPose agreed = agreed_pose(markers, expected, k_steps);
     ASSERT_EQ(agreed.reason, Reason::none);
     const PosePrior prior{truth, pose_factor(expected.covariance).value.inverse(), reference};
     const WeightedFit best = fit_weighted(markers, mean, truth, &prior, k_steps);
@@ -153,14 +153,14 @@ TEST(AgreedPose, SaysWhereThereIsNone) {
   const Pose truth = test::tilted_pose(tool, 0.6, k_place, random);
   const auto markers = test::weighted_view(tool, truth, k_usual, 1, random);
   const ExpectedPose certain{truth, Matrix6::Zero(), mean};
-  EXPECT_EQ(agreed_pose(markers, mean, certain, k_steps).reason, Reason::degenerate);
+  EXPECT_EQ(agreed_pose(markers, certain, k_steps).reason, Reason::degenerate);
   const ExpectedPose expected{truth, known_to(0.002, 0.02), mean};
   const auto one = std::span(markers).first(1);
-  EXPECT_EQ(agreed_pose(one, tool.markers_m[0], expected, k_steps).reason, Reason::degenerate)
+  EXPECT_EQ(agreed_pose(one, expected, k_steps).reason, Reason::degenerate)
       << "one marker alone fixes no pose";
   ExpectedPose behind = expected;
   behind.T_camera_tool.translation.z() -= 2;
-  EXPECT_EQ(agreed_pose(markers, mean, behind, k_steps).reason, Reason::degenerate);
+  EXPECT_EQ(agreed_pose(markers, behind, k_steps).reason, Reason::degenerate);
 }
 
 }  // namespace

@@ -82,14 +82,21 @@ TEST(BlobSize, SaysHardlyEverAnythingOfADiscOfItsOwn) {
 
 struct Tally {
   double squares = 0, stated = 0;
-  int unnoticed = 0;
+  int count = 0, unnoticed = 0;
   void add(double off_px2, double variance) {
+    ++count;
     squares += off_px2;
     stated += variance;
     unnoticed += variance == 0 ? 1 : 0;
     if (variance == 0) return;
     EXPECT_LT(off_px2, 3 * variance);
     EXPECT_GT(off_px2, 0.2 * variance);
+  }
+  void judge() const {
+    std::printf("  off by %.2f px rms, %.2f stated, %d unnoticed\n", std::sqrt(squares / count),
+                std::sqrt(stated / count), unnoticed);
+    EXPECT_LT(unnoticed, count / 20);
+    EXPECT_NEAR(stated / squares, 1, 0.2);
   }
 };
 
@@ -109,11 +116,7 @@ TEST(BlobSize, SaysHowFarADiscBesideMovesTheMiddle) {
     tally.add(0.5 * (drawn.middle_px - middle).squaredNorm(),
               added(strip_of(drawn.area_px, tool_of_radius(radius_px))));
   }
-  std::printf("  off by %.2f px rms, %.2f stated, %d unnoticed\n",
-              std::sqrt(tally.squares / k_trials), std::sqrt(tally.stated / k_trials),
-              tally.unnoticed);
-  EXPECT_LT(tally.unnoticed, k_trials / 20);
-  EXPECT_NEAR(tally.stated / tally.squares, 1, 0.2);
+  tally.judge();
 }
 
 TEST(BlobSize, SaysHowFarAHiddenPartMovesTheMiddle) {
@@ -128,11 +131,7 @@ TEST(BlobSize, SaysHowFarAHiddenPartMovesTheMiddle) {
     tally.add(0.5 * (drawn.middle_px - middle).squaredNorm(),
               added(strip_of(drawn.area_px, tool_of_radius(radius_px))));
   }
-  std::printf("  off by %.2f px rms, %.2f stated, %d unnoticed\n",
-              std::sqrt(tally.squares / k_trials), std::sqrt(tally.stated / k_trials),
-              tally.unnoticed);
-  EXPECT_LT(tally.unnoticed, k_trials / 20);
-  EXPECT_NEAR(tally.stated / tally.squares, 1, 0.2);
+  tally.judge();
 }
 
 TEST(BlobSize, AMergedBlobsRangeMayBeTheOthersAHiddenOnesIsItsOwn) {
