@@ -1,107 +1,19 @@
-#include "nodes/refine_pose.hpp"
-
-#include <gtest/gtest.h>
-
 #include <cstdio>
-#include <memory>
-#include <numbers>
 
-#include "kernels/pose/blob_size.hpp"
 #include "kernels/pose/pose_factor.hpp"
-#include "kernels/pose/rigid_fit.hpp"
-#include "tests/unit/kernels/pose/weighted_scene.hpp"
+#include "tests/unit/nodes/refine_pose_scene.hpp"
 
 namespace glint {
 namespace {
 
+using test::error_of;
+using test::foretell;
+using test::k_pixel_sigma_px;
+using test::k_place;
+using test::k_range_sigma_m;
 using test::Random;
 
-const Vector3 k_place(0.08, -0.05, 0.5);
-constexpr double k_pixel_sigma_px = 0.1, k_range_sigma_m = 0.0015;
-
-class RefinePose : public testing::Test {
- protected:
-  RefinePose() {
-    node_.noise = {k_range_sigma_m, k_pixel_sigma_px, 253};
-    world_->assignment.reason.fill(Reason::too_few_markers);
-  }
-
-  // Tool number t, its markers seen in the reverse of their order, with noise of `share` sigmas.
-  void add_tool(int t, const Tool& tool, const Pose& truth, double share, Random& random) {
-    const auto at = static_cast<std::size_t>(t);
-    set_.count = std::max(set_.count, t + 1);
-    set_.items[at] = tool;
-    world_->assignment.reason[at] = Reason::none;
-    Labeling& labeling = world_->assignment.labeling[at];
-    labeling = {};
-    labeling.marker.fill(-1);
-    labeling.count = tool.marker_count;
-    const CameraModel camera = test::pinhole();
-    for (int i = tool.marker_count - 1; i >= 0; --i) {
-      const Vector3 point = truth * tool.markers_m[static_cast<std::size_t>(i)];
-      const double right = random.normal(), down = random.normal(), away = random.normal();
-      const Vector2 pixel =
-          project(camera, point).value + share * k_pixel_sigma_px * Vector2(right, down);
-      int lens_steps = 0;
-      const LocalRays rays = local_rays(camera, pixel, k_ray_steps_max, lens_steps).value;
-      labeling.marker[static_cast<std::size_t>(i)] =
-          static_cast<std::int16_t>(world_->markers.count);
-      Marker& marker = world_->markers.items[static_cast<std::size_t>(world_->markers.count++)];
-      marker = {};
-      marker.ray = rays.ray;
-      marker.along_x = rays.along_x;
-      marker.along_y = rays.along_y;
-      marker.centroid_px = pixel;
-      marker.surface_range_m =
-          point.norm() + share * k_range_sigma_m * away - tool.centre_offset_m();
-    }
-  }
-  Marker& marker_of(int t, int i) {
-    return world_->markers
-        .items[static_cast<std::size_t>(world_->assignment.labeling[static_cast<std::size_t>(t)]
-                                            .marker[static_cast<std::size_t>(i)])];
-  }
-  void forget(int t, int i) {
-    Labeling& labeling = world_->assignment.labeling[static_cast<std::size_t>(t)];
-    labeling.marker[static_cast<std::size_t>(i)] = -1;
-    --labeling.count;
-  }
-  void start_over() { world_->markers.count = set_.count = 0; }
-  const FittedTools& run(graph::Slice slice = {0, 1}) {
-    tools_.set(set_, 1, 0);
-    node_(verdict_, world_->markers, tools_, world_->predictions, world_->assignment, slice,
-          world_->fitted);
-    return world_->fitted;
-  }
-  const FittedTool& run_one() { return run().tools[0]; }
-
-  struct World {
-    Markers markers;
-    Predictions predictions;
-    Assignment assignment;
-    FittedTools fitted;
-  };
-  std::unique_ptr<World> world_ = std::make_unique<World>();
-  FrameVerdict verdict_;
-  ToolSet set_;
-  graph::Latest<ToolSet> tools_;
-  glint::RefinePose node_;
-};
-
-Vector6 error_of(const FittedTool& found, const Pose& truth, const Vector3& tip) {
-  Vector6 error;
-  error << found.T_camera_tool * tip - truth * tip,
-      rotation_vector(found.T_camera_tool.rotation * truth.rotation.conjugate());
-  return error;
-}
-
-// Foretold to 3 mm and 2 degrees at the middle of the markers.
-void foretell(const Tool& tool, const Pose& T_camera_tool, Prediction& prediction) {
-  prediction.follows_motion = true;
-  prediction.T_camera_tool = T_camera_tool;
-  prediction.covariance.diagonal() << Vector3::Constant(9e-6), Vector3::Constant(1.2e-3);
-  ASSERT_GT(tool.marker_count, 0);
-}
+class RefinePose : public test::RefinePoseTest {};
 
 TEST_F(RefinePose, BeatsTheRigidFitOnNoisyMarkersAndSaysHowSureItIs) {
   Random random(1);
@@ -327,141 +239,6 @@ TEST_F(RefinePose, IsLessSureOfMarkersThatAreOffByMoreThanTheirNoise) {
   EXPECT_GT(found.covariance(2, 2), 4 * sure(2, 2));
   const Vector6 error = error_of(found, truth, tool.tip_m);
   EXPECT_LT(error.dot(pose_factor(found.covariance).value.solve(error)), 20);
-}
-
-TEST_F(RefinePose, BelievesThreeMarkersOnlyWhereTheMotionCanHaveBroughtTheTool) {
-  Random random(15);
-  Tool tool = test::five_marker_pen();
-  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
-  const Pose aside{truth.rotation, truth.translation + Vector3(0.03, 0, 0)};
-  add_tool(0, tool, truth, 1, random);
-  Prediction& prediction = world_->predictions.tools[0];
-  foretell(tool, aside, prediction);
-  EXPECT_EQ(run_one().reason, Reason::none) << "five that agree are no chance";
-  forget(0, 4);
-  forget(0, 3);
-  EXPECT_EQ(run_one().reason, Reason::bad_fit);
-  EXPECT_TRUE(run_one().covariance.isZero());
-  foretell(tool, truth, prediction);
-  EXPECT_EQ(run_one().reason, Reason::none);
-  foretell(tool, aside, prediction);
-  prediction.covariance *= 100;  // long hidden
-  EXPECT_EQ(run_one().reason, Reason::none);
-  prediction = {};  // it is not known how it moved
-  EXPECT_EQ(run_one().reason, Reason::none);
-}
-
-// What a marker's blob covers when it is `part` of its disc, in the pinhole's pixels.
-std::uint32_t area_of(const Tool& tool, const Pose& truth, int i, double part) {
-  const Vector3 point = truth * tool.markers_m[static_cast<std::size_t>(i)];
-  const double radius_px = 253 * tool.marker_radius_m / point.norm() + k_rim_px;
-  return static_cast<std::uint32_t>(part * std::numbers::pi * radius_px * radius_px);
-}
-
-TEST_F(RefinePose, IsLessSureOfAMarkerWhoseBlobIsLargerThanTheOthers) {
-  Random random(18);
-  Tool tool = test::five_marker_pen();
-  tool.marker_radius_m = 0.0055;
-  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
-  add_tool(0, tool, truth, 0, random);
-  forget(0, 4);  // of five the bad one would be left out
-  Marker& merged = marker_of(0, 1);
-  int lens_steps = 0;
-  merged.centroid_px.x() += 0.6;
-  const LocalRays rays =
-      local_rays(test::pinhole(), merged.centroid_px, k_ray_steps_max, lens_steps).value;
-  merged.ray = rays.ray;
-  merged.along_x = rays.along_x;
-  merged.along_y = rays.along_y;
-  const auto error = [&](double part, double of_merged) {
-    for (int i = 0; i < 4; ++i)
-      marker_of(0, i).area_px = area_of(tool, truth, i, i == 1 ? of_merged : part);
-    const FittedTool& found = run_one();
-    EXPECT_EQ(found.reason, Reason::none);
-    return error_of(found, truth, tool.tip_m).head<3>().norm();
-  };
-  const double unnoticed = error(1, 1);
-  EXPECT_LT(error(1, 2.2), 0.3 * unnoticed);
-  EXPECT_EQ(run_one().marker_mask, 15) << "it still counts";
-  EXPECT_LT(error(1, 0.5), 0.3 * unnoticed) << "partly hidden";
-  EXPECT_GT(error(2.2, 2.2), 0.8 * unnoticed) << "all are smeared alike";
-}
-
-TEST_F(RefinePose, BelievesFewWholeMarkersOnlyWhereTheMotionCanHaveBroughtTheTool) {
-  Random random(19);
-  Tool tool = test::five_marker_pen();
-  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
-  const Pose aside{truth.rotation, truth.translation + Vector3(0.03, 0, 0)};
-  add_tool(0, tool, truth, 1, random);
-  foretell(tool, aside, world_->predictions.tools[0]);
-  EXPECT_EQ(run_one().reason, Reason::none);
-  for (int i = 0; i < 2; ++i) marker_of(0, i).flags = k_marker_uneven;
-  EXPECT_EQ(run_one().reason, Reason::bad_fit);
-  foretell(tool, truth, world_->predictions.tools[0]);
-  EXPECT_EQ(run_one().reason, Reason::none);
-}
-
-TEST_F(RefinePose, TellsAFilterWhatFewMarkersSayNearWhereItExpectsTheTool) {
-  Random random(20);
-  const Tool tool = test::five_marker_pen();
-  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
-  add_tool(0, tool, truth, 1, random);
-  Prediction& prediction = world_->predictions.tools[0];
-  foretell(tool, truth, prediction);
-  EXPECT_FALSE(run_one().tells_near) << "five that agree need no help";
-  forget(0, 4);
-  forget(0, 3);
-  ASSERT_TRUE(run_one().tells_near);
-  const UncertainPose told = told_middle_of(run_one(), tool, Time{});
-  EXPECT_EQ(told.pose.translation, Vector3(run_one().near_T_camera_tool * tool.middle_m()));
-  EXPECT_EQ(told.covariance, run_one().near_covariance);
-  EXPECT_LT((told.pose.translation - truth * tool.middle_m()).norm(), 0.01);
-  prediction = {};
-  EXPECT_FALSE(run_one().tells_near) << "nothing is expected";
-  const UncertainPose alone = told_middle_of(run_one(), tool, Time{});
-  EXPECT_EQ(alone.pose.translation, Vector3(run_one().T_camera_tool * tool.middle_m()));
-}
-
-TEST_F(RefinePose, IsTheLessSureOfThreeMarkersTheLessTheyWereExpected) {
-  Random random(17);
-  Tool tool = test::five_marker_pen();
-  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
-  add_tool(0, tool, truth, 0, random);
-  Prediction& prediction = world_->predictions.tools[0];
-  const auto sigma_aside = [&](double sigmas) {
-    foretell(tool, truth, prediction);
-    const double sigma_m = std::sqrt(prediction.covariance(0, 0));
-    foretell(tool, {truth.rotation, truth.translation + Vector3(sigmas * sigma_m, 0, 0)},
-             prediction);
-    return std::sqrt(run_one().covariance(0, 0));
-  };
-  const double all = sigma_aside(0);
-  EXPECT_EQ(sigma_aside(4), all) << "five that agree are no chance";
-  forget(0, 4);
-  forget(0, 3);
-  const double expected = sigma_aside(0);
-  EXPECT_EQ(sigma_aside(1), expected) << "no more than noise";
-  const double unexpected = sigma_aside(4);
-  EXPECT_EQ(run_one().reason, Reason::none);
-  EXPECT_GT(unexpected, 1.3 * expected);
-  EXPECT_LE(unexpected, std::sqrt(16.0 / 6) * (1 + 1e-9) * expected);
-}
-
-TEST_F(RefinePose, ForgivesOnlyWhatTheMotionExplains) {
-  Random random(16);
-  Tool tool = test::five_marker_pen();
-  tool.marker_count = 4;
-  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
-  const Pose aside{truth.rotation, truth.translation + Vector3(0.03, 0, 0)};
-  add_tool(0, tool, truth, 0, random);
-  world_->assignment.labeling[0].predicted_worth_m2 = 1e-5;
-  marker_of(0, 2).surface_range_m += 0.03;
-  Prediction& prediction = world_->predictions.tools[0];
-  foretell(tool, truth, prediction);
-  EXPECT_EQ(run_one().reason, Reason::none);
-  EXPECT_EQ(run_one().marker_mask, 0b1011);
-  foretell(tool, aside, prediction);
-  EXPECT_EQ(run_one().reason, Reason::bad_fit);
 }
 
 TEST_F(RefinePose, TakesAMeasuredMeanErrorOffWhereItHolds) {
