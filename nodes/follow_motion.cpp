@@ -87,8 +87,10 @@ void FollowMotion::operator()(
     if (!verdict.usable()) continue;  // a refused frame changes nothing that is known of a tool
     if (verdict.resynchronised) tool.motion.forget();
     const AnchoredHead& anchored = anchor.now;
-    if (anchored.moved_along && tool.base == ReferenceFrame::world)
-      tool.motion.move(anchored.moved);
+    if (tool.base == ReferenceFrame::world) {
+      if (anchored.moved_along) tool.motion.move(anchored.moved);
+      if (anchored.in_gap) tool.motion.loosen(anchored.stepped_at(tool.motion.place()));
+    }
     const FittedTool& found = fitted[slice.index].tools[t];
     tool.reason = found.reason;
     if (found.reason != Reason::none) {

@@ -19,7 +19,7 @@ struct NameFew {
   static constexpr std::array<std::string_view, 4> k_loops = {"call", "tools", "gates", "tests"};
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
     const std::int64_t gates = std::int64_t{limits.tools} * limits.markers_per_tool;
-    return {{1, limits.tools, gates, gates * limits.blobs}};
+    return {{1, limits.tools, gates, (gates + limits.tools) * limits.blobs}};
   }
   [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
 

@@ -39,7 +39,8 @@ bool speed_is_known(const MotionState& motion, double sigma_m_s) {
 // T_camera_world: null where the head's pose is not known. Returns how far from where its motion
 // would lead the tool is held.
 double PredictTracks::foretell(const Track& track, const Tool& tool, Time time,
-                               const Pose* T_camera_world, Prediction& prediction) noexcept {
+                               const HeadAnchor& anchor, const Pose* T_camera_world,
+                               Prediction& prediction) noexcept {
   const bool in_world = track.base == ReferenceFrame::world;
   prediction.has_prior = true;
   prediction.missed_last = !track.seen_now;
@@ -57,8 +58,8 @@ double PredictTracks::foretell(const Track& track, const Tool& tool, Time time,
   const double held_back_m = (later.pose.translation - middle.translation).norm();
   if (in_world) {
     const double since_s = (time - track.newest.time).seconds();
-    prediction.covariance +=
-        moved_share(since_s, settings.head_correlation_s) * track.head_covariance;
+    prediction.covariance += moved_share(since_s, settings.head_correlation_s) *
+                             anchor.uncorrected_at(middle.translation);
     prediction.covariance = turned_covariance(prediction.covariance, T_camera_world->rotation);
     middle = *T_camera_world * middle;
   }
@@ -107,8 +108,8 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
 
     ++counts_[1];
     const Tool& tool = set.items[t];
-    const double held_back_m =
-        foretell(track, tool, now, head.valid ? &T_camera_world : nullptr, prediction);
+    const double held_back_m = foretell(track, tool, now, anchor.value().state,
+                                        head.valid ? &T_camera_world : nullptr, prediction);
     const int markers = markers_within(tool, limits);
     prediction.reach_m = reach_of(prediction, tool, markers, gap.seconds(), held_back_m);
     counts_[3] += markers;

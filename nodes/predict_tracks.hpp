@@ -69,8 +69,8 @@ struct PredictTracks {
                   Predictions& predictions) noexcept GLINT_NONBLOCKING;
 
  private:
-  double foretell(const Track& track, const Tool& tool, Time time, const Pose* T_camera_world,
-                  Prediction& prediction) noexcept GLINT_NONBLOCKING;
+  double foretell(const Track& track, const Tool& tool, Time time, const HeadAnchor& anchor,
+                  const Pose* T_camera_world, Prediction& prediction) noexcept GLINT_NONBLOCKING;
   [[nodiscard]] double reach_of(const Prediction& prediction, const Tool& tool, int markers,
                                 double seconds,
                                 double held_back_m) const noexcept GLINT_NONBLOCKING;

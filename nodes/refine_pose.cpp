@@ -7,6 +7,7 @@
 #include "kernels/pose/agreed_pose.hpp"
 #include "kernels/pose/blob_size.hpp"
 #include "kernels/pose/chi_square_limit.hpp"
+#include "kernels/pose/marker_range.hpp"
 
 namespace glint {
 namespace {
@@ -49,7 +50,7 @@ SeenMarkers weigh(const Tool& tool, int marker_count, const Markers& markers,
     const Marker& marker = markers.items[static_cast<std::size_t>(labeling.marker[at])];
     WeightedMarker& seen = out.items[out.count];
     seen.model_m = tool.markers_m[at];
-    seen.range_m = marker.surface_range_m + tool.centre_offset_m();
+    seen.range_m = centre_range_m(marker, tool);
     sights[out.count] = sight_of(marker, seen.range_m, noise);
     strips[out.count] = strip_px(marker, sights[out.count].rays, tool, seen.range_m);
     common.add(strips[out.count]);

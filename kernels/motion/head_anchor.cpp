@@ -39,27 +39,37 @@ Matrix6 AnchoredHead::lasting_at(const Vector3& point_m) const noexcept {
   return moved_covariance(lasting, point_m - pivot_m);
 }
 
+Matrix6 AnchoredHead::stepped_at(const Vector3& point_m) const noexcept {
+  return moved_covariance(stepped, point_m - pivot_m);
+}
+
+Matrix6 HeadAnchor::uncorrected_at(const Vector3& point_m) const noexcept {
+  return moved_covariance(uncorrected_, point_m - T_world_body_.translation);
+}
+
 Pose HeadAnchor::corrected(const Pose& T_world_camera) const noexcept {
   return motion_about(T_world_body_.translation, error_).inverse() * T_world_camera;
 }
 
-// Smoothed as the error itself is.
+// Smoothed as the error itself is, and by direction: what the error jitters by between two frames
+// would else count as speed, several times the headset's own.
 void HeadAnchor::observe_speed(const HeadPose& head, const HeadNoise& noise) {
   const StampedPose here{head.time, head.T_world_camera};
   const Velocity velocity = has_head_ ? velocity_between(head_, here) : Velocity{};
   const double seconds = has_head_ ? (head.time - head_.time).seconds() : 0;
   const double follow = 1 - kept_over(seconds > 0 ? seconds : 0, noise.motion_correlation_s);
-  speed_m_s_ += follow * (velocity.linear_m_s.norm() - speed_m_s_);
-  turn_rad_s_ += follow * (velocity.angular_rad_s.norm() - turn_rad_s_);
+  velocity_.linear_m_s += follow * (velocity.linear_m_s - velocity_.linear_m_s);
+  velocity_.angular_rad_s += follow * (velocity.angular_rad_s - velocity_.angular_rad_s);
 }
 
 void HeadAnchor::walk_on(const Pose& T_world_camera, double seconds, const HeadNoise& noise) {
   const Vector3 pivot = T_world_camera * Vector3(0, 0, noise.pivot_m);
   const Vector3 lever = T_world_body_.translation - pivot;
+  const double speed_m_s = velocity_.linear_m_s.norm(), turn_rad_s = velocity_.angular_rad_s.norm();
   const double moving_position =
-      noise.position_per_speed_s * speed_m_s_ + noise.position_per_turn_m * turn_rad_s_;
+      noise.position_per_speed_s * speed_m_s + noise.position_per_turn_m * turn_rad_s;
   const double moving_angle =
-      noise.angle_per_speed_s_m * speed_m_s_ + noise.angle_per_turn_s * turn_rad_s_;
+      noise.angle_per_speed_s_m * speed_m_s + noise.angle_per_turn_s * turn_rad_s;
   const Matrix6 resting = spread(noise.rest_position_m, noise.rest_angle_rad, lever);
   const Matrix6 moving = spread(moving_position, moving_angle, lever);
   const double all = resting.trace() + moving.trace();
@@ -67,7 +77,9 @@ void HeadAnchor::walk_on(const Pose& T_world_camera, double seconds, const HeadN
   const double kept = share * kept_over(seconds, noise.motion_correlation_s) +
                       (1 - share) * kept_over(seconds, noise.rest_correlation_s);
   error_ *= kept;
-  covariance_ = (kept * kept) * covariance_ + (1 - kept * kept) * (resting + moving);
+  uncorrected_ = resting + moving;
+  step_ = (1 - kept * kept) * uncorrected_;
+  covariance_ = (kept * kept) * covariance_ + step_;
 }
 
 // The mean of the first sights.
@@ -141,6 +153,8 @@ AnchoredHead HeadAnchor::update(const HeadPose& head, const UncertainPose* body,
   out.moved_along = out.corrected && unseen_ > 0;
   if (out.moved_along)
     out.moved = motion_about(T_world_body_.translation, error_).inverse() * before;
+  out.in_gap = known() && (unseen_ > 0 || !out.corrected);
+  if (out.in_gap) out.stepped = step_;
   unseen_ = out.corrected ? 0 : unseen_ + 1;
   out.pivot_m = T_world_body_.translation;
   out.head.T_world_camera = corrected(head.T_world_camera);

@@ -46,13 +46,18 @@ struct AnchoredHead {
   Vector3 pivot_m = Vector3::Zero();  // in the world: both covariances are about it
   Matrix6 fresh = Matrix6::Zero();    // new in this frame: noise among other noise
   Matrix6 lasting = Matrix6::Zero();  // kept from the frames before: shared by all of them
+  Matrix6 stepped = Matrix6::Zero();  // of what came since the frame before; zero but in a gap
   Pose moved;                         // what moves poses of before along: after a gap
   bool corrected = false;             // by this frame's sight of the body
   bool moved_along = false;           // `moved` is not the identity
+  // The body is hidden now or was in the frame before: against poses of before the head has moved
+  // by an error of this covariance, which no sight of the body took away.
+  bool in_gap = false;
 
   // Of a pose at `point_m`, about the world's axes.
   [[nodiscard]] Matrix6 fresh_at(const Vector3& point_m) const noexcept GLINT_NONBLOCKING;
   [[nodiscard]] Matrix6 lasting_at(const Vector3& point_m) const noexcept GLINT_NONBLOCKING;
+  [[nodiscard]] Matrix6 stepped_at(const Vector3& point_m) const noexcept GLINT_NONBLOCKING;
 };
 
 class HeadAnchor {
@@ -63,6 +68,8 @@ class HeadAnchor {
                                     const HeadNoise& noise) noexcept GLINT_NONBLOCKING;
   // The head's pose as the correction of the frame before has it.
   [[nodiscard]] Pose corrected(const Pose& T_world_camera) const noexcept GLINT_NONBLOCKING;
+  // Of the error that the headset is left with where no body is seen for long, at its speed now.
+  [[nodiscard]] Matrix6 uncorrected_at(const Vector3& point_m) const noexcept GLINT_NONBLOCKING;
 
   [[nodiscard]] bool known() const { return sights_ > 0; }
   [[nodiscard]] const Pose& T_world_body() const { return T_world_body_; }  // once known()
@@ -84,9 +91,11 @@ class HeadAnchor {
   Pose T_world_body_;
   Vector6 error_ = Vector6::Zero();  // of the head, about T_world_body_'s origin
   Matrix6 covariance_ = Matrix6::Zero();
+  Matrix6 uncorrected_ = Matrix6::Zero();  // what covariance_ grows to
+  Matrix6 step_ = Matrix6::Zero();         // by how much it grew since the frame before
   bool has_head_ = false;
-  StampedPose head_;  // as the headset gave it
-  double speed_m_s_ = 0, turn_rad_s_ = 0;
+  StampedPose head_;   // as the headset gave it
+  Velocity velocity_;  // of the head, smoothed
 };
 
 }  // namespace glint

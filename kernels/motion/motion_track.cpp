@@ -111,6 +111,13 @@ void MotionTrack::move(const Pose& moved) noexcept {
   rest_.move(moved);
 }
 
+void MotionTrack::loosen(const Matrix6& covariance) noexcept {
+  for (const auto& [row, from] : {std::pair{k_position, 0}, {k_rotation, 3}}) {
+    for (const auto& [column, to] : {std::pair{k_position, 0}, {k_rotation, 3}})
+      state_.covariance.block<3, 3>(row, column) += covariance.block<3, 3>(from, to);
+  }
+}
+
 MotionState MotionTrack::estimate(const RestSums& sums) const noexcept {
   if (!known_ || !rests()) return state_;
   const Rest rest = rest_.rest(sums);

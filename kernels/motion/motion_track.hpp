@@ -60,9 +60,13 @@ class MotionTrack {
   // The frame that all is given in turned out to lie elsewhere, by little: every pose p becomes
   // `moved` p.
   void move(const Pose& moved) noexcept GLINT_NONBLOCKING;
+  // It may since have moved by an error of this covariance, as UncertainPose has it: the next
+  // measurement's difference is that error's as well as the tool's.
+  void loosen(const Matrix6& covariance) noexcept GLINT_NONBLOCKING;
 
   [[nodiscard]] bool known() const { return known_; }
   [[nodiscard]] bool rests() const { return rest_.rests(); }
+  [[nodiscard]] const Vector3& place() const { return state_.pose.translation; }
   [[nodiscard]] const NoiseScale& noise_scale() const { return scale_; }
   // What one or two markers are followed with: more, see partial_noise.
   [[nodiscard]] NoiseScale partial_noise_scale(const ToolMotionSettings& settings) const {

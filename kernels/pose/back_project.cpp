@@ -121,7 +121,10 @@ BackProjectWork measure_range(const DepthView& view, const NominalMarker& nomina
     out.flags |= k_marker_wrapped;
     work.unwrapped = samples.count;
   }
-  out.surface_range_m -= view.depth.bias.at(out.surface_range_m, view.blob.peak);
+  const double too_long_m = view.depth.bias.at(out.surface_range_m, view.blob.peak);
+  out.surface_range_m -= too_long_m;
+  out.bias_taken_m = static_cast<float>(too_long_m);
+  out.peak = view.blob.peak;
   if (from_ring) out.flags |= k_marker_ring_depth;
   const bool saturated = (view.blob.flags & k_blob_saturated) != 0;
   const double bias = !from_ring ? k_bias_m : saturated ? k_saturated_bias_m : k_ring_bias_m;

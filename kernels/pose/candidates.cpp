@@ -1,4 +1,5 @@
 #include "kernels/pose/candidates.hpp"
+#include "kernels/pose/marker_range.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +66,7 @@ int select_candidates(const Markers& markers, const Tool& tool, const Correspond
   for (int m = 0; m < count; ++m) {
     const Marker& marker = markers.items[static_cast<std::size_t>(m)];
     if ((marker.flags & k_marker_no_depth) != 0) continue;
-    const double range = marker.surface_range_m + tool.centre_offset_m();
+    const double range = centre_range_m(marker, tool);
     const Vector3 point = marker.ray * range;
     if (!(range > 0) || !std::isfinite(point.sum())) continue;
     if (!area_fits(marker, range, tool, settings)) continue;

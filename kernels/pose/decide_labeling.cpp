@@ -1,4 +1,5 @@
 #include "kernels/pose/decide_labeling.hpp"
+#include "kernels/pose/marker_range.hpp"
 
 #include <algorithm>
 
@@ -18,7 +19,7 @@ Weighed weigh(const Markers& markers, const MarkerSights& sights, const Tool& to
     if (labeling.marker[i] < 0) continue;
     const auto seen = static_cast<std::size_t>(labeling.marker[i]) % k_blobs_max;
     const MarkerSight& sight = sights[seen];
-    const double range = markers.items[seen].surface_range_m + tool.centre_offset_m();
+    const double range = centre_range_m(markers.items[seen], tool);
     const Result<WeightedMarker> marker =
         weigh_marker(tool.markers_m[i], sight.rays, range, sight.variance);
     if (!marker) out.reason = marker.reason;

@@ -24,9 +24,11 @@ struct DepthBias {
   static constexpr double k_reference_m = 0.5;
   static constexpr double k_reference_counts = 1000;
 
+  [[nodiscard]] bool is_measured() const noexcept { return range_max_m > 0; }
+
   // range_m: as measured. peak: the marker's brightest pixel, raw.
   [[nodiscard]] double at(double range_m, std::uint16_t peak) const noexcept {
-    if (!(range_max_m > 0)) return 0;
+    if (!is_measured()) return 0;
     const double range = std::max(range_min_m, std::min(range_m, range_max_m));
     const double counts = std::max<double>(peak, 1);
     return offset_m + per_metre * (range - k_reference_m) + dim_m * (k_reference_counts / counts);

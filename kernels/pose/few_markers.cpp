@@ -7,6 +7,7 @@
 #include "kernels/pose/blob_size.hpp"
 #include "kernels/pose/chi_square_limit.hpp"
 #include "kernels/pose/lever_arm.hpp"
+#include "kernels/pose/marker_range.hpp"
 
 namespace glint {
 namespace {
@@ -66,7 +67,7 @@ void open_gates(const ExpectedTool& expected, const MarkerNoise& noise,
 
 NamedMarker measured(const Marker& marker, const Tool& tool, int of_tool,
                      const MarkerNoise& noise) {
-  const double range = marker.surface_range_m + tool.centre_offset_m();
+  const double range = centre_range_m(marker, tool);
   MarkerSight sight = sight_of(marker, range, noise);
   CommonStrip common;  // one or two do not tell what is common
   common.add(0);
@@ -119,14 +120,17 @@ FewWork name_few(std::span<const ExpectedTool> tools, const Markers& markers, in
     if (!tools[t].predicted) continue;
     auto& gates = scratch.gates[t];
     open_gates(tools[t], noise, gates);
+    for (std::size_t i = 0; i < count; ++i) {
+      ++work.tests;
+      scratch.range_m[i] = centre_range_m(markers.items[i], *tools[t].tool);
+    }
     for (int m = 0; m < tools[t].tool->marker_count; ++m) {
       Gate& gate = gates[static_cast<std::size_t>(m)];
       ++work.gates;
       for (std::size_t i = 0; i < count; ++i) {
         ++work.tests;
-        const Marker& marker = markers.items[i];
-        const double range = marker.surface_range_m + tools[t].tool->centre_offset_m();
-        const Vector3 residual = gate.whiten * (marker.ray * range - gate.place_m);
+        const Vector3 residual =
+            gate.whiten * (markers.items[i].ray * scratch.range_m[i] - gate.place_m);
         if (!(residual.squaredNorm() <= chi_square_limit(3))) continue;
         ++scratch.claims[i];
         if (taken[i]) continue;

@@ -62,11 +62,12 @@ struct FewScratch {
   };
   std::array<std::array<Gate, k_markers_per_tool_max>, k_tools_max> gates;
   std::array<std::uint8_t, k_blobs_max> claims{};  // gates that hold the marker
+  std::array<double, k_blobs_max> range_m{};       // to each marker's centre, were it this tool's
 };
 
 struct FewWork {
   int gates = 0;
-  int tests = 0;
+  int tests = 0;  // of a marker in a gate; its range, once for each tool, counts as one
 };
 
 // taken: markers that a labeling holds. markers_max of the markers are looked at. One element of

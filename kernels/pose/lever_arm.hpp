@@ -26,10 +26,18 @@ namespace glint {
   return j;
 }
 
-// A pose's covariance with its reference moved by `offset`.
+// A pose's covariance with its reference moved by `offset`: J C J' with J = pose_by_pose(offset),
+// without the products by ones and zeros.
 [[nodiscard]] inline Matrix6 moved_covariance(const Matrix6& covariance, const Vector3& offset) {
-  const Matrix6 j = pose_by_pose(offset);
-  return j * covariance * j.transpose();
+  const Matrix3 turned = point_by_pose(offset).rightCols<3>();
+  const Matrix3 place_turn =
+      covariance.topRightCorner<3, 3>() + turned * covariance.bottomRightCorner<3, 3>();
+  Matrix6 moved = covariance;
+  moved.topLeftCorner<3, 3>() +=
+      turned * covariance.bottomLeftCorner<3, 3>() + place_turn * turned.transpose();
+  moved.topRightCorner<3, 3>() = place_turn;
+  moved.bottomLeftCorner<3, 3>() = place_turn.transpose();
+  return moved;
 }
 
 // A pose's covariance about the axes of the frame that `rotation` leads to.

@@ -35,6 +35,8 @@ struct Marker {
   // What is common to all of a marker's pixels comes on top. 0: not known.
   std::array<float, 2> sigma_px{};
   float range_sigma_m = 0;
+  float bias_taken_m = 0;  // off surface_range_m: the camera's depth bias
+  std::uint16_t peak = 0;  // the brightest pixel, raw; 0: of a point without an image
 };
 
 struct Markers {

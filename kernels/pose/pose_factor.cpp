@@ -44,9 +44,24 @@ Vector6 PoseFactor::solve(const Vector6& right_side) const noexcept {
 }
 
 Matrix6 PoseFactor::inverse() const noexcept {
+  Matrix6 half;  // L^-1, lower
+  for (int c = 0; c < 6; ++c) {
+    half(c, c) = inverse_diagonal(c);
+    for (int r = c + 1; r < 6; ++r) {
+      double sum = 0;
+      for (int k = c; k < r; ++k) sum -= lower(r, k) * half(k, c);
+      half(r, c) = sum * inverse_diagonal(r);
+    }
+  }
   Matrix6 out;
-  for (int c = 0; c < 6; ++c) out.col(c) = solve(Vector6::Unit(c));
-  return 0.5 * (out + out.transpose());
+  for (int c = 0; c < 6; ++c) {
+    for (int r = c; r < 6; ++r) {
+      double sum = 0;
+      for (int k = r; k < 6; ++k) sum += half(k, r) * half(k, c);
+      out(r, c) = out(c, r) = sum;
+    }
+  }
+  return out;
 }
 
 }  // namespace glint

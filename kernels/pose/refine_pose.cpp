@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "kernels/motion/interpolate.hpp"
@@ -42,9 +43,9 @@ RigidFit rigid_start(MarkerSpan markers) {
 }
 
 Minimum fit_from(const Pose& start, MarkerSpan markers, const Vector3& mean, const Task& task,
-                 int steps_max, RefineWork& work) {
+                 int steps_max, double hopeless, RefineWork& work) {
   Minimum found;
-  found.fit = fit_weighted(markers, mean, start, task.prior, steps_max);
+  found.fit = fit_weighted(markers, mean, start, task.prior, steps_max, hopeless);
   ++work.fits;
   work.steps += found.fit.steps;
   work.marker_steps += found.fit.steps * static_cast<int>(markers.size());
@@ -82,19 +83,33 @@ OtherMinimum other_than(const WeightedFit& best, const WeightedFit& second) {
   return other;
 }
 
+bool is_explained(double chi_square, int degrees_of_freedom) {
+  return chi_square <= chi_square_limit(degrees_of_freedom);
+}
+
+// Above which chi-square a fit from the flip cannot become a second minimum beside this one.
+double hopeless_beside(const Minimum& first, MarkerSpan markers, int degrees_of_freedom) {
+  const bool told = markers.size() >= 4 && first.reason == Reason::none &&
+                    is_explained(first.fit.chi_square, degrees_of_freedom);
+  return told ? first.fit.chi_square + k_flip_hopeless : std::numeric_limits<double>::infinity();
+}
+
 // All of `markers`, from both starts.
 RefinedPose refine_all(MarkerSpan markers, const Task& task, int steps_max) {
   RefinedPose out;
+  out.degrees_of_freedom = 3 * static_cast<int>(markers.size()) - (task.prior != nullptr ? 0 : 6);
   const Vector3 mean = mean_of(markers);
   const RigidFit start = rigid_start(markers);
   out.reason = task.prior != nullptr ? Reason::none : start.reason;
   if (out.reason != Reason::none) return out;
   const bool two = start.reason == Reason::none;
   const Pose first = two ? start.transform : task.prior->T_camera_tool;
-  Minimum best = fit_from(first, markers, mean, task, steps_max, out.work);
+  constexpr double k_never = std::numeric_limits<double>::infinity();
+  Minimum best = fit_from(first, markers, mean, task, steps_max, k_never, out.work);
   if (two) {
     const Pose flip = depth_flipped(first, flattest_direction(markers, mean), mean);
-    Minimum second = fit_from(flip, markers, mean, task, steps_max, out.work);
+    const double hopeless = hopeless_beside(best, markers, out.degrees_of_freedom);
+    Minimum second = fit_from(flip, markers, mean, task, steps_max, hopeless, out.work);
     if (is_better(second, best)) std::swap(best, second);
     if (second.reason == Reason::none) out.other = other_than(best.fit, second.fit);
   }
@@ -103,13 +118,11 @@ RefinedPose refine_all(MarkerSpan markers, const Task& task, int steps_max) {
   out.covariance = best.covariance;
   out.chi_square = best.fit.chi_square;
   out.surprise = best.surprise;
-  out.degrees_of_freedom = 3 * static_cast<int>(markers.size()) - (task.prior != nullptr ? 0 : 6);
   return out;
 }
 
 bool is_explained(const RefinedPose& pose) {
-  return pose.reason == Reason::none &&
-         pose.chi_square <= chi_square_limit(pose.degrees_of_freedom);
+  return pose.reason == Reason::none && is_explained(pose.chi_square, pose.degrees_of_freedom);
 }
 
 // The best fit without one of the markers that the noise explains; `all` where there is none.

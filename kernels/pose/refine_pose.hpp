@@ -8,8 +8,8 @@
 //           the least sum of chi-square and surprise (expected_pose.hpp): so a flat tool's minima
 //           are told apart where the noise alone does not. The pose itself rests on the markers
 //           alone: a filter that foretold it would else count it twice.
-// Cost:     two weighted fits of some five steps: 6 us of five markers (bench_tracker); without one
-//           of n markers 2 n more, of half as many steps at most.
+// Cost:     two weighted fits of two to four steps (bench_tracker); without one of n markers 2 n
+//           more, of half as many steps as they may take at most.
 // Worst:    5 or more markers that no pose explains, nor any without one: 2 (n + 1) fits of all
 //           the steps they may take.
 // Accuracy: reaches the Cramer-Rao bound where the tool is tilted by 20 degrees or more (glint
@@ -45,6 +45,10 @@ struct RefineSettings {
 
 // Two minima nearer to each other than this, in sigmas squared, are one.
 inline constexpr double k_minima_apart_least = 0.01;
+// A flip of four or more markers whose chi-square lies so far above that of a first fit which the
+// noise explains, after k_steps_granted, is a second minimum no more: it goes the long way round to
+// the first one, or to one that is as bad. Of three markers a late second minimum was seen.
+inline constexpr double k_flip_hopeless = 1000;
 
 // The loops, as a node counts them.
 struct RefineWork {

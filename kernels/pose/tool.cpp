@@ -33,6 +33,11 @@ std::uint32_t identity_of(const Tool& tool) {
   hash.add(tool.marker_radius_m);
   hash.add(static_cast<std::uint64_t>(tool.shape));
   hash.add(tool.tip_m);
+  if (const DepthBias& bias = tool.depth_bias; bias.is_measured()) {
+    for (const double part :
+         {bias.offset_m, bias.per_metre, bias.dim_m, bias.range_min_m, bias.range_max_m})
+      hash.add(part);
+  }
   return hash.value();
 }
 

@@ -6,6 +6,7 @@
 
 #include "kernels/geometry.hpp"
 #include "kernels/limits.hpp"
+#include "kernels/pose/depth_bias.hpp"
 #include "kernels/reason.hpp"
 
 namespace glint {
@@ -18,6 +19,7 @@ struct Tool {
   int marker_count = 0;
   double marker_radius_m = 0;
   MarkerShape shape = MarkerShape::sphere;
+  DepthBias depth_bias;             // of its markers, in place of the camera's; not measured: that
   Vector3 tip_m = Vector3::Zero();  // tool frame
   std::array<char, 32> name{};      // zero-terminated
   // Of its body, so that a slot of the set whose tool is exchanged is seen to be: from all fields

@@ -7,6 +7,8 @@ namespace glint {
 namespace {
 
 constexpr double k_decrease_least = 1e-4;  // of chi-square
+// A tenth of a sigma: what is known of the pose before such a step holds after it.
+constexpr double k_decrease_short = 1e-2;
 // Levenberg's factor: after a step taken back, and its growth and fall from there.
 constexpr double k_damping_first = 0.01;
 constexpr double k_damping_growth = 10;
@@ -31,10 +33,18 @@ Pose stepped(const Pose& pose, const Vector3& mean_m, const Vector6& step) {
   return out;
 }
 
+// What chi-square would be lowered by at most after this step, if the last two were Gauss-Newton's.
+double next_decrease(double decrease, double decrease_before) {
+  return decrease < k_decrease_short && decrease < decrease_before
+             ? decrease * decrease / decrease_before
+             : decrease;
+}
+
 }  // namespace
 
 WeightedFit fit_weighted(std::span<const WeightedMarker> markers, const Vector3& mean_m,
-                         const Pose& start, const PosePrior* prior, int steps_max) noexcept {
+                         const Pose& start, const PosePrior* prior, int steps_max,
+                         double hopeless) noexcept {
   WeightedFit fit;
   fit.T_camera_tool = start;
   NormalEquations here;
@@ -43,7 +53,7 @@ WeightedFit fit_weighted(std::span<const WeightedMarker> markers, const Vector3&
     fit.reason = Reason::degenerate;
     return fit;
   }
-  double damping = 0;
+  double damping = 0, decrease_before = 0;
   for (;;) {
     Matrix6 damped = here.matrix;
     damped.diagonal() *= 1 + damping;
@@ -54,14 +64,23 @@ WeightedFit fit_weighted(std::span<const WeightedMarker> markers, const Vector3&
     }
     const Vector6 step = -factor.value.solve(here.slope);
     const Pose there = stepped(fit.T_camera_tool, mean_m, step);
-    const bool arrived = -step.dot(here.slope) < k_decrease_least;
-    if (arrived) fit.T_camera_tool = there;
-    if (arrived || fit.steps >= steps_max) break;
+    const double decrease = -step.dot(here.slope);
+    if (next_decrease(decrease, decrease_before) < k_decrease_least) {
+      fit.T_camera_tool = there;
+      here.chi_square = std::max(0.0, here.chi_square - decrease);
+      break;
+    }
+    if (fit.steps >= steps_max) break;
+    if (fit.steps == k_steps_granted && here.chi_square > hopeless) {
+      fit.reason = Reason::bad_fit;
+      return fit;
+    }
     NormalEquations next;
     ++fit.steps;
     if (evaluate(markers, mean_m, there, prior, next) && next.chi_square <= here.chi_square) {
       fit.T_camera_tool = there;
       here = next;
+      decrease_before = damping > 0 ? 0 : decrease;
       damping = damping > k_damping_least ? damping / k_damping_growth : 0;
     } else {
       damping = std::max(k_damping_first, damping * k_damping_growth);

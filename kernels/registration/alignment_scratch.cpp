@@ -24,6 +24,7 @@ Reason AlignmentScratch::prepare(int view_count, int pixels, int corners) {
     view.corners.resize(static_cast<std::size_t>(corners));
     view.seen.resize(size);
     view.scene.resize(size);
+    view.patches.resize(size / 16 + 1);
     if (const Reason reason = view.grid.prepare(pixels); reason != Reason::none) return reason;
   }
   return Reason::none;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kernels/nonblocking.hpp"
+#include "kernels/pose/pose_factor.hpp"
 #include "kernels/registration/point_grid.hpp"
 #include "kernels/registration/seen_points.hpp"
 #include "kernels/registration/splat_cloud.hpp"
@@ -24,7 +25,8 @@ class AlignmentScratch {
     std::vector<ProjectedCorner> corners;
     std::vector<SeenPoint> seen;
     std::vector<Vector3f> scene;
-    PointGrid grid;  // of the scene
+    std::vector<Vector6> patches;  // of patch_covariance.hpp: no more than a 16th of the pixels
+    PointGrid grid;                // of the scene
     int seen_count = 0;
   };
   std::vector<View> views;

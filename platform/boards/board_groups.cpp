@@ -2,6 +2,7 @@
 
 #include <array>
 #include <span>
+#include <utility>
 
 #include "kernels/wire/bits.hpp"
 #include "platform/session/pipeline.hpp"
@@ -40,19 +41,29 @@ void add_decisions(const GroupRunner<G>& runner, Sha256& hash) {
 }  // namespace
 
 BoardGroups::BoardGroups(const Cell& cell, Sinks& sinks, const Clock& now,
-                         std::int64_t unix_offset_ns, std::size_t frames, const BoardBounds& bounds)
+                         std::int64_t unix_offset_ns, std::size_t frames, const BoardBounds& bounds,
+                         BackgroundScene scene)
     : roster_(cell),
       frame_runner_(runner_settings<Tracker>(k_frame_group, cell.deadlines.frame,
                                              cell.overrun.frame, cell.overrun.watch,
                                              bounds.frame_ns)),
       tick_runner_(runner_settings<Output>(k_tick_group, cell.deadlines.tick, cell.overrun.tick,
                                            cell.overrun.watch, bounds.tick_ns)),
-      frame_(cell, roster_.published(), now, frame_runner_, nullptr),
-      tick_(cell, frame_.estimates(), robot_, now, {sinks.can(), sinks.dds(), nullptr, nullptr},
+      frame_(cell, roster_.published(), now, frame_runner_,
+             sinks.recorder() != nullptr ? &sinks.recorder()->frame_lane() : nullptr),
+      tick_(cell, frame_.estimates(), robot_, now,
+            {sinks.can(), sinks.dds(), nullptr,
+             sinks.recorder() != nullptr ? &sinks.recorder()->tick_lane() : nullptr},
             unix_offset_ns, frames, tick_runner_, frame_.overrun_notes()) {
   frame_.tell_head_to(sinks.dds());
   robot_.write_slot() = declared_robot_frame(cell);
   robot_.publish(1, 0);
+  if (!cell.background) return;
+  Recorder* const recorder = sinks.recorder();
+  background_ = std::make_unique<BackgroundGroup>(
+      cell, *plan_by_rule(cell).background, nullptr, std::move(scene),
+      RobotSinks{&robot_, recorder != nullptr ? &recorder->slice_lane() : nullptr,
+                 &sinks.robot_notes()});
 }
 
 void BoardGroups::process(const ArrivedFrame& arrived) noexcept {
@@ -74,6 +85,10 @@ void BoardGroups::process(const ArrivedFrame& arrived) noexcept {
   add_decisions(frame_runner_, verdicts_);
   ++frames_;
   if (seen) ++tracked_;
+  if (background_ == nullptr) return;
+  background_->tracked().write_slot() = capsules_of(estimates);
+  background_->tracked().publish(static_cast<std::uint64_t>(frames_),
+                                 arrived.frame.arrival.nanoseconds);
 }
 
 void BoardGroups::tick(std::uint32_t number, Time nominal, Time woken) noexcept {
@@ -98,6 +113,7 @@ void BoardGroups::report(BoardResult& result) const {
   result.tick_overruns = tick_runner_.overruns();
   result.latencies = tick_.latencies().entries();
   result.latencies_left_out = tick_.latencies().beyond();
+  if (background_ != nullptr) result.background = background_->counts();
   result.can_frames = tick_.can_frames();
   result.output_sha256 = tick_.output_sha256();
   Sha256 both;

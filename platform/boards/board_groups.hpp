@@ -1,12 +1,14 @@
-// The two groups as a board runs them, and one hash over everything that they decided.
+// The groups as a board runs them, and one hash over everything that they decided.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "graph/latest.hpp"
 #include "platform/boards/board_run.hpp"
 #include "platform/record/sha256.hpp"
+#include "platform/session/background_group.hpp"
 #include "platform/session/frame_group.hpp"
 #include "platform/session/group_runner.hpp"
 #include "platform/session/sinks.hpp"
@@ -18,12 +20,14 @@ namespace glint {
 class BoardGroups {
  public:
   BoardGroups(const Cell& cell, Sinks& sinks, const Clock& now, std::int64_t unix_offset_ns,
-              std::size_t frames, const BoardBounds& bounds = {});
+              std::size_t frames, const BoardBounds& bounds = {}, BackgroundScene scene = {});
 
   void process(const ArrivedFrame& arrived) noexcept;                  // frame thread
   void tick(std::uint32_t number, Time nominal, Time woken) noexcept;  // tick thread
+  // Null where the cell has none; its thread is BackgroundGroup's.
+  [[nodiscard]] BackgroundGroup* background() noexcept { return background_.get(); }
 
-  // When both threads have ended.
+  // When all threads have ended.
   void report(BoardResult& result) const;
 
  private:
@@ -33,6 +37,7 @@ class BoardGroups {
   GroupRunner<Output> tick_runner_;
   FrameGroup frame_;
   TickGroup tick_;
+  std::unique_ptr<BackgroundGroup> background_;
   // Each thread has its own hash; the run's is taken over both.
   Sha256 verdicts_, states_;
   std::int64_t frames_ = 0, tracked_ = 0;

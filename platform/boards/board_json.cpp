@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "platform/session/background_json.hpp"
+
 namespace glint {
 namespace {
 
@@ -31,10 +33,16 @@ std::int64_t smallest(const std::vector<std::int64_t>& values) {
   return values.empty() ? 0 : *std::min_element(values.begin(), values.end());
 }
 
+Json recording_of(const SinkOutcome& sinks) {
+  return {{"file", sinks.recording_file},         {"complete", sinks.recording.complete()},
+          {"dropped", sinks.recording.dropped},   {"reason", sinks.recording.reason},
+          {"messages", sinks.recording.messages}, {"bytes", sinks.recording.bytes}};
+}
+
 }  // namespace
 
 Json as_json(const BoardResult& result) {
-  return {
+  Json json{
       {"frames", result.frames},
       {"frames_worst", result.frames_worst},
       {"frames_tracked", result.frames_tracked},
@@ -65,6 +73,9 @@ Json as_json(const BoardResult& result) {
       {"decision_sha256", result.decision_sha256},
       {"best_effort", result.refused},
   };
+  if (result.background) json["background"] = as_json(*result.background);
+  if (!result.sinks.recording_file.empty()) json["recording"] = recording_of(result.sinks);
+  return json;
 }
 
 Json as_json(const SystemShareFigures& figures) {

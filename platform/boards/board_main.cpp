@@ -1,4 +1,5 @@
-// glint_board: Glint as a board runs it. Frames come from memory, poses go to CAN and DDS.
+// glint_board: Glint as a board runs it. Frames come from memory, poses go to CAN and DDS, and what
+// the cell maps and follows goes on beneath.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -68,6 +69,13 @@ int run(const Arguments& arguments) {
   for (const std::string& refused : result.refused) {
     std::fprintf(stderr, "best effort: %s\n", refused.c_str());
   }
+  if (const RecordingOutcome& recording = result.sinks.recording; !recording.complete()) {
+    const std::string why = recording.ended_early
+                                ? recording.reason
+                                : std::to_string(recording.dropped) + " offers found no room";
+    std::fprintf(stderr, "the recording is not whole: %s\n", why.c_str());
+    return 1;
+  }
   return result.frames == arguments.options.frames && result.sinks.can.all_sent() ? 0 : 1;
 }
 
@@ -82,7 +90,9 @@ int main(int argc, char** argv) {
                  "costs, a built-in board or a board file: overruns are then noticed ahead");
   app.add_option("--can", arguments.can, "socketcan:IF or log:FILE, in place of the cell's");
   app.add_option("--json", arguments.json_file, "the figures; default: standard output");
-  app.add_option("--out", arguments.options.out, "folder of a CAN log");
+  app.add_option("--record", arguments.options.record,
+                 "a recording of the run, at the level of the cell's [record]; default: none");
+  app.add_option("--out", arguments.options.out, "folder of a CAN log and of the recording");
   app.add_option("--core", arguments.options.core, "the core for all threads of the run");
   app.add_flag("--dds", arguments.with_dds, "publish over DDS as the cell says");
   auto* const frames = app.add_option("--frames", arguments.frames_file,

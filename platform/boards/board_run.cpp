@@ -1,11 +1,13 @@
 #include "platform/boards/board_run.hpp"
 
+#include <atomic>
 #include <memory>
+#include <optional>
 #include <utility>
 
+#include "platform/boards/board_checks.hpp"
 #include "platform/boards/board_groups.hpp"
 #include "platform/boards/loop_source.hpp"
-#include "platform/input_error.hpp"
 #include "platform/rt/allocation_counter.hpp"
 #include "platform/rt/clock.hpp"
 #include "platform/rt/memory_lock.hpp"
@@ -17,37 +19,11 @@
 namespace glint {
 namespace {
 
-// From here to the first frame everything starts; its ticks are due before it.
-constexpr Duration k_lead = milliseconds(100);
-
-void require_same_camera(const Cell& cell, const FrameLoop& loop) {
-  const FrameLoopHeader& header = loop.header();
-  const CameraModel& model = cell.camera.model;
-  const auto text = [](auto width, auto height, auto bits) {
-    return std::to_string(width) + " x " + std::to_string(height) + " pixels of " +
-           std::to_string(bits) + " bits";
-  };
-  const std::string found = text(header.width, header.height, header.reflectivity_bits);
-  const std::string expected = text(model.width, model.height, cell.camera.reflectivity_bits);
-  if (found != expected) {
-    throw InputError("the loop has frames of " + found + "; expected " + expected +
-                     ", as the cell's camera has");
-  }
-}
-
-// Otherwise it would run less than what was planned.
-void require_no_background(const Cell& cell) {
-  if (!cell.background) return;
-  throw InputError(cell.file +
-                   ": has a [background]; expected none, for a board runs the frame "
-                   "and tick groups only");
-}
-
-void require_no_tool_changes(const Cell& cell) {
-  if (cell.tool_changes.empty()) return;
-  throw InputError(cell.file +
-                   ": has a [[tool_change]]; expected none, for a board keeps the tools that it "
-                   "starts with (absent = [..] leaves some out)");
+// From here to the first frame everything starts; its ticks are due before it. The memory of a map
+// and of a recording is touched by then.
+Duration lead_of(const Cell& cell) {
+  const bool much = cell.background || !cell.record.file.empty();
+  return milliseconds(much ? 1000 : 100);
 }
 
 // Runs `body` armed: from here on neither the heap nor a page that is not there may be touched.
@@ -64,11 +40,10 @@ void counted(Body body) {
 }  // namespace
 
 BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& options) {
-  require_same_camera(cell, loop);
-  require_no_background(cell);
-  require_no_tool_changes(cell);
+  check_for_board(cell, loop);
+  BackgroundScene scene = read_background_scene(cell, nullptr);
   cell.realtime = true;
-  cell.record.file.clear();
+  cell.record.file = options.record;
   cell.files = {"", ""};
 
   BoardResult result;
@@ -77,12 +52,12 @@ BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& opti
   }
   const Duration tick_period{static_cast<std::int64_t>(1e9 / cell.tick_hz)};
   const Duration frame_period{loop.header().period_ns};
-  const Time epoch = monotonic_now() + k_lead;
+  const Time epoch = monotonic_now() + lead_of(cell);
   const std::int64_t unix_offset_ns = unix_offset().nanoseconds + epoch.nanoseconds;
   Sinks sinks(cell, {options.out, false, result.refused}, unix_offset_ns);
   auto groups = std::make_unique<BoardGroups>(
       cell, sinks, [epoch] { return Time{} + (monotonic_now() - epoch); }, unix_offset_ns,
-      static_cast<std::size_t>(options.frames), options.bounds);
+      static_cast<std::size_t>(options.frames), options.bounds, std::move(scene));
   const Duration run = frame_period * options.frames + cell.lost_after;
   result.tick_wake_up_ns.reserve(
       static_cast<std::size_t>(run.nanoseconds / tick_period.nanoseconds + 1));
@@ -113,16 +88,28 @@ BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& opti
       }
     });
   });
+  std::atomic<bool> ended{false};
+  std::optional<RealTimeThread> background_thread;
+  if (BackgroundGroup* const background = groups->background()) {
+    GroupPlan<Background> plan = *plan_by_rule(cell).background;
+    plan.cores = {options.core};
+    background_thread.emplace(BackgroundGroup::thread_settings(plan), [background, epoch, &ended] {
+      counted([&] { background->run(epoch, ended); });
+    });
+  }
   source.start();
   frame_thread.join();
   tick_thread.join();
+  ended = true;
+  if (background_thread) background_thread->join();
 
   result.heap_allocations = AllocationCounter::count() - allocations_before;
   result.heap_counted = AllocationCounter::available();
   result.page_faults = PageFaultCounter::count() - faults_before;
-  for (const ThreadReport* report :
-       {&source.report(), &frame_thread.report(), &tick_thread.report()}) {
-    if (!report->refused.empty()) result.refused.push_back(report->name + ": " + report->refused);
+  std::vector<ThreadReport> reports{source.report(), frame_thread.report(), tick_thread.report()};
+  if (background_thread) reports.push_back(background_thread->report());
+  for (const ThreadReport& report : reports) {
+    if (!report.refused.empty()) result.refused.push_back(report.name + ": " + report.refused);
   }
   result.frames_worst = source.worst_shown();
   result.frame_wake_up_ns = source.wake_ups_ns();

@@ -1,13 +1,15 @@
 // A run on a board: frames from memory at the camera's rate, ticks by the clock, poses to CAN and,
-// if asked for, to DDS. Real time on one core; nothing is recorded.
+// if asked for, to DDS and into a recording; a cell's background beneath. Real time on one core.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "platform/boards/frame_loop.hpp"
 #include "platform/cells/cell.hpp"
+#include "platform/session/background_group.hpp"
 #include "platform/session/group_runner.hpp"
 #include "platform/session/latency.hpp"
 #include "platform/session/sink_outcome.hpp"
@@ -23,7 +25,8 @@ struct BoardBounds {
 struct BoardOptions {
   std::int64_t frames = 1000;
   int core = -1;          // all threads of the run on this core; -1: on any
-  std::string out = ".";  // folder of a CAN log, where the cell names one
+  std::string out = ".";  // folder of a CAN log, where the cell names one, and of the recording
+  std::string record;     // a file, at the cell's [record] level; empty: nothing is recorded
   BoardBounds bounds;
 };
 
@@ -36,9 +39,10 @@ struct BoardResult {
   std::vector<FrameToCan> latencies;
   std::int64_t latencies_left_out = 0;
   std::vector<std::int64_t> frame_wake_up_ns, tick_wake_up_ns;
-  std::uint64_t heap_allocations = 0;  // of both groups after their start
+  std::uint64_t heap_allocations = 0;  // of all groups after their start
   bool heap_counted = false;
-  std::uint64_t page_faults = 0;  // of both groups after their start, minor and major
+  std::uint64_t page_faults = 0;               // of all groups after their start, minor and major
+  std::optional<BackgroundCounts> background;  // where the cell has one
   std::uint64_t can_frames = 0;
   SinkOutcome sinks;
   std::string output_sha256;         // over the output records
@@ -46,7 +50,8 @@ struct BoardResult {
   std::vector<std::string> refused;  // rights that the system did not grant
 };
 
-// Throws InputError where the loop's frames are not the cell's camera's, MissingDevice.
+// Throws InputError for what a board does not run (board_checks.hpp), for depth pictures or a model
+// that cannot be read, and for a recording that cannot be made; MissingDevice.
 [[nodiscard]] BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& options);
 
 }  // namespace glint

@@ -6,6 +6,7 @@
 #include "kernels/angles.hpp"
 #include "kernels/elementary.hpp"
 #include "platform/cells/cell_headset.hpp"
+#include "platform/cells/depth_bias_table.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {
@@ -66,26 +67,6 @@ ValidRange cosines_of(const ValidRange& degrees) {
 Vector3 vector_of(const std::vector<double>& values) { return {values[0], values[1], values[2]}; }
 
 }  // namespace
-
-DepthBias depth_bias_of(const toml::table& table, const std::string& file,
-                        const std::string& section) {
-  TomlReader reader(table, file, section);
-  DepthBias bias;
-  bias.offset_m = 1e-3 * reader.real("offset_mm", 0, -100, 100);
-  bias.per_metre = 1e-3 * reader.real("mm_per_m", 0, -200, 200);
-  bias.dim_m = 1e-3 * reader.real("dim_mm", 0, -100, 100);
-  const auto range_mm = reader.reals("range_mm", 2);
-  reader.done();
-  // Without the ranges it was measured at it is worth nothing.
-  if (!range_mm || !((*range_mm)[0] >= 0 && (*range_mm)[1] > (*range_mm)[0])) {
-    complain(file, range_mm ? reader.line_of("range_mm") : table.source().begin.line,
-             section + "range_mm is " + (range_mm ? "no range" : "missing") +
-                 "; expected [from, to], the ranges it was measured at");
-  }
-  bias.range_min_m = 1e-3 * (*range_mm)[0];
-  bias.range_max_m = 1e-3 * (*range_mm)[1];
-  return bias;
-}
 
 DepthBias depth_bias_of(const NamedFile& file) {
   const Section section(file, "depth_bias", "depth");

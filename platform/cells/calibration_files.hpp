@@ -16,9 +16,7 @@
 
 namespace glint {
 
-// Of the markers in use: from the cell's own table, or from the table [depth_bias] of a file.
-[[nodiscard]] DepthBias depth_bias_of(const toml::table& table, const std::string& file,
-                                      const std::string& section);
+// [depth_bias]: of the markers in use.
 [[nodiscard]] DepthBias depth_bias_of(const NamedFile& file);
 
 // [camera]: another lens for a camera of the same picture size.

@@ -13,6 +13,7 @@
 #include "platform/cells/cell_headset.hpp"
 #include "platform/cells/cell_mapping.hpp"
 #include "platform/cells/cell_timing.hpp"
+#include "platform/cells/depth_bias_table.hpp"
 #include "platform/cells/toml_reader.hpp"
 #include "platform/cells/tool_file.hpp"
 #include "platform/cells/tool_notices.hpp"

@@ -2,6 +2,7 @@
 #include <array>
 #include <sstream>
 
+#include "platform/cells/depth_bias_table.hpp"
 #include "platform/cells/toml_reader.hpp"
 #include "platform/cells/tool_file.hpp"
 #include "platform/cells/tool_formats.hpp"
@@ -64,12 +65,12 @@ std::string text_at(const toml::node& node, const char* key, const std::string& 
 }
 
 void refuse_unknown_keys(const toml::table& table, const std::string& path) {
-  constexpr std::array known = {"name", "markers_mm", "radius_mm", "tip_mm", "shape"};
+  constexpr std::array known = {"name", "markers_mm", "radius_mm", "tip_mm", "shape", "depth_bias"};
   for (const auto& [key, node] : table) {
     if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
     throw InputError(path + ":" + std::to_string(key.source().begin.line) + ": unknown key " +
                      std::string(key.str()) +
-                     "; expected name, markers_mm, radius_mm, tip_mm or shape");
+                     "; expected name, markers_mm, radius_mm, tip_mm, shape or depth_bias");
   }
 }
 
@@ -81,6 +82,18 @@ MarkerShape shape_in(const toml::table& table, const std::string& path) {
   if (shape == "disc") return MarkerShape::disc;
   throw InputError(place_of(path, *node) + ": shape is \"" + shape +
                    "\"; expected \"sphere\" or \"disc\"");
+}
+
+// Of other markers than the camera's own bias was measured on.
+DepthBias bias_in(const toml::table& table, const std::string& path) {
+  const toml::node* node = table.get("depth_bias");
+  if (node == nullptr) return {};
+  if (node->as_table() == nullptr) {
+    throw InputError(place_of(path, *node) +
+                     ": depth_bias is no table; expected [depth_bias], as in a file of "
+                     "`glint calibrate depth`");
+  }
+  return depth_bias_of(*node->as_table(), path, "depth_bias.");
 }
 
 }  // namespace
@@ -107,6 +120,7 @@ Tool tool_from_toml_text(std::string_view text, const std::string& path) {
                                           "radius_mm", 0.0, k_radius_max_mm, path);
   tool.tip_m = point_at(required(table, "tip_mm", "a point [x, y, z]", path), "tip_mm", path);
   tool.shape = shape_in(table, path);
+  tool.depth_bias = bias_in(table, path);
   return prepared(tool, place_of(path, markers));
 }
 

@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <sstream>
 
+#include "platform/cells/depth_bias_table.hpp"
+
 namespace glint {
 namespace {
 
@@ -48,7 +50,8 @@ std::string tool_toml_text(const Tool& tool, std::string_view comment) {
   text += radius;
   text += "tip_mm = " + point_mm(tool.tip_m) + "\n";
   text += tool.shape == MarkerShape::sphere ? "shape = \"sphere\"\n" : "shape = \"disc\"\n";
-  return text;
+  const std::string bias = depth_bias_text(tool.depth_bias);
+  return bias.empty() ? text : text + "\n[depth_bias]\n" + bias;
 }
 
 }  // namespace glint

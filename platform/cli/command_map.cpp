@@ -11,7 +11,7 @@
 #include "platform/cli/publishing.hpp"
 #include "platform/input_error.hpp"
 #include "platform/mapping/cloud_files.hpp"
-#include "platform/mapping/depth_sequence.hpp"
+#include "platform/mapping/depth_png.hpp"
 #include "platform/mapping/map_chain.hpp"
 #include "platform/mapping/map_picture.hpp"
 #include "platform/mapping/occupancy.hpp"

@@ -13,16 +13,20 @@ constexpr Duration k_receipts_limit = milliseconds(5000);
 
 }  // namespace
 
+void add_network_options(CLI::App& command, DdsSettings& settings) {
+  command.add_option("--dds-interface", settings.interface, "network interface")
+      ->capture_default_str();
+  command.add_option("--dds-domain", settings.domain, "ROS_DOMAIN_ID")
+      ->check(CLI::Range(0, 232))
+      ->capture_default_str();
+}
+
 void add_publish_options(CLI::App& command, PublishOptions& options) {
   command
       .add_option("--dds", options.seconds,
                   "publish it over DDS for so many seconds, for listeners that come later too")
       ->check(CLI::Range(0.1, 86400.0));
-  command.add_option("--dds-interface", options.settings.interface, "network interface")
-      ->capture_default_str();
-  command.add_option("--dds-domain", options.settings.domain, "ROS_DOMAIN_ID")
-      ->check(CLI::Range(0, 232))
-      ->capture_default_str();
+  add_network_options(command, options.settings);
 }
 
 Time publishing_time() { return Time{dds_time()}; }

@@ -13,6 +13,9 @@ struct PublishOptions {
   DdsSettings settings;
 };
 
+// --dds-interface, --dds-domain.
+void add_network_options(CLI::App& command, DdsSettings& settings);
+
 void add_publish_options(CLI::App& command, PublishOptions& options);
 
 // Now, on the clock that stamps messages.

@@ -10,6 +10,7 @@
 #include "platform/cells/correction_text.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/report/plots.hpp"
+#include "platform/session/background_json.hpp"
 
 namespace glint {
 namespace {
@@ -78,28 +79,6 @@ ordered_json budget_of(const RunPlan& plan, const SessionResult& result) {
           {"trace_dropped", result.trace_dropped},
           {"preempt_rt", result.machine.preempt_rt},
           {"best_effort", result.machine.spoils}};
-}
-
-ordered_json background_of(const BackgroundCounts& counts) {
-  return {{"slices", counts.slices},
-          {"late", counts.late},
-          {"skipped", counts.skipped},
-          {"response_us", {{"max", counts.longest_response.seconds() * 1e6}}},
-          {"longest_steps", counts.longest_steps},
-          {"pictures", counts.map.pictures},
-          {"pictures_missed", counts.pictures_missed},
-          {"points", counts.map.measured},
-          {"points_left_out", counts.map.left_out},
-          {"points_dropped", counts.map.dropped},
-          {"maps", counts.map.maps},
-          {"voxels", counts.map.voxels},
-          {"map_points", counts.map.smoothed},
-          {"planes", counts.map.planes},
-          {"references",
-           {{"followed", counts.robot.followed},
-            {"jumps_refused", counts.robot.jumps},
-            {"unsure", counts.robot.unsure},
-            {"last", name_of(counts.robot.last)}}}};
 }
 
 void latency_row(const char* name, const ordered_json& item) {
@@ -171,7 +150,7 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
                        {"best_effort", best_effort(result)},
                        {"refused", result.refused},
                        {"budget", budget_of(plan, result)}};
-  if (result.background) summary["background"] = background_of(*result.background);
+  if (result.background) summary["background"] = as_json(*result.background);
   return summary;
 }
 
@@ -234,6 +213,10 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
       row("robot", "followed in " + std::to_string(robot.followed) + " pictures, " +
                        std::to_string(robot.jumps) + " jumps refused, " +
                        std::to_string(robot.unsure) + " told too little");
+      if (background->joints_used + background->joints_passed_over > 0) {
+        row("robot's joints", "heard: by " + std::to_string(background->joints_used) + " states, " +
+                                  std::to_string(background->joints_passed_over) + " lacked some");
+      }
     }
   }
   row("heap allocations after start", result.heap_counted

@@ -1,4 +1,4 @@
-// The sink's state as /diagnostics shows it: one entry a tool.
+// The sink's state as /diagnostics shows it: one entry a tool, one of timing, one of the robot.
 #pragma once
 
 #include <deque>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "platform/dds/messages.hpp"
+#include "platform/rt/followed_robot.hpp"
 #include "platform/rt/overrun_counters.hpp"
 
 namespace glint {
@@ -19,6 +20,8 @@ class Diagnostics {
   void add(std::string_view tool, const PoseSample& sample, const SinkFigures& figures);
   // Whether outputs are in time, and what this machine spoils.
   void add_timing(const OverrunCounters& overruns, std::string_view best_effort);
+  // Whether the robot stands where it is taken to be, as far as that was seen.
+  void add_robot(const FollowedRobotNotes& robot);
   [[nodiscard]] DiagnosticsMessage message(Time unix_time);
 
  private:

@@ -66,4 +66,18 @@ bool hear(const TextMessage& message, HeardDescription& to) {
   return true;
 }
 
+std::size_t positions_of(const HeardJoints& joints, std::span<const std::string> names,
+                         std::span<double> positions) noexcept {
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    int times = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(joints.count); ++i) {
+      if (names[n] != joints.names[i].data()) continue;
+      positions[n] = joints.positions[i];
+      ++times;
+    }
+    if (times != 1) return n;
+  }
+  return names.size();
+}
+
 }  // namespace glint

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "kernels/geometry.hpp"
@@ -46,5 +47,11 @@ struct HeardDescription {
 [[nodiscard]] bool hear(const PoseCovarianceMessage& message, Duration unix_minus_board,
                         Time arrival, HeardGuess& to);
 [[nodiscard]] bool hear(const TextMessage& message, HeardDescription& to);
+
+// The positions of these joints, by their names; others are passed over. How many were found before
+// one that is not there once: all of them, or the number of the one that is wrong.
+[[nodiscard]] std::size_t positions_of(const HeardJoints& joints,
+                                       std::span<const std::string> names,
+                                       std::span<double> positions) noexcept;
 
 }  // namespace glint

@@ -159,6 +159,7 @@ void PosePublisher::write_diagnostics(const SinkFigures& figures) {
     if (stream.started) text.add(stream.name, stream.sample, figures);
   }
   if (settings_.overruns != nullptr) text.add_timing(*settings_.overruns, settings_.best_effort);
+  if (settings_.robot != nullptr) text.add_robot(*settings_.robot);
   const DiagnosticsMessage message = text.message(Time{dds_time()});
   dds_write(diagnostics_, &message);
 }

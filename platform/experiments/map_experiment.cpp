@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "platform/mapping/depth_png.hpp"
 #include "platform/mapping/map_halves.hpp"
 
 namespace glint {

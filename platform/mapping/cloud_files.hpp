@@ -1,9 +1,9 @@
 // Clouds in files: PLY and PCD, text or binary.
 //
 // Read: PLY 1.0 (ascii, binary_little_endian; vertices first, further elements are passed over) and
-// PCD 0.7 (ascii, binary); metres; normals where there are some, other fields are passed over.
-// Points that are not finite stay in, as NaN: kernels leave them out and count them.
-// Written: binary, with normals if there are some; to a temporary file first, then renamed.
+// PCD 0.7 (ascii, binary, binary_compressed); metres; normals where there are some, other fields
+// are passed over. Points that are not finite stay in, as NaN: kernels leave them out and count
+// them. Written: binary, with normals if there are some; to a temporary file first, then renamed.
 #pragma once
 
 #include <string>

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 
 #include "kernels/pose/best_rotation.hpp"
 #include "platform/input_error.hpp"
@@ -15,7 +14,6 @@ namespace glint {
 namespace {
 
 constexpr double k_not_rigid = 0.01;  // of an axis's length or the cosine between two
-constexpr int k_side_max = 4096;
 constexpr std::size_t k_frames_max = 10'000;
 
 std::vector<double> numbers_of(FileText& file, std::size_t count) {
@@ -61,32 +59,13 @@ CameraModel load_pinhole(const std::string& path) {
   return camera;
 }
 
-void check_size(const std::string& path, int width, int height) {
-  if (width >= 1 && height >= 1 && width <= k_side_max && height <= k_side_max) return;
-  throw InputError(path + ": " + std::to_string(width) + " x " + std::to_string(height) +
-                   " pixels; expected 1 to " + std::to_string(k_side_max) + " a side");
-}
-
-DepthFrame load_png(const std::string& path) {
-  const cv::Mat image = cv::imread(path, cv::IMREAD_UNCHANGED);
-  if (image.empty() || image.type() != CV_16UC1) {
-    throw InputError(path + ": is no PNG with one plane of 16 bits; expected depth in millimetres");
-  }
-  check_size(path, image.cols, image.rows);
-  DepthFrame out{image.cols, image.rows, {}, {}, {}};
-  for (int y = 0; y < image.rows; ++y) {
-    for (int x = 0; x < image.cols; ++x) {
-      out.depth_m.push_back(1e-3f * static_cast<float>(image.at<std::uint16_t>(y, x)));
-    }
-  }
-  return out;
-}
-
 DepthFrame load_npy(const std::string& path) {
   NpyArray array = read_npy_float32(path);
-  if (array.shape.size() != 2 || array.shape[0] > k_side_max || array.shape[1] > k_side_max) {
+  if (array.shape.size() != 2 || array.shape[0] > k_depth_side_max ||
+      array.shape[1] > k_depth_side_max) {
     throw InputError(path + ": " + std::to_string(array.shape.size()) +
-                     " axes; expected rows and columns, at most " + std::to_string(k_side_max));
+                     " axes; expected rows and columns, at most " +
+                     std::to_string(k_depth_side_max));
   }
   return {static_cast<int>(array.shape[1]),
           static_cast<int>(array.shape[0]),
@@ -120,7 +99,7 @@ std::vector<LeftOut> load_left_out(const std::string& path) {
 
 }  // namespace
 
-DepthSequence load_depth_sequence(const std::string& folder) {
+DepthSequence read_depth_sequence(const std::string& folder, DepthPngReader png) {
   namespace fs = std::filesystem;
   if (!fs::is_directory(folder)) throw InputError(folder + ": is no folder; expected depth frames");
   DepthSequence out;
@@ -137,7 +116,11 @@ DepthSequence load_depth_sequence(const std::string& folder) {
                      " NAME.depth.png or .npy");
   }
   for (const std::string& file : files) {
-    DepthFrame frame = file.ends_with(".png") ? load_png(file) : load_npy(file);
+    const bool is_png = file.ends_with(".png");
+    if (is_png && png == nullptr) {
+      throw InputError(file + ": a PNG, which a board does not read; expected NAME.depth.npy");
+    }
+    DepthFrame frame = is_png ? png(file) : load_npy(file);
     if (out.frames.empty()) {
       out.camera.width = frame.width;
       out.camera.height = frame.height;

@@ -28,8 +28,13 @@ struct DepthSequence {
   std::vector<DepthFrame> frames;  // by name
 };
 
+inline constexpr int k_depth_side_max = 4096;
+
+// A picture without pose; null: PNG is refused by name, for a board has nothing to read it with.
+using DepthPngReader = DepthFrame (*)(const std::string& path);
+
 // Throws InputError naming what is missing, or file, line, found and expected: a pose that is not
 // rigid (beyond what printing leaves), pictures of different sizes, no picture at all.
-[[nodiscard]] DepthSequence load_depth_sequence(const std::string& folder);
+[[nodiscard]] DepthSequence read_depth_sequence(const std::string& folder, DepthPngReader png);
 
 }  // namespace glint

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "platform/mapping/lzf.hpp"
+
 namespace glint {
 namespace {
 
@@ -122,6 +124,37 @@ HostCloud read_binary_points(const FileText& file, const std::vector<PointField>
     add_point(
         layout, [&](const Place& place) { return value_of(*place.field, record + place.byte); },
         out);
+  }
+  return out;
+}
+
+HostCloud read_compressed_points(const FileText& file, const std::vector<PointField>& fields,
+                                 std::size_t points) {
+  const Layout layout = layout_of(file, fields);
+  std::array<std::uint32_t, 2> sizes{};  // packed, unpacked
+  if (file.rest().size() < sizeof sizes) {
+    file.refuse(std::to_string(file.rest().size()) + " bytes behind the header", "two sizes");
+  }
+  std::memcpy(sizes.data(), file.rest().data(), sizeof sizes);
+  const std::string_view packed = file.rest().substr(sizeof sizes);
+  if (sizes[0] > packed.size()) {
+    file.refuse(std::to_string(packed.size()) + " compressed bytes", std::to_string(sizes[0]));
+  }
+  if (sizes[1] != points * layout.bytes || sizes[1] > k_lzf_growth_max * sizes[0]) {
+    file.refuse(std::to_string(sizes[0]) + " bytes that unpack to " + std::to_string(sizes[1]),
+                std::to_string(points) + " points of " + std::to_string(layout.bytes));
+  }
+  std::vector<char> bytes(sizes[1]);
+  if (!unpack_lzf(packed.substr(0, sizes[0]), bytes)) {
+    file.refuse("compressed bytes that do not unpack", "LZF, as PCL writes it");
+  }
+  HostCloud out;
+  for (std::size_t i = 0; i < points; ++i) {
+    const auto value = [&](const Place& place) {
+      const char* const first = bytes.data() + place.byte * points;
+      return value_of(*place.field, first + i * place.field->size);
+    };
+    add_point(layout, value, out);
   }
   return out;
 }

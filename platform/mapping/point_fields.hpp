@@ -17,7 +17,9 @@ struct PointField {
 };
 
 // Fields x, y, z, and normal_x, normal_y, normal_z or nx, ny, nz where they are.
-// ascii: a point a line; binary: one behind the other, little-endian, all in `rest()`.
+// ascii: a point a line; binary: one behind the other, little-endian, all in `rest()`; compressed:
+// how many bytes follow and how many they unpack to, four bytes each, then LZF of all points' first
+// field, then of their second, and so on.
 // Throw InputError: no x, y, z, too few lines, words or bytes. No memory is taken for points that
 // the file is too small for.
 [[nodiscard]] HostCloud read_ascii_points(FileText& file, const std::vector<PointField>& fields,
@@ -25,5 +27,8 @@ struct PointField {
 [[nodiscard]] HostCloud read_binary_points(const FileText& file,
                                            const std::vector<PointField>& fields,
                                            std::size_t points);
+[[nodiscard]] HostCloud read_compressed_points(const FileText& file,
+                                               const std::vector<PointField>& fields,
+                                               std::size_t points);
 
 }  // namespace glint

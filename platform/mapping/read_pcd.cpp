@@ -75,7 +75,8 @@ HostCloud read_pcd(const std::string& path) {
   const std::string data(words.size() == 2 ? words[1] : "");
   if (data == "ascii") return read_ascii_points(file, fields, points);
   if (data == "binary") return read_binary_points(file, fields, points);
-  file.refuse("DATA " + data.substr(0, 40), "ascii or binary");
+  if (data == "binary_compressed") return read_compressed_points(file, fields, points);
+  file.refuse("DATA " + data.substr(0, 40), "ascii, binary or binary_compressed");
 }
 
 }  // namespace glint

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "kernels/elementary.hpp"
+#include "kernels/registration/patch_covariance.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {
@@ -56,6 +57,15 @@ class Search {
     few.gates[1] = {0.08, Matching::plane, 6, 10, false};
     few.gate_count = 2;
     return run(start, few);
+  }
+
+  // As sure as it is where neighbouring pixels err alike; of too few patches as it was.
+  void make_honest(ModelAlignment& alignment) {
+    if (alignment.reason != Reason::none || settings_.alignment.gate_count < 1) return;
+    const auto last = static_cast<std::size_t>(settings_.alignment.gate_count - 1);
+    const Result<Matrix6> covariance = patch_covariance(
+        views_, alignment.T_world_base, settings_.alignment.gates[last].gate_m, scratch_);
+    if (covariance) alignment.covariance = covariance.value;
   }
 
   [[nodiscard]] bool same_end(const Pose& a, const Pose& b) const {
@@ -231,6 +241,7 @@ Reference find_reference(const std::vector<SceneFrame>& frames, const Pose& seed
              !objection(rival, settings).empty();
     });
   }
+  search.make_honest(reference.found.alignment);
   reference.why = objection(reference.found, settings);
   if (!reference.why.empty()) return reference;
   if (!reference.rivals.empty()) {

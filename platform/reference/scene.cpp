@@ -131,15 +131,13 @@ SceneFrame read_frame(const std::string& path, const MaskPicture* mask, const Ca
   return frame;
 }
 
-}  // namespace
-
-std::vector<SceneFrame> read_scene(const SceneFiles& files, const RobotModel& robot) {
+void check_counts(const SceneFiles& files) {
   const std::size_t count = files.depth.size();
   if (count == 0 || count > k_scene_views_max) {
     throw InputError("--depth: " + std::to_string(count) + " files; expected 1 to " +
                      std::to_string(k_scene_views_max));
   }
-  if (files.joints.size() != count) {
+  if (!files.positions && files.joints.size() != count) {
     throw InputError("--joints: " + std::to_string(files.joints.size()) + " files for " +
                      std::to_string(count) + " of --depth; expected one for each");
   }
@@ -147,18 +145,43 @@ std::vector<SceneFrame> read_scene(const SceneFiles& files, const RobotModel& ro
     throw InputError("--mask: " + std::to_string(files.masks.size()) + " files for " +
                      std::to_string(count) + " of --depth; expected one for each or none");
   }
+}
+
+// `place` gives a frame the robot at these positions; what they came from is for its complaints.
+template <class Robot, class Place>
+std::vector<SceneFrame> read_frames(const SceneFiles& files, const Robot& robot, Place place) {
+  check_counts(files);
   const CameraModel camera = read_camera_info(files.camera);
   std::vector<SceneFrame> frames;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < files.depth.size(); ++i) {
     MaskPicture picture;
     if (!files.masks.empty()) picture = read_mask(files.masks[i], camera);
     const MaskPicture* mask = files.masks.empty() ? nullptr : &picture;
     frames.push_back(read_frame(files.depth[i], mask, camera));
-    const std::vector<double> positions = read_joint_positions(files.joints[i], robot);
-    frames.back().model = posed_surface(robot, positions, files.joints[i]);
+    const std::string& from = files.positions ? files.positions_from : files.joints[i];
+    place(frames.back(),
+          files.positions ? *files.positions : read_joint_positions(from, robot.inputs), from);
     frames.back().name = files.depth[i];
   }
   return frames;
+}
+
+}  // namespace
+
+std::vector<SceneFrame> read_scene(const SceneFiles& files, const RobotModel& robot) {
+  return read_frames(
+      files, robot,
+      [&](SceneFrame& frame, const std::vector<double>& positions, const std::string& from) {
+        frame.model = posed_surface(robot, positions, from);
+      });
+}
+
+std::vector<SceneFrame> read_scene(const SceneFiles& files, const RobotCloud& robot) {
+  return read_frames(
+      files, robot,
+      [&](SceneFrame& frame, const std::vector<double>& positions, const std::string& from) {
+        frame.cloud = posed_cloud(robot, positions, from);
+      });
 }
 
 }  // namespace glint

@@ -2,6 +2,7 @@
 // robot's surface at its joint positions.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,10 +45,14 @@ struct SceneFiles {
   std::string camera;
   std::vector<std::string> depth, joints;  // one of each a frame
   std::vector<std::string> masks;          // as many, or none
+  // Of every frame, in place of files of joints; and where they came from.
+  std::optional<std::vector<double>> positions{};
+  std::string positions_from{};
 };
 
 // Throws InputError where the files are none, not as many of one kind as of another, or a cloud has
 // no point in the picture.
 [[nodiscard]] std::vector<SceneFrame> read_scene(const SceneFiles& files, const RobotModel& robot);
+[[nodiscard]] std::vector<SceneFrame> read_scene(const SceneFiles& files, const RobotCloud& robot);
 
 }  // namespace glint

@@ -73,34 +73,36 @@ std::vector<Position> npy_positions(const std::string& path) {
   return positions;
 }
 
-void check_count(const std::string& path, std::size_t found, const RobotModel& robot) {
-  if (found == robot.inputs.size()) return;
+void check_count(const std::string& path, std::size_t found,
+                 const std::vector<std::string>& inputs) {
+  if (found == inputs.size()) return;
   std::string names;
-  for (const std::string& name : robot.inputs) names += (names.empty() ? "" : ", ") + name;
+  for (const std::string& name : inputs) names += (names.empty() ? "" : ", ") + name;
   throw InputError(path + ": " + std::to_string(found) + " positions; expected " +
-                   std::to_string(robot.inputs.size()) + ": " + names);
+                   std::to_string(inputs.size()) + ": " + names);
 }
 
 }  // namespace
 
-std::vector<double> read_joint_positions(const std::string& path, const RobotModel& robot) {
+std::vector<double> read_joint_positions(const std::string& path,
+                                         const std::vector<std::string>& inputs) {
   const bool npy = path.size() > 4 && path.compare(path.size() - 4, 4, ".npy") == 0;
   const std::vector<Position> found = npy ? npy_positions(path) : text_positions(path);
-  std::vector<double> values(robot.inputs.size(), 0);
+  std::vector<double> values(inputs.size(), 0);
   std::vector<bool> set(values.size(), false);
   const bool named =
       std::any_of(found.begin(), found.end(), [](const Position& p) { return !p.name.empty(); });
-  if (!named) check_count(path, found.size(), robot);
+  if (!named) check_count(path, found.size(), inputs);
   for (std::size_t i = 0; i < found.size(); ++i) {
     const Position& position = found[i];
     std::size_t at = i;
     if (named) {
-      const auto input = std::find(robot.inputs.begin(), robot.inputs.end(), position.name);
-      if (input == robot.inputs.end()) {
+      const auto input = std::find(inputs.begin(), inputs.end(), position.name);
+      if (input == inputs.end()) {
         throw InputError(position.where + ": the robot has no joint '" + position.name +
                          "' of its own position");
       }
-      at = static_cast<std::size_t>(input - robot.inputs.begin());
+      at = static_cast<std::size_t>(input - inputs.begin());
       if (set[at])
         throw InputError(position.where + ": '" + position.name + "' stands there twice");
     }
@@ -114,7 +116,7 @@ std::vector<double> read_joint_positions(const std::string& path, const RobotMod
   const auto missing = std::find(set.begin(), set.end(), false);
   if (missing != set.end()) {
     throw InputError(path + ": no position for joint '" +
-                     robot.inputs[static_cast<std::size_t>(missing - set.begin())] + "'");
+                     inputs[static_cast<std::size_t>(missing - set.begin())] + "'");
   }
   return values;
 }

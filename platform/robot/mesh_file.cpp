@@ -145,7 +145,7 @@ std::string find_mesh(const std::string& name, const RobotFiles& files) {
   if (name.starts_with(package)) {
     rest = name.substr(package.size());
     wanted = rest.substr(0, rest.find('/'));
-  } else {
+  } else if (files.text.empty()) {
     const fs::path beside = fs::path(files.urdf).parent_path() / name;
     if (fs::is_regular_file(beside)) return beside.string();
   }

@@ -205,7 +205,8 @@ void add_surface(int number, const urdf::Link& link, const RobotFiles& files, Ro
 }  // namespace
 
 RobotModel load_robot(const RobotFiles& files) {
-  const UrdfFile file = read_urdf(files.urdf);
+  const UrdfFile file =
+      files.text.empty() ? read_urdf(files.urdf) : read_urdf_text(files.text, files.urdf);
   RobotModel robot;
   robot.name = file.model->getName();
   TreeBuilder(file, files.urdf, robot).build();

@@ -37,9 +37,10 @@ struct RobotModel {
 enum class Geometry { collision, visual };
 
 struct RobotFiles {
-  std::string urdf;
+  std::string urdf;                       // a file, or where `text` came from
   std::vector<std::string> package_dirs;  // where package:// may lead; "NAME=DIR" for one package
   Geometry geometry = Geometry::collision;
+  std::string text{};  // the description itself, in place of a file
 };
 
 // Throws InputError, naming file and place: no URDF, a loop or a link with two parents, a joint

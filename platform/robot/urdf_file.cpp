@@ -124,19 +124,20 @@ void check_tree(const std::string& text, const std::string& path) {
 
 }  // namespace
 
-UrdfFile read_urdf(const std::string& path) {
-  const std::string text = text_of(path);
-  check_nesting(text, path);
+UrdfFile read_urdf(const std::string& path) { return read_urdf_text(text_of(path), path); }
+
+UrdfFile read_urdf_text(const std::string& text, const std::string& from) {
+  check_nesting(text, from);
   UrdfFile file;
-  file.joints = joints_of(text, path);
-  check_tree(text, path);
+  file.joints = joints_of(text, from);
+  check_tree(text, from);
   Complaints complaints;
   try {
     file.model = urdf::parseURDF(text);
   } catch (const std::exception& error) {
-    throw InputError(path + ": " + error.what());
+    throw InputError(from + ": " + error.what());
   }
-  if (!file.model) throw InputError(path + ": " + complaints.first());
+  if (!file.model) throw InputError(from + ": " + complaints.first());
   return file;
 }
 

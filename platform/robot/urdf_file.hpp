@@ -14,7 +14,9 @@ struct UrdfFile {
   std::vector<std::string> joints;  // in the order of the file; the model sorts them by name
 };
 
-// Throws InputError for what is no URDF, and for joints that form no tree.
+// Throw InputError for what is no URDF, and for joints that form no tree; `from` is named in place
+// of a file.
 [[nodiscard]] UrdfFile read_urdf(const std::string& path);
+[[nodiscard]] UrdfFile read_urdf_text(const std::string& text, const std::string& from);
 
 }  // namespace glint

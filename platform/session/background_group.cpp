@@ -52,6 +52,7 @@ BackgroundGroup::BackgroundGroup(const Cell& cell, const GroupPlan<Background>& 
     : runner_(background_settings(cell, plan, trace)),
       period_(cell.background->period),
       scene_(std::move(scene)),
+      robot_(std::move(scene_.model), std::move(scene_.robot)),
       sinks_(sinks) {
   ExtendMap& map = graph_.node<ExtendMap>();
   map.limits = limits_of(cell);
@@ -63,7 +64,7 @@ BackgroundGroup::BackgroundGroup(const Cell& cell, const GroupPlan<Background>& 
   }
   FollowRobot& robot = graph_.node<FollowRobot>();
   robot.limits = map.limits;
-  robot.model = scene_.robot.cloud();
+  robot.model = robot_.cloud();
   robot.T_world_robot = cell.T_world_robot;
   robot.covariance.diagonal() << k_given_variance_m2, k_given_variance_m2, k_given_variance_m2,
       k_given_variance_rad2, k_given_variance_rad2, k_given_variance_rad2;
@@ -113,6 +114,7 @@ void BackgroundGroup::slice(Time nominal, Time now) noexcept {
   counts_.map = progress.totals;
   if (robot.followed > counts_.robot.followed) tell_robot(robot);
   jumps_ = robot.jumps;
+  if (sinks_.notes != nullptr) note_robot(robot);
   counts_.robot = robot;
 }
 
@@ -133,10 +135,26 @@ void BackgroundGroup::tell_robot(const RobotProgress& robot) noexcept {
   sinks_.published->publish(robot_version_, robot.time.nanoseconds);
 }
 
+// A picture that tells too little changes nothing of what the one before said.
+void BackgroundGroup::note_robot(const RobotProgress& robot) const noexcept {
+  FollowedRobotNotes& notes = *sinks_.notes;
+  notes.shift_m.store(robot.shift_m, std::memory_order_relaxed);
+  notes.turn_rad.store(robot.turn_rad, std::memory_order_relaxed);
+  notes.jumps.store(robot.jumps, std::memory_order_relaxed);
+  if (robot.jumps > counts_.robot.jumps) notes.jumped.store(true, std::memory_order_relaxed);
+  if (robot.followed > counts_.robot.followed) notes.jumped.store(false, std::memory_order_relaxed);
+  notes.followed.store(robot.followed, std::memory_order_relaxed);
+}
+
 void BackgroundGroup::show(std::int64_t number) noexcept {
   if (number <= shown_) return;
   counts_.pictures_missed += number - shown_ - 1;
   shown_ = number;
+  if (heard_ != nullptr) {
+    robot_.update(*heard_);
+    counts_.joints_used = robot_.used();
+    counts_.joints_passed_over = robot_.passed_over();
+  }
   const DepthLoop& pictures = scene_.pictures;
   const DepthFrame& frame = pictures.picture(number);
   (void)tracked_.sample();

@@ -16,10 +16,11 @@
 #include "nodes/mapper.hpp"
 #include "platform/cells/cell.hpp"
 #include "platform/record/recorder.hpp"
-#include "platform/robot/robot_cloud.hpp"
+#include "platform/rt/followed_robot.hpp"
 #include "platform/rt/real_time_thread.hpp"
-#include "platform/session/depth_loop.hpp"
+#include "platform/session/background_scene.hpp"
 #include "platform/session/group_runner.hpp"
+#include "platform/session/heard_robot.hpp"
 #include "platform/session/run_plan.hpp"
 #include "platform/session/tracked_capsules.hpp"
 
@@ -34,18 +35,14 @@ struct BackgroundCounts {
   std::int64_t pictures_missed = 0;  // taken while another was looked at, and not shown
   MapTotals map;
   RobotProgress robot;
+  std::int64_t joints_used = 0, joints_passed_over = 0;  // of the states that were heard
 };
 
-// What the group looks at and for; the robot's points stand in its base's frame.
-struct BackgroundScene {
-  DepthLoop pictures;
-  PosedCloud robot;
-};
-
-// Where a robot that is followed is told, in front of every tick that reads it; both may be null.
+// Where a robot that is followed is told, in front of every tick that reads it; each may be null.
 struct RobotSinks {
   graph::TripleBuffer<RobotFrame>* published = nullptr;  // holds version 1: the cell's own
   RecorderLane* lane = nullptr;
+  FollowedRobotNotes* notes = nullptr;
 };
 
 // What the cell's map is made by. Throws InputError where it would refuse a slice's bound.
@@ -56,6 +53,10 @@ class BackgroundGroup {
   // The cell has a background. `trace` may be null; it is not yet started. Takes all its memory.
   BackgroundGroup(const Cell& cell, const GroupPlan<Background>& plan, TraceWriter* trace,
                   BackgroundScene scene, RobotSinks sinks = {});
+
+  // The robot's joints from now on; before the first slice. Posing its points anew comes before the
+  // slice that begins a picture, in this group's time, and is not among that slice's steps.
+  void hear(graph::TripleBuffer<HeardJoints>& joints) noexcept { heard_ = &joints; }
 
   // The thread that run() wants to be called in.
   [[nodiscard]] static ThreadSettings thread_settings(const GroupPlan<Background>& plan);
@@ -70,6 +71,8 @@ class BackgroundGroup {
 
   // Pictures so far that show the robot where no drift takes it; any thread may ask.
   [[nodiscard]] std::int64_t jumps() const noexcept { return jumps_; }
+  // The joint that the first state without all of the model's lacked, null: none did; likewise.
+  [[nodiscard]] const std::string* lacking_joint() const noexcept { return robot_.lacking(); }
 
   // When run() has returned: a last map of all pictures that were shown whole.
   void finish() noexcept;
@@ -81,12 +84,15 @@ class BackgroundGroup {
   void show(std::int64_t number) noexcept;
   [[nodiscard]] bool is_free() const noexcept;
   void tell_robot(const RobotProgress& robot) noexcept;
+  void note_robot(const RobotProgress& robot) const noexcept;
 
   Background graph_;
   std::vector<std::byte> memory_;
   GroupRunner<Background> runner_;
   Duration period_;
   BackgroundScene scene_;
+  HeardRobot robot_;
+  graph::TripleBuffer<HeardJoints>* heard_ = nullptr;
   RobotSinks sinks_;
   std::uint64_t robot_version_ = 1;
   std::atomic<std::int64_t> jumps_{0};

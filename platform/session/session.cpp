@@ -7,7 +7,9 @@
 #include <thread>
 #include <utility>
 
+#include "platform/dds/topic_names.hpp"
 #include "platform/mapping/cloud_files.hpp"
+#include "platform/mapping/depth_png.hpp"
 #include "platform/rt/allocation_counter.hpp"
 #include "platform/rt/clock.hpp"
 #include "platform/rt/machine_check.hpp"
@@ -53,16 +55,28 @@ void counted(Body body) {
   AllocationCounter::disarm();
 }
 
-// A line when the robot is first seen to have jumped; not by a real-time thread.
-void tell_jumps(const SessionGroups& groups, std::int64_t& told) {
+// What was said of the robot, once each.
+struct ToldOfRobot {
+  bool jumped = false, lacking = false;
+};
+
+// A line when the robot is first seen to have jumped, and when its joints are first heard without
+// one that its model has; not by a real-time thread.
+void tell_of_robot(const SessionGroups& groups, ToldOfRobot& told) {
   const BackgroundGroup* const background = groups.background();
-  const std::int64_t jumps = background != nullptr ? background->jumps() : 0;
-  if (told == 0 && jumps > 0) {
+  if (background == nullptr) return;
+  if (!told.jumped && background->jumps() > 0) {
+    told.jumped = true;
     std::fprintf(stderr,
                  "the robot is seen where no drift takes it: refused; the run goes on from where "
                  "it was\n");
   }
-  told = jumps;
+  if (const std::string* const joint = background->lacking_joint(); joint && !told.lacking) {
+    told.lacking = true;
+    std::fprintf(stderr,
+                 "%s: a state without a position of joint '%s': its model stays where it was\n",
+                 k_joint_states_topic, joint->c_str());
+  }
 }
 
 // Frames when they arrive, ticks and slices by the clock, each group in a thread of its own.
@@ -106,12 +120,12 @@ void run_live(const Cell& cell, Time epoch, SimulatedSource& source, SessionGrou
                               [background, epoch, &ended] { background->run(epoch, ended); });
   }
   const double all_s = static_cast<double>(end.nanoseconds) * 1e-9;
-  std::int64_t jumps_told = 0;
+  ToldOfRobot told;
   while (!frames_done ||
          (reached_ns < (end - tick_period(cell)).nanoseconds && !stopped(options))) {
     if (options.progress) options.progress(static_cast<double>(reached_ns) * 1e-9, all_s);
     groups.reach(Time{reached_ns});
-    tell_jumps(groups, jumps_told);
+    tell_of_robot(groups, told);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   frame_thread.join();
@@ -143,30 +157,19 @@ void run_in_order(const Cell& cell, Time& now, SimulatedSource& source, SessionG
   };
   ArrivedFrame arrived;
   Time last;
-  std::int64_t jumps_told = 0;
+  ToldOfRobot told;
   while (!stopped(options) && source.wait(arrived)) {
     tick_until(arrived.frame.arrival);
     now = last = arrived.frame.arrival;
     groups.reach(now);
     groups.process(arrived);
     source.give_back(arrived);
-    tell_jumps(groups, jumps_told);
+    tell_of_robot(groups, told);
     if (options.progress) {
       options.progress(static_cast<double>(now.nanoseconds) * 1e-9, all_s);
     }
   }
   tick_until(last + cell.lost_after);
-}
-
-BackgroundScene scene_of(const Cell& cell) {
-  BackgroundScene scene;
-  if (!cell.mapping) return scene;
-  const MappingSettings& mapping = *cell.mapping;
-  scene.pictures = {load_depth_sequence(mapping.source), mapping.period};
-  if (mapping.model.empty()) return scene;
-  scene.robot =
-      posed_cloud(read_robot_cloud(mapping.model), mapping.joints, cell.file + ": mapping.joints");
-  return scene;
 }
 
 // The last map, when nothing runs any more.
@@ -186,7 +189,7 @@ SessionResult run_session(const Cell& cell, const SessionOptions& options) {
 
 SessionResult run_session(const Cell& cell, sim::Scenario scenario, const SessionOptions& given) {
   const sim::Simulator simulator(std::move(scenario));
-  BackgroundScene scene = scene_of(cell);
+  BackgroundScene scene = read_background_scene(cell, read_depth_png);
   SessionOptions options = given;
   if (!options.plan.planned) options.plan = plan_by_rule(cell);
   SessionResult result;

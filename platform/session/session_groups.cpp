@@ -81,7 +81,9 @@ SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, st
     Recorder* const recorder = sinks.recorder();
     background_ = std::make_unique<BackgroundGroup>(
         cell, *options.plan.background, trace, std::move(scene),
-        RobotSinks{&robot_, recorder != nullptr ? &recorder->slice_lane() : nullptr});
+        RobotSinks{&robot_, recorder != nullptr ? &recorder->slice_lane() : nullptr,
+                   &sinks.robot_notes()});
+    if (sinks.inputs() != nullptr) background_->hear(sinks.inputs()->joints());
   }
 }
 

@@ -98,6 +98,7 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     DdsSettings settings = dds_settings(cell, unix_offset_ns);
     settings.best_effort = joined(options.best_effort);
     settings.overruns = &overruns_;
+    if (cell.mapping && !cell.mapping->model.empty()) settings.robot = &robot_notes_;
     dds_ = std::make_unique<DdsSink>(settings);
     if (options.with_reader) {
       reader_ = std::make_unique<ReaderProcess>(settings, in_folder(out_, "dds_reader.json"));

@@ -10,6 +10,7 @@
 #include "platform/dds/dds_sink.hpp"
 #include "platform/dds/reader_process.hpp"
 #include "platform/record/recorder.hpp"
+#include "platform/rt/followed_robot.hpp"
 #include "platform/rt/overrun_counters.hpp"
 #include "platform/session/file_sink.hpp"
 #include "platform/session/sink_outcome.hpp"
@@ -36,6 +37,9 @@ class Sinks {
   // For whoever counts overruns; DDS diagnostics tell them.
   [[nodiscard]] OverrunCounters& overruns() noexcept { return overruns_; }
 
+  // For whoever follows the robot; likewise.
+  [[nodiscard]] FollowedRobotNotes& robot_notes() noexcept { return robot_notes_; }
+
   // After the last offer: everything is written, and what became of it stands in the result.
   void close(SinkOutcome& result);
 
@@ -43,6 +47,7 @@ class Sinks {
   std::string out_;
   double can_bus_load_ = 0;
   OverrunCounters overruns_;
+  FollowedRobotNotes robot_notes_;
   ToolRequests tool_requests_;
   std::unique_ptr<CanSink> can_;
   std::unique_ptr<ReaderProcess> reader_;  // started before the sink, ended after it

@@ -26,6 +26,7 @@ enum class Stream : std::uint64_t {
   reference = 9,
   room = 10,
   points = 11,
+  long_throw = 12,
 };
 
 [[nodiscard]] constexpr std::uint64_t mixed(std::uint64_t x) {

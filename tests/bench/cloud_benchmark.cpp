@@ -1,5 +1,6 @@
 // What the cloud's filter chain costs, beside the Point Cloud Library on the same points in the
-// same run, one thread; and whether both give the same.
+// same run, one thread; and whether both give the same. Then the same race of two clouds'
+// alignment.
 //   bench_cloud [ROUNDS]       GLINT_TEST_DATA: the folder with robot_scans/
 #include <dlfcn.h>
 
@@ -12,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "alignment_race.hpp"
 #include "cloud_agreement.hpp"
 #include "cloud_glint.hpp"
 #include "kernels/cloud/depth_points.hpp"
@@ -61,12 +63,18 @@ std::vector<float> scan_points(const std::filesystem::path& folder) {
   return xyz;
 }
 
-RunCloudSteps load_rival() {
+// Both null where PCL was not there.
+struct Rival {
+  RunCloudSteps steps = nullptr;
+  RunAlignment alignment = nullptr;
+};
+Rival load_rival() {
   const std::string file =
       (std::filesystem::canonical("/proc/self/exe").parent_path() / GLINT_BENCH_PCL).string();
   void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) return nullptr;
-  return reinterpret_cast<RunCloudSteps>(dlsym(library, "glint_bench_pcl"));
+  if (library == nullptr) return {};
+  return {reinterpret_cast<RunCloudSteps>(dlsym(library, "glint_bench_pcl")),
+          reinterpret_cast<RunAlignment>(dlsym(library, "glint_bench_pcl_alignment"))};
 }
 
 struct Side {
@@ -146,22 +154,26 @@ int run(int rounds) {
   }
   const std::vector<float> xyz = scan_points(folder);
   const int count = static_cast<int>(xyz.size() / 3);
-  const RunCloudSteps rival = load_rival();
+  const Rival rival = load_rival();
   CloudChain chain(k_settings, count);
   Side glint, pcl;
   for (int round = 0; round <= rounds; ++round) {  // the first one warms up
     glint.once([&](CloudStepResult& r) { chain.run(xyz.data(), count, r); }, count, round > 0);
-    if (rival != nullptr) {
-      pcl.once([&](CloudStepResult& r) { rival(xyz.data(), count, k_settings, r); }, count,
+    if (rival.steps != nullptr) {
+      pcl.once([&](CloudStepResult& r) { rival.steps(xyz.data(), count, k_settings, r); }, count,
                round > 0);
     }
   }
   std::printf("%d points, one thread, processor time, median of %d rounds in turn\n  %s\n", count,
               rounds, GLINT_BENCH_FLAGS);
-  if (rival != nullptr) return compare(glint, pcl) ? 0 : 1;
+  if (rival.steps != nullptr) {
+    const bool alike = compare(glint, pcl);
+    return race_alignments(chain.smoothed(), rival.alignment, rounds) && alike ? 0 : 1;
+  }
   for (std::size_t i = 0; i < k_cloud_steps; ++i) {
     std::printf("  %-28s %10.2f ms %10d\n", k_names[i], glint.median_ms(i), glint.counts[i]);
   }
+  (void)race_alignments(chain.smoothed(), nullptr, rounds);
   std::printf("libpcl-dev was not there when this was built: no rival\n");
   return 0;
 }

@@ -79,6 +79,8 @@ CloudChain::CloudChain(const CloudStepSettings& s, int points)
 
 CloudChain::~CloudChain() = default;
 
+const PointCloud& CloudChain::smoothed() const { return kernels_->smoothed; }
+
 void CloudChain::run(const float* xyz, int count, CloudStepResult& result) {
   Kernels& k = *kernels_;
   k.input.count = 0;

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "cloud_steps.hpp"
+#include "kernels/cloud/point_cloud.hpp"
 
 namespace glint::bench {
 
@@ -13,6 +14,8 @@ class CloudChain {
   CloudChain(const CloudStepSettings& settings, int points);
   ~CloudChain();
   void run(const float* xyz, int count, CloudStepResult& result);
+  // What the last run ended with, with normals.
+  [[nodiscard]] const PointCloud& smoothed() const;
 
  private:
   struct Kernels;

@@ -41,7 +41,8 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
       set_.count = limits.tools;
       start_.limits = limits;
       see(numbers, Vector3::Zero(), 0);
-      anchor_.now.moved_along = true;
+      anchor_.now.moved_along = anchor_.now.in_gap = true;
+      anchor_.now.stepped = Matrix6::Identity() * 1e-9;
     } else {
       const int markers = 3 + numbers.below(limits.markers_per_tool - 2);
       begin(numbers, 1 + numbers.below(limits.tools), markers);

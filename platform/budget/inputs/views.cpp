@@ -9,6 +9,7 @@ Tool any_tool(Numbers& numbers, int markers) {
     Tool tool;
     tool.marker_radius_m = 0.0055;
     tool.tip_m = {0, 0, -0.12};
+    tool.depth_bias = {0, 0, 0, 0.1, 2};  // of its own, which costs, though it changes nothing
     tool.marker_count = markers;
     for (int i = 0; i < markers; ++i) tool.markers_m[i] = numbers.in_box(0.16);
     bool apart = prepare_tool(tool) == Reason::none;

@@ -135,6 +135,29 @@ TEST_F(FollowMotion, GoesOnRestingWhenTheWorldIsFoundToLieElsewhere) {
   EXPECT_LT((tool().estimate.pose.translation - middle).norm(), 0.0005);
 }
 
+// The body that held the head's world is hidden: the world may step by centimetres a frame.
+TEST_F(FollowMotion, KnowsHowSureItIsWhereTheWorldStepsBetweenFrames) {
+  constexpr double k_step_m = 0.02;
+  AnchoredHead& now = anchor_.now;
+  double chi_square = 0, off = 0;
+  constexpr int k_frames = 200;
+  for (int i = 0; i < 60; ++i) frame();
+  for (int i = 0; i < k_frames; ++i) {
+    now.head.T_world_camera.translation += random_.vector(k_step_m);
+    now.in_gap = true;
+    now.stepped.diagonal().head<3>().setConstant(k_step_m * k_step_m);
+    frame();
+    const Vector3 middle = now.head.T_world_camera * T_camera_tool_ * set_->items[0].middle_m();
+    const Vector3 error = tool().estimate.pose.translation - middle;
+    const Matrix3 covariance = tool().estimate.covariance.topLeftCorner<3, 3>();
+    chi_square += error.dot(covariance.inverse() * error) / k_frames;
+    off += error.norm() / k_frames;
+  }
+  EXPECT_LT(off, 3 * k_shift_sigma);
+  EXPECT_GT(chi_square / 3, 0.5);
+  EXPECT_LT(chi_square / 3, 1.6);
+}
+
 TEST_F(FollowMotion, CountsTheHeadsFreshErrorAmongTheNoise) {
   for (int i = 0; i < 4; ++i) frame();
   const double sure = tool().estimate.covariance(0, 0);

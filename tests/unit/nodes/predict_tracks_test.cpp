@@ -132,7 +132,15 @@ TEST_F(PredictTracks, CountsWhatTheHeadsetsErrorMayHaveChangedBySince) {
   track().base = ReferenceFrame::world;
   sure_within(1e-4, 1e-4);
   const double alone = predict(22).covariance(0, 0);
-  track().head_covariance = Matrix6::Identity() * 1e-4;
+  HeadNoise noise;
+  noise.rest_position_m = 0.01;
+  noise.rest_angle_rad = 0;
+  // That a body had just taken the error away makes no difference to what comes next.
+  const UncertainPose body{head_.time, {}, Matrix6::Identity() * 1e-8};
+  for (int sight = 0; sight <= k_anchor_frames; ++sight) {
+    head_.time = Time{} + milliseconds(1 + sight);
+    (void)anchor_.state.update(head_, &body, noise);
+  }
   // 2 (1 - exp(-22 / 400))
   EXPECT_NEAR(predict(22).covariance(0, 0) - alone, 0.107029 * 1e-4, 1e-9);
 }

@@ -216,6 +216,58 @@ TEST(WeightedFit, FindsThePoseOfExactMarkersFromFarAway) {
   }
 }
 
+// Against where the same fit rests that begins where it ended.
+TEST(WeightedFit, EndsWithinAHundredthOfASigma) {
+  test::Random random(12);
+  double worst = 0;
+  for (const Tool& tool : {test::five_marker_pen(), test::flat_tool()}) {
+    const Vector3 mean = test::mean_of_markers(tool);
+    for (int trial = 0; trial < 500; ++trial) {
+      const Pose truth = test::tilted_pose(tool, random.within(0.3, 1.2), k_place, random);
+      const auto markers = test::weighted_view(tool, truth, k_skewed, 1, random);
+      const Pose start{from_rotation_vector(random.vector(0.05)) * truth.rotation,
+                       truth.translation + random.vector(0.005)};
+      const WeightedFit fit = fit_weighted(markers, mean, start, nullptr, k_refine_steps_max);
+      WeightedFit rest = fit;
+      for (int again = 0; again < 3; ++again)
+        rest = fit_weighted(markers, mean, rest.T_camera_tool, nullptr, k_refine_steps_max);
+      Vector6 apart;
+      apart << fit.T_camera_tool * mean - rest.T_camera_tool * mean,
+          rotation_vector(fit.T_camera_tool.rotation * rest.T_camera_tool.rotation.conjugate());
+      const Matrix6 information = rest.information.selfadjointView<Eigen::Lower>();
+      worst = std::max(worst, apart.dot(information * apart));
+      EXPECT_NEAR(fit.chi_square, rest.chi_square, 1e-3);
+    }
+  }
+  EXPECT_LT(std::sqrt(worst), 0.01);
+}
+
+// What is given up goes the long way round to the pose that is known, or stays as bad.
+TEST(WeightedFit, GivesUpWhereAStartLeadsNowhereNear) {
+  test::Random random(13);
+  const Tool tool = test::five_marker_pen();
+  const Vector3 mean = test::mean_of_markers(tool);
+  constexpr double k_hopeless = 1000;
+  int given_up = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    const Pose truth = test::tilted_pose(tool, random.within(0, 1.2), k_place, random);
+    const auto markers = test::weighted_view(tool, truth, k_skewed, 1, random);
+    const Pose flip = depth_flipped(truth, flattest_direction(markers, mean), mean);
+    const WeightedFit fit =
+        fit_weighted(markers, mean, flip, nullptr, k_refine_steps_max, k_hopeless);
+    const WeightedFit whole = fit_weighted(markers, mean, flip, nullptr, k_refine_steps_max);
+    if (fit.reason != Reason::bad_fit) {
+      EXPECT_EQ(fit.chi_square, whole.chi_square);
+      continue;
+    }
+    ++given_up;
+    EXPECT_EQ(fit.steps, k_steps_granted);
+    const double off = test::angle_between(whole.T_camera_tool.rotation, truth.rotation);
+    EXPECT_TRUE(whole.chi_square > k_hopeless / 2 || off < 0.05) << whole.chi_square << " " << off;
+  }
+  EXPECT_GT(given_up, 150);
+}
+
 TEST(WeightedFit, NeverEndsHigherThanAStepBefore) {
   test::Random random(8);
   const Tool tool = test::flat_tool();

@@ -64,9 +64,9 @@ TEST(ToolFile, ReadsEveryKeyOfItsOwnFormat) {
 }
 
 TEST(ToolFile, RefusesKeysThatAreUnknownOrMissing) {
-  EXPECT_EQ(
-      toml_complaint(k_valid + "colour = \"red\"\n"),
-      "tool.toml:6: unknown key colour; expected name, markers_mm, radius_mm, tip_mm or shape");
+  EXPECT_EQ(toml_complaint(k_valid + "colour = \"red\"\n"),
+            "tool.toml:6: unknown key colour; expected name, markers_mm, radius_mm, tip_mm, shape "
+            "or depth_bias");
   for (const std::string key : {"name", "markers_mm", "radius_mm", "tip_mm"}) {
     const std::string found = toml_complaint(replaced(k_valid, key + " =", "shape2 ="));
     EXPECT_NE(found.find("shape2"), std::string::npos) << found;
@@ -114,6 +114,20 @@ TEST(ToolFile, RefusesValuesOfTheWrongKind) {
   EXPECT_EQ(toml_complaint(replaced(k_valid, "\"probe\"", "\"" + std::string(32, 'x') + "\"")),
             "tool.toml:1: name \"" + std::string(32, 'x') + "\" has 32 bytes; expected 1 to 31");
   EXPECT_EQ(toml_complaint("name = \n").rfind("tool.toml:1: ", 0), 0u);
+}
+
+TEST(ToolFile, MayHaveADepthBiasOfItsOwnMarkers) {
+  const std::string bias = "[depth_bias]\noffset_mm = 12\nrange_mm = [300, 800]\n";
+  const Tool tool = tool_from_toml_text(k_valid + bias, "tool.toml");
+  EXPECT_DOUBLE_EQ(tool.depth_bias.offset_m, 0.012);
+  EXPECT_NE(tool.identity, tool_from_toml_text(k_valid, "tool.toml").identity);
+  EXPECT_FALSE(tool_from_toml_text(k_valid, "tool.toml").depth_bias.is_measured());
+  EXPECT_EQ(toml_complaint(k_valid + "[depth_bias]\noffset_mm = 12\n"),
+            "tool.toml:6: depth_bias.range_mm is missing; expected [from, to], the ranges it was "
+            "measured at");
+  EXPECT_EQ(toml_complaint(k_valid + "depth_bias = 3\n"),
+            "tool.toml:6: depth_bias is no table; expected [depth_bias], as in a file of "
+            "`glint calibrate depth`");
 }
 
 const std::string k_ini =

@@ -26,6 +26,17 @@ TEST(ToolWriter, WritesWhatIsReadBackTheSame) {
   }
 }
 
+TEST(ToolWriter, KeepsAToolsOwnDepthBias) {
+  Tool tool = default_pen();
+  tool.depth_bias = {0.0035, -0.012, 0.0021, 0.25, 0.9};
+  const Tool read = tool_from_toml_text(tool_toml_text(tool, ""), "written.toml");
+  EXPECT_DOUBLE_EQ(read.depth_bias.offset_m, 0.0035);
+  EXPECT_DOUBLE_EQ(read.depth_bias.per_metre, -0.012);
+  EXPECT_DOUBLE_EQ(read.depth_bias.dim_m, 0.0021);
+  EXPECT_DOUBLE_EQ(read.depth_bias.range_min_m, 0.25);
+  EXPECT_DOUBLE_EQ(read.depth_bias.range_max_m, 0.9);
+}
+
 TEST(ToolWriter, KeepsAwkwardNamesOutOfPathsAndInQuotes) {
   Tool tool = default_pen();
   constexpr std::string_view k_name = "../a \"b\"";

@@ -140,25 +140,25 @@ TEST_F(TimingFields, CountTheTicksThatWereSkippedAndCloseTheStreamOnePeriodOn) {
             (std::map<std::uint32_t, std::uint64_t>{{5, 0}, {6, 0}, {9, 2}, {10, 2}, {11, 2}}));
 }
 
-// The entry of diagnostics that tells of timing: level, message, and the values by their keys.
-struct TimingEntry {
+// An entry of diagnostics: level, message, and the values by their keys.
+struct DiagnosticEntry {
   int level = -1;
   std::string message;
   std::map<std::string, std::string> values;
 };
 
-TimingEntry timing_entry(const DdsSettings& settings) {
+DiagnosticEntry diagnostic_entry(const DdsSettings& settings, const std::string& name) {
   DdsSink sink(settings);
   Peer peer(settings);
   const dds_entity_t reader = peer.reader(diagnostics_type(), k_diagnostics_topic,
                                           Reliability::reliable, Durability::volatile_data, 10);
   EXPECT_TRUE(peer.meets(sink));
   sink.start();
-  TimingEntry found;
+  DiagnosticEntry found;
   (void)take<DiagnosticsMessage>(reader, 1, [&](const DiagnosticsMessage& message) {
     for (std::uint32_t i = 0; i < message.status._length; ++i) {
       const auto& entry = message.status._buffer[i];
-      if (std::string(entry.name) != "glint: timing") continue;
+      if (entry.name != name) continue;
       found = {entry.level, entry.message, {}};
       for (std::uint32_t v = 0; v < entry.values._length; ++v) {
         found.values[entry.values._buffer[v].key] = entry.values._buffer[v].value;
@@ -187,7 +187,7 @@ TEST_F(TimingFields, SayInDiagnosticsWhatWasLateAndWhatIsBestEffort) {
     DdsSettings settings = test_settings();
     settings.overruns = &overruns;
     settings.best_effort = expected.best_effort;
-    const TimingEntry found = timing_entry(settings);
+    const DiagnosticEntry found = diagnostic_entry(settings, "glint: timing");
     EXPECT_EQ(found.level, expected.level);
     EXPECT_EQ(found.message, expected.message);
     EXPECT_EQ(found.values, (std::map<std::string, std::string>{
@@ -195,6 +195,33 @@ TEST_F(TimingFields, SayInDiagnosticsWhatWasLateAndWhatIsBestEffort) {
                                 {"overruns_tick", std::to_string(expected.tick)},
                                 {"best_effort", expected.best_effort}}));
   }
+}
+
+TEST_F(TimingFields, SayInDiagnosticsThatTheRobotWasSeenElsewhereAndHowFar) {
+  FollowedRobotNotes robot;
+  DdsSettings settings = test_settings();
+  EXPECT_EQ(diagnostic_entry(settings, "glint: robot").level, -1);
+  settings.robot = &robot;
+  EXPECT_EQ(diagnostic_entry(settings, "glint: robot").message, "not yet seen");
+  robot.followed = 12;
+  const DiagnosticEntry followed = diagnostic_entry(settings, "glint: robot");
+  EXPECT_EQ(followed.level, 0);
+  EXPECT_EQ(followed.message, "followed");
+  robot.jumps = 3;
+  robot.shift_m = 0.0312;
+  robot.turn_rad = 0.035;
+  robot.jumped = true;
+  const DiagnosticEntry jumped = diagnostic_entry(settings, "glint: robot");
+  EXPECT_EQ(jumped.level, 1);
+  EXPECT_EQ(jumped.message,
+            "seen 31.2 mm and 2.0 deg from where it is taken to be, refused: stop, look what "
+            "moved, and find it anew (glint reference)");
+  EXPECT_EQ(jumped.values.at("followed"), "12");
+  EXPECT_EQ(jumped.values.at("jumps_refused"), "3");
+  EXPECT_EQ(jumped.values.at("jump_mm"), "31.200000");
+  EXPECT_NEAR(std::stod(jumped.values.at("jump_deg")), 2.0054, 1e-3);
+  robot.jumped = false;  // seen again where it is taken to be
+  EXPECT_EQ(diagnostic_entry(settings, "glint: robot").level, 0);
 }
 
 }  // namespace

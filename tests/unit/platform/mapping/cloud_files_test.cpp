@@ -104,7 +104,7 @@ TEST(CloudFiles, RefuseBadPcdByFileAndLine) {
   const std::string head = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
   expect_complaint("a.pcd", "", "the file ends; expected DATA");
   expect_complaint("a.pcd", head + "DATA ascii\n", "no POINTS");
-  expect_complaint("a.pcd", head + "POINTS 1\nDATA binary_compressed\n", "DATA binary_compressed");
+  expect_complaint("a.pcd", head + "POINTS 1\nDATA binary_packed\n", "DATA binary_packed");
   expect_complaint("a.pcd", head + "POINTS 2\nDATA ascii\n1 2 3.0000000\n\n\n", "after 1 points");
   expect_complaint("a.pcd", head + "POINTS 2\nDATA binary\n01234567890123456789012", "23 bytes");
   expect_complaint("a.pcd", "FIELDS x y z\nSIZE 4 4\n", "line 2: 2 words behind SIZE");

@@ -1,5 +1,6 @@
 #include "platform/mapping/depth_sequence.hpp"
 
+#include "platform/mapping/depth_png.hpp"
 #include "platform/mapping/map_chain.hpp"
 #include "platform/sensors/npy.hpp"
 #include "temporary_folder.hpp"

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "platform/mapping/depth_png.hpp"
+
 namespace glint {
 namespace {
 

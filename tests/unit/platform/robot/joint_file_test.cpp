@@ -12,14 +12,10 @@ namespace {
 using test::expect_input_error;
 using test::Files;
 
-RobotModel robot() {
-  RobotModel model;
-  model.inputs = {"pan", "lift", "slide"};
-  return model;
-}
+const std::vector<std::string> k_inputs = {"pan", "lift", "slide"};
 
 std::vector<double> read(const Files& files, const std::string& text) {
-  return read_joint_positions(files.write("joints.txt", text), robot());
+  return read_joint_positions(files.write("joints.txt", text), k_inputs);
 }
 
 TEST(JointFile, TakesNumbersInOrderOrByName) {
@@ -32,7 +28,7 @@ TEST(JointFile, TakesNumbersInOrderOrByName) {
 TEST(JointFile, ReadsNumPysArrays) {
   const Files files;
   const std::string path = files.write("q.npy", npy_float32_bytes({{3}, {0.5f, 0.25f, 2}}));
-  EXPECT_EQ(read_joint_positions(path, robot()), (std::vector<double>{0.5, 0.25, 2}));
+  EXPECT_EQ(read_joint_positions(path, k_inputs), (std::vector<double>{0.5, 0.25, 2}));
 }
 
 TEST(JointFile, NamesWhatIsWrong) {
@@ -46,7 +42,7 @@ TEST(JointFile, NamesWhatIsWrong) {
   expect_input_error([&] { (void)read(files, "pan 1\npan 2\nlift 3"); }, {"joints.txt:2", "twice"});
   expect_input_error([&] { (void)read(files, "pan 1\nlift 3"); }, {"'slide'"});
   expect_input_error([&] { (void)read(files, "pan one"); }, {"joints.txt:1", "'one'"});
-  expect_input_error([&] { (void)read_joint_positions(files.folder() + "/no.txt", robot()); },
+  expect_input_error([&] { (void)read_joint_positions(files.folder() + "/no.txt", k_inputs); },
                      {"no.txt", "cannot be opened"});
 }
 

@@ -8,6 +8,7 @@
 #include "platform/budget/export/trace_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/mapping/cloud_files.hpp"
+#include "platform/mapping/depth_png.hpp"
 #include "platform/mapping/map_chain.hpp"
 #include "platform/rt/clock.hpp"
 #include "platform/session/background_group.hpp"
@@ -43,7 +44,7 @@ BackgroundCounts counted_for(Duration time, Duration period, int steps) {
   DepthFolder folder(pictures.path());
   folder.add_room(2);
   BackgroundGroup group(cell, *plan.background, nullptr,
-                        {{load_depth_sequence(folder.path), microseconds(1)}, {}});
+                        {{load_depth_sequence(folder.path), microseconds(1)}, {}, {}});
   std::atomic<bool> stop{false};
   const Time epoch = monotonic_now();
   RealTimeThread thread(BackgroundGroup::thread_settings(*plan.background),

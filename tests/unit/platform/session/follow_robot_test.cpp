@@ -1,58 +1,20 @@
 // A robot that is followed while a session runs, and what a replay makes of it.
 #include <gtest/gtest.h>
 
-#include "kernels/registration/render_depth.hpp"
 #include "platform/input_error.hpp"
-#include "platform/robot/robot_cloud.hpp"
 #include "platform/session/replay.hpp"
-#include "tests/unit/kernels/registration/box_model.hpp"
-#include "tests/unit/platform/session/depth_folder.hpp"
+#include "tests/unit/platform/session/followed_robot.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
 
 namespace glint {
 namespace {
 
-// Depth of a robot without joints, which stands where the cell says and then a little more aside
-// from picture to picture; a jump at the end, if there is to be one.
 struct FollowedRobot {
   TemporaryFolder folder;
   Cell cell;
 
   FollowedRobot(const char* level, double jump_m) : cell(short_cell(1.5, level)) {
-    const test::Model model;
-    const test::SampledModel sampled(model, 0.006f);
-    RobotCloud robot;
-    robot.name = "box";
-    robot.links = {"base"};
-    robot.points.assign(sampled.cloud().points.begin(), sampled.cloud().points.end());
-    robot.normals.assign(sampled.cloud().normals.begin(), sampled.cloud().normals.end());
-    robot.point_links.assign(robot.points.size(), 0);
-    robot.spacing_m = sampled.cloud().spacing_m;
-    write_robot_cloud(folder.path() + "/robot.ply", robot);
-
-    DepthFolder depth(folder.path());
-    constexpr int k_shown = 12;
-    for (int i = 0; i < k_shown; ++i) {
-      Pose truth = test::k_truth;
-      truth.translation.x() += 5e-4 * i + (i > k_shown / 2 ? jump_m : 0);
-      std::vector<float> z(DepthFolder::k_width * DepthFolder::k_height);
-      std::vector<std::int32_t> face(z.size());
-      std::vector<ProjectedCorner> corners(64);
-      EXPECT_EQ(render_depth({model.corners, model.faces}, truth,
-                             {DepthFolder::k_width, DepthFolder::k_height, DepthFolder::k_focal,
-                              DepthFolder::k_focal, 40, 30},
-                             {z, face, corners}),
-                Reason::none);
-      for (float& at : z) at = at == 0 ? 1.9f : at;
-      depth.add(z, cell.T_world_robot * test::k_truth.inverse());
-    }
-    cell.background = BackgroundSettings{microseconds(250), k_background_steps_max};
-    MappingSettings& mapping = cell.mapping.emplace();
-    mapping.source = folder.path();
-    mapping.model = folder.path() + "/robot.ply";
-    mapping.period = milliseconds(100);
-    mapping.pictures_a_map = 100;
-    mapping.voxels_max = 20'000;
+    follow_a_box(folder.path(), jump_m, cell);
   }
 };
 

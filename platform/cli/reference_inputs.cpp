@@ -1,0 +1,85 @@
+#include "platform/cli/reference_inputs.hpp"
+
+#include <cstdio>
+
+#include "platform/cli/progress.hpp"
+#include "platform/dds/topic_names.hpp"
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+// A rough pose, from `what`.
+Pose checked(const Pose& pose, const std::string& what) {
+  if (!pose.translation.allFinite() || !pose.rotation.coeffs().allFinite() ||
+      pose.translation.cwiseAbs().maxCoeff() > 1e3) {
+    throw InputError(what + ": expected x,y,z,roll,pitch,yaw in metres and radians");
+  }
+  return pose;
+}
+
+}  // namespace
+
+void check_given(const ReferenceArguments& arguments) {
+  const bool listens = arguments.listen_s > 0, exports = arguments.only_exports();
+  const std::pair<const char*, bool> wanted[] = {
+      {"--depth", !exports && arguments.scene.depth.empty()},
+      {"--camera", !exports && arguments.scene.camera.empty()},
+      {"--urdf", !listens && !arguments.has_robot()},
+      {"--joints", !listens && !exports && arguments.scene.joints.empty()},
+      {"--seed", !listens && !exports && arguments.seed.empty()}};
+  for (const auto& [option, missing] : wanted) {
+    if (missing) {
+      throw InputError(std::string(option) +
+                       " is missing; expected --urdf or --model, --depth, --joints, --camera and "
+                       "--seed (what is not depth or camera may be heard: --listen), or --urdf and "
+                       "--export-model alone");
+    }
+  }
+  if (!arguments.exported.empty() && !arguments.model.empty()) {
+    throw InputError("--export-model: expected --urdf, not --model: a cloud has no surface");
+  }
+}
+
+std::unique_ptr<ReferenceListener> listener_of(const ReferenceArguments& arguments) {
+  const bool exports = arguments.only_exports();
+  const ReferenceNeeds needs{!arguments.has_robot(), !exports && arguments.scene.joints.empty(),
+                             !exports && arguments.seed.empty()};
+  const bool nothing = !needs.description && !needs.joints && !needs.guess;
+  if (nothing || !(arguments.listen_s > 0)) return nullptr;
+  auto progress = std::make_shared<Progress>("listens");
+  return std::make_unique<ReferenceListener>(
+      arguments.network, needs, Duration{static_cast<std::int64_t>(1e9 * arguments.listen_s)},
+      [progress](double seconds, const std::string& topics) {
+        progress->show(seconds, 0, "for " + topics);
+      });
+}
+
+AnyRobot robot_of(ReferenceArguments& arguments, ReferenceListener* listener) {
+  if (!arguments.model.empty()) return read_robot_cloud(arguments.model);
+  if (arguments.visual) arguments.robot.geometry = Geometry::visual;
+  if (arguments.robot.urdf.empty()) {
+    arguments.robot.urdf = k_robot_description_topic;
+    arguments.robot.text = listener->description();
+  }
+  return load_robot(arguments.robot);
+}
+
+Pose start_of(ReferenceArguments& arguments, const AnyRobot& robot, ReferenceListener* listener) {
+  HeardPlace heard;
+  if (listener != nullptr) {
+    heard = listener->place(std::visit([](const auto& any) { return any.inputs; }, robot));
+  }
+  if (arguments.scene.joints.empty()) {
+    arguments.scene.positions = heard.positions;
+    arguments.scene.positions_from = k_joint_states_topic;
+    std::printf("joints     %zu of %s\n", heard.positions.size(), k_joint_states_topic);
+  }
+  if (!arguments.seed.empty()) return checked(pose_of_seed(arguments.seed), "--seed");
+  const Vector3& t = heard.guess.pose.translation;
+  std::printf("guess      [%.3f, %.3f, %.3f] m of %s, in frame \"%s\"\n", t.x(), t.y(), t.z(),
+              k_initial_pose_topic, heard.guess.frame.data());
+  return checked(heard.guess.pose, k_initial_pose_topic);
+}
+
+}  // namespace glint

@@ -1,0 +1,22 @@
+// What `glint reference` found, as lines and as JSON.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "platform/reference/find_reference.hpp"
+
+namespace glint {
+
+struct ReferenceFacts {
+  std::string robot;
+  int triangles_skipped = 0;
+  std::size_t frames = 0;
+};
+
+void print_reference(const Reference& reference, const ReferenceFacts& facts);
+
+[[nodiscard]] nlohmann::ordered_json reference_json(const Reference& reference,
+                                                    const ReferenceFacts& facts);
+
+}  // namespace glint

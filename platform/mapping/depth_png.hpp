@@ -1,0 +1,16 @@
+// Depth as PNG, for whoever has OpenCV to read it.
+#pragma once
+
+#include <string>
+
+#include "platform/mapping/depth_sequence.hpp"
+
+namespace glint {
+
+// One plane of 16 bits, millimetres. Throws InputError naming the file and what was expected.
+[[nodiscard]] DepthFrame read_depth_png(const std::string& path);
+
+// Of PNG and .npy pictures.
+[[nodiscard]] DepthSequence load_depth_sequence(const std::string& folder);
+
+}  // namespace glint

@@ -1,0 +1,35 @@
+// guest_give FILE...: writes these files of an emulated machine into the folder where its emulator
+// was started, under their own names. Exit 1: one of them is not whole there.
+#include <stdio.h>
+#include <string.h>
+
+#include "semihosting.h"
+
+static int give(const char* name) {
+  static char bytes[1 << 16];
+  FILE* file = fopen(name, "rb");
+  if (file == NULL) return 0;
+  unsigned long open[3] = {(unsigned long)name, k_open_write_binary, strlen(name)};
+  const long handle = semihosting_call(k_sys_open, open);
+  int whole = handle != -1;
+  size_t count;
+  while (whole && (count = fread(bytes, 1, sizeof bytes, file)) > 0) {
+    unsigned long write[3] = {(unsigned long)handle, (unsigned long)bytes, count};
+    whole = semihosting_call(k_sys_write, write) == 0;  // the bytes that were not written
+  }
+  whole = whole && !ferror(file);
+  fclose(file);
+  if (handle == -1) return 0;
+  unsigned long close[1] = {(unsigned long)handle};
+  return semihosting_call(k_sys_close, close) == 0 && whole;
+}
+
+int main(int count, char** arguments) {
+  int result = 0;
+  for (int i = 1; i < count; ++i) {
+    if (give(arguments[i])) continue;
+    fprintf(stderr, "guest_give: %s is not whole on the host\n", arguments[i]);
+    result = 1;
+  }
+  return result;
+}

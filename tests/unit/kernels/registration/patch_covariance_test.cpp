@@ -1,0 +1,107 @@
+#include "kernels/registration/patch_covariance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "kernels/registration/align_model.hpp"
+#include "tests/unit/heap_count.hpp"
+#include "tests/unit/kernels/registration/box_model.hpp"
+
+namespace glint {
+namespace {
+
+using test::k_truth;
+
+constexpr int k_width = 320, k_height = 240;
+constexpr double k_noise_m = 0.008;
+const double k_gate_m = AlignmentSettings{}.gates[4].gate_m;
+
+// The arm of boxes before nothing, its depth off by noise that `block` by `block` pixels share.
+struct NoisyScene {
+  test::Model model;
+  Pinhole camera{k_width, k_height, 300, 300, 160, 120};
+  std::vector<float> depth = std::vector<float>(k_width * k_height);
+  AlignmentScratch scratch;
+
+  NoisyScene(int block, unsigned seed) {
+    EXPECT_EQ(scratch.prepare(1, k_width * k_height, 64), Reason::none);
+    std::vector<std::int32_t> face(depth.size());
+    std::vector<ProjectedCorner> corners(64);
+    EXPECT_EQ(render_depth({model.corners, model.faces}, k_truth, camera, {depth, face, corners}),
+              Reason::none);
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise(0, k_noise_m);
+    std::vector<float> shared(depth.size());
+    for (float& off : shared) off = static_cast<float>(noise(random));
+    for (int y = 0; y < k_height; ++y) {
+      for (int x = 0; x < k_width; ++x) {
+        float& z = depth[static_cast<std::size_t>(y * k_width + x)];
+        if (z > 0) z += shared[static_cast<std::size_t>(y / block * k_width + x / block)];
+      }
+    }
+  }
+  [[nodiscard]] SceneView view() const {
+    return {camera, depth, {}, {model.corners, model.faces}, {}};
+  }
+};
+
+// Mean squared errors in sigmas, of six, by each covariance.
+struct Consistency {
+  double independent = 0, patches = 0;
+};
+Consistency consistency(int block) {
+  constexpr unsigned k_scenes = 60;
+  Consistency mean;
+  for (unsigned seed = 1; seed <= k_scenes; ++seed) {
+    NoisyScene scene(block, seed);
+    const SceneView one[] = {scene.view()};
+    const ModelAlignment end = align_model(one, k_truth, {}, scene.scratch);
+    EXPECT_EQ(end.reason, Reason::none);
+    const Result<Matrix6> honest = patch_covariance(one, end.T_world_base, k_gate_m, scene.scratch);
+    EXPECT_EQ(honest.reason, Reason::none);
+    const Quaternion turn = end.T_world_base.rotation * k_truth.rotation.conjugate();
+    Vector6 off;
+    off << end.T_world_base.translation - k_truth.translation,
+        2 * turn.vec() * (turn.w() < 0 ? -1 : 1);
+    mean.independent += off.dot(end.covariance.inverse() * off) / 6 / k_scenes;
+    mean.patches += off.dot(honest.value.inverse() * off) / 6 / k_scenes;
+  }
+  return mean;
+}
+
+TEST(PatchCovariance, SaysTheSameOfIndependentNoise) {
+  const Consistency mean = consistency(1);
+  EXPECT_GT(mean.independent, 0.6);
+  EXPECT_LT(mean.independent, 1.5);
+  EXPECT_GT(mean.patches / mean.independent, 0.7);
+  EXPECT_LT(mean.patches / mean.independent, 1.5);
+}
+
+TEST(PatchCovariance, KnowsHowSureItIsWhereNeighboursErrAlike) {
+  const Consistency mean = consistency(8);
+  EXPECT_GT(mean.independent, 15);
+  EXPECT_LT(mean.patches, 2);
+}
+
+TEST(PatchCovariance, TakesNothingFromTheHeap) {
+  NoisyScene scene(1, 1);
+  const SceneView one[] = {scene.view()};
+  if (!AllocationCounter::available()) GTEST_SKIP() << "the sanitizer counts for itself";
+  const HeapCount heap;
+  (void)patch_covariance(one, k_truth, k_gate_m, scene.scratch);
+  EXPECT_EQ(heap.count(), 0u);
+}
+
+TEST(PatchCovariance, SaysWhereItKnowsNothing) {
+  NoisyScene scene(1, 1);
+  const SceneView one[] = {scene.view()};
+  const Pose far{Quaternion::Identity(), {0, 0, -3}};
+  EXPECT_EQ(patch_covariance(one, far, k_gate_m, scene.scratch).reason, Reason::degenerate);
+  AlignmentScratch small;
+  ASSERT_EQ(small.prepare(1, 100, 64), Reason::none);
+  EXPECT_EQ(patch_covariance(one, k_truth, k_gate_m, small).reason, Reason::not_prepared);
+}
+
+}  // namespace
+}  // namespace glint
