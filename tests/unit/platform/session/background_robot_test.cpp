@@ -80,41 +80,57 @@ TEST(HeardJointsOfARobot, PoseItsModelInPlaceOfTheCells) {
   EXPECT_GE(followed(&heard), 5);
 }
 
-TEST(HeardJointsOfARobot, ArePassedOverAndCountedWhereOneIsMissing) {
-  const TemporaryFolder folder;
-  Cell cell = short_cell(1);
-  follow_a_box(folder.path(), 0, cell);
-  const RobotCloud model = on_a_slide(cell.mapping->model);
-  const std::vector<double> given = {0.02};
-  const PosedCloud posed = posed_cloud(model, given, "a test");
-  HeardRobot robot(model, posed);
-  const auto stands_at = [&](double position) {
+// The box's model on a slide, and what hears of the slide.
+class HeardJointsOfASlide : public testing::Test {
+ protected:
+  RobotCloud box_on_a_slide() {
+    follow_a_box(folder_.path(), 0, cell_);
+    return on_a_slide(cell_.mapping->model);
+  }
+  [[nodiscard]] PosedCloud posed_at(double position) const {
     const std::vector<double> positions = {position};
-    const std::span<const Vector3f> points = robot.cloud().points;
-    return std::vector(points.begin(), points.end()) ==
-           posed_cloud(model, positions, "a test").points;
-  };
-  graph::TripleBuffer<HeardJoints> heard;
-  robot.update(heard);
+    return posed_cloud(model_, positions, "a test");
+  }
+  [[nodiscard]] bool stands_at(double position) const {
+    const std::span<const Vector3f> points = robot_.cloud().points;
+    return std::vector(points.begin(), points.end()) == posed_at(position).points;
+  }
+
+  const TemporaryFolder folder_;
+  Cell cell_ = short_cell(1);
+  graph::TripleBuffer<HeardJoints> heard_;
+  const RobotCloud model_ = box_on_a_slide();
+  HeardRobot robot_{model_, posed_at(0.02)};
+};
+
+TEST_F(HeardJointsOfASlide, ArePassedOverAndCountedWhereOneIsMissing) {
+  robot_.update(heard_);
   EXPECT_TRUE(stands_at(0.02));
-  EXPECT_EQ(robot.lacking(), nullptr);
-  say(heard, {"gripper"}, {7});
-  robot.update(heard);
+  EXPECT_EQ(robot_.lacking(), nullptr);
+  say(heard_, {"gripper"}, {7});
+  robot_.update(heard_);
   EXPECT_TRUE(stands_at(0.02));
-  ASSERT_NE(robot.lacking(), nullptr);
-  EXPECT_EQ(*robot.lacking(), "slide");
-  say(heard, {"slide"}, {0.3});
-  say(heard, {"slide"}, {0.4});
+  ASSERT_NE(robot_.lacking(), nullptr);
+  EXPECT_EQ(*robot_.lacking(), "slide");
+  say(heard_, {"slide"}, {0.3});
+  robot_.update(heard_);
+  EXPECT_TRUE(stands_at(0.3));
+  EXPECT_EQ(robot_.used(), 1);
+  EXPECT_EQ(robot_.passed_over(), 1);
+}
+
+TEST_F(HeardJointsOfASlide, PoseItByTheNewestStateOnceAndWithoutMemory) {
+  if (!AllocationCounter::available()) GTEST_SKIP() << "allocations are not counted here";
+  say(heard_, {"slide"}, {0.3});
+  say(heard_, {"slide"}, {0.4});
   const std::uint64_t before = AllocationCounter::count();
   AllocationCounter::arm();
-  robot.update(heard);
+  robot_.update(heard_);
   AllocationCounter::disarm();
-  EXPECT_TRUE(AllocationCounter::available());
   EXPECT_EQ(AllocationCounter::count(), before);
   EXPECT_TRUE(stands_at(0.4));
-  robot.update(heard);
-  EXPECT_EQ(robot.used(), 1);
-  EXPECT_EQ(robot.passed_over(), 1);
+  robot_.update(heard_);
+  EXPECT_EQ(robot_.used(), 1);
 }
 
 }  // namespace
