@@ -28,6 +28,13 @@ double moved(double scale, double chi_square, double frames, const AdaptationSet
                     settings.ceiling);
 }
 
+void add_pose_covariance(const Matrix6& added, MotionCovariance& covariance) {
+  for (const auto& [row, from] : {std::pair{k_position, 0}, {k_rotation, 3}}) {
+    for (const auto& [column, to] : {std::pair{k_position, 0}, {k_rotation, 3}})
+      covariance.block<3, 3>(row, column) += added.block<3, 3>(from, to);
+  }
+}
+
 // Finite, near enough to be a tool's, and with a covariance that is one.
 bool usable(const UncertainPose& measured) {
   const bool pose = measured.pose.translation.norm() <= k_distance_max_m &&
@@ -49,6 +56,7 @@ MotionUpdate MotionTrack::update(const UncertainPose& measured, const ToolMotion
   if (done.reason == Reason::none && !usable(measured)) done.reason = Reason::out_of_range;
   if (done.reason != Reason::none) return done;
   if (known_ && measured.time - state_.time > settings.gap_max) forget();
+  loosened_.setZero();
   done.rest_tests = rest_.add(measured, settings.rest, sums);
   double frames = 1;
   if (known_) {
@@ -82,6 +90,8 @@ Reason MotionTrack::update(Time time, std::span<const MeasuredPoint> points,
     return Reason::too_few_markers;
   // Single markers are no poses to average: from a rest the filter goes on where the rest was.
   MotionState next = estimate(sums);
+  // What was loosened since is the newest state's, which a rest's mean is not.
+  if (rests()) add_pose_covariance(loosened_, next.covariance);
   const double seconds = (time - next.time).seconds();
   const double hidden_s = (time - posed_).seconds();
   propagate(next, time, settings.motion, partial_noise_scale(settings));
@@ -96,6 +106,7 @@ Reason MotionTrack::update(Time time, std::span<const MeasuredPoint> points,
       return Reason::out_of_range;
   }
   state_ = next;
+  loosened_.setZero();
   rest_.clear();
   return Reason::none;
 }
@@ -112,10 +123,8 @@ void MotionTrack::move(const Pose& moved) noexcept {
 }
 
 void MotionTrack::loosen(const Matrix6& covariance) noexcept {
-  for (const auto& [row, from] : {std::pair{k_position, 0}, {k_rotation, 3}}) {
-    for (const auto& [column, to] : {std::pair{k_position, 0}, {k_rotation, 3}})
-      state_.covariance.block<3, 3>(row, column) += covariance.block<3, 3>(from, to);
-  }
+  add_pose_covariance(covariance, state_.covariance);
+  loosened_ += covariance;
 }
 
 MotionState MotionTrack::estimate(const RestSums& sums) const noexcept {

@@ -83,6 +83,7 @@ class MotionTrack {
   MotionState state_;
   Time posed_;  // the newest pose: since then markers alone hold it
   NoiseScale scale_, briskest_;
+  Matrix6 loosened_ = Matrix6::Zero();  // since the newest measurement
   RestWindow rest_;
   Correction correction_;
 };

@@ -1,7 +1,8 @@
 // Where a marker's centre lies along its ray, if it is one of a tool's.
 //
 // What:     the measured surface, a sphere's radius farther; where the tool's markers are of a kind
-//           whose ranges were measured, their bias is taken off in place of the camera's.
+//           whose ranges were measured, their bias is taken off in place of the camera's. A point
+//           that no image gave, as one of another tracker, has no peak, and no such bias.
 // Cost:     two sums; ten operations more for a tool with a bias of its own.
 // Worst:    a bias of its own.
 // Accuracy: that of depth_bias.hpp.
@@ -16,7 +17,7 @@ namespace glint {
 // Metres, radial.
 [[nodiscard]] inline double centre_range_m(const Marker& marker, const Tool& tool) noexcept {
   double surface = marker.surface_range_m;
-  if (tool.depth_bias.is_measured()) {
+  if (tool.depth_bias.is_measured() && marker.peak > 0) {
     const double raw = surface + static_cast<double>(marker.bias_taken_m);
     surface = raw - tool.depth_bias.at(raw, marker.peak);
   }

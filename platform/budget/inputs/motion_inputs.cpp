@@ -55,6 +55,12 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
     tools_.set(set_, 1, 0);
     rewind();
   }
+  // Tools have just left every slot, which each call is charged with clearing.
+  void rewind() override {
+    NodeKernel::rewind();
+    const int places = tools_of(start_.limits, {0, k_tool_slices});
+    for (int place = 0; place < places; ++place) followed_.items[place].in_use = true;
+  }
   void run() noexcept override { call(node_, followed_); }
 
  private:

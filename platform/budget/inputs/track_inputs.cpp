@@ -239,6 +239,11 @@ class TrackToolsKernel final : public NodeKernel<TrackTools> {
     anchor_.now.moved_along = at_its_worst(kind) || numbers.one_in(20);
     rewind();
   }
+  // Tools have just left every slot, which each call is charged with clearing.
+  void rewind() override {
+    NodeKernel::rewind();
+    estimates_.tool_count = start_.limits.tools;
+  }
   void run() noexcept override {
     node_(tracked_.verdict, anchor_, tracked_.tools, fitted_, followed_,
           graph::Previous<Estimates>(tracked_.last), estimates_);

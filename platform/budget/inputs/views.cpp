@@ -31,6 +31,7 @@ void add_marker(Markers& markers, const Vector3& centre, const Tool& tool, int a
   marker = {};
   marker.ray = centre.normalized();
   marker.surface_range_m = centre.norm() - tool.centre_offset_m();
+  marker.peak = 800;  // of an image: a tool's own depth bias is looked up
 }
 
 void add_tool(Markers& markers, const Tool& tool, const Pose& pose, double sigma_m,

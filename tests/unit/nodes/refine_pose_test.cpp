@@ -43,6 +43,20 @@ TEST_F(RefinePose, TakesEachToolsOwnDepthBiasInPlaceOfTheCameras) {
   }
 }
 
+// Another tracker's points have no peak: as dimmest of all markers they would stand metres too
+// near.
+TEST_F(RefinePose, TakesNoDepthBiasOffAPointWithoutAnImage) {
+  Random random(22);
+  Tool tool = test::five_marker_pen();
+  tool.depth_bias = {0.02, 0.03, 0.004, 0.3, 0.9};
+  const Pose truth = test::tilted_pose(tool, 0.6, k_place, random);
+  add_tool(0, tool, truth, 0, random);
+  for (int i = 0; i < 5; ++i) marker_of(0, i).peak = 0;
+  const FittedTool& found = run_one();
+  ASSERT_EQ(found.reason, Reason::none);
+  EXPECT_LT((found.T_camera_tool.translation - truth.translation).norm(), 1e-5);
+}
+
 TEST_F(RefinePose, BeatsTheRigidFitOnNoisyMarkersAndSaysHowSureItIs) {
   Random random(1);
   Tool tool = test::five_marker_pen();

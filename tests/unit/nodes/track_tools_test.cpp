@@ -1,0 +1,138 @@
+#include "nodes/track_tools.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace glint {
+namespace {
+
+class TrackToolsInTime : public testing::Test {
+ protected:
+  TrackToolsInTime() {
+    set_->count = 1;
+    Tool& tool = set_->items[0];
+    tool.marker_count = 3;
+    tool.markers_m = {Vector3(0, 0, 0), Vector3(0.06, 0, 0), Vector3(0, 0.06, 0)};
+    tool.identity = 5;
+  }
+  FollowedTool& followed() { return (*followed_)[0].items[0]; }
+  const Track& frame() {
+    graph::Latest<ToolSet> tools;
+    tools.set(*set_, 1, 0);
+    FrameVerdict verdict;
+    verdict.reason = refused_ ? Reason::frame_late : Reason::none;
+    verdict.stamp.mid_exposure = followed().estimate.time = Time{} + milliseconds(22) * ++number_;
+    verdict.stamp.sequence = static_cast<std::uint32_t>(number_);
+    *last_ = *out_;
+    node_(verdict, Anchor{}, tools, *fitted_, *followed_, graph::Previous<Estimates>(*last_),
+          *out_);
+    return out_->tracks[0];
+  }
+  const Track& found(bool stands = true) {
+    followed().reason = Reason::none;
+    followed().stands = stands;
+    (*fitted_)[0].tools[0].marker_mask = 7;
+    return frame();
+  }
+  const Track& few(bool stands) {
+    followed().reason = Reason::too_few_markers;
+    followed().few_mask = 3;
+    followed().stands = stands;
+    return frame();
+  }
+  bool refused_ = false;
+  int number_ = 0;
+  std::unique_ptr<ToolSet> set_ = std::make_unique<ToolSet>();
+  std::unique_ptr<graph::Parts<FittedTools, k_tool_slices>> fitted_ =
+      std::make_unique<graph::Parts<FittedTools, k_tool_slices>>();
+  std::unique_ptr<graph::Parts<FollowedTools, k_tool_slices>> followed_ =
+      std::make_unique<graph::Parts<FollowedTools, k_tool_slices>>();
+  std::unique_ptr<Estimates> last_ = std::make_unique<Estimates>(),
+                             out_ = std::make_unique<Estimates>();
+  TrackTools node_;
+};
+
+TEST_F(TrackToolsInTime, MakesAPoseByFewMarkersTheNewestAndKeepsWhyThereAreNoMore) {
+  (void)found();
+  followed().estimate.pose.translation = {0.1, 0, 0.5};
+  const Track& track = few(true);
+  EXPECT_EQ(track.newest.time, Time{} + milliseconds(44));
+  EXPECT_EQ(track.marker_mask, 3);
+  EXPECT_EQ(track.reason, Reason::too_few_markers);
+  EXPECT_FALSE(track.seen_now) << "the whole frame is searched for the others";
+  const Vector3 middle = track.newest.pose * set_->items[0].middle_m();
+  EXPECT_LT((middle - Vector3(0.1, 0, 0.5)).norm(), 1e-12);
+}
+
+TEST_F(TrackToolsInTime, LosesAToolWhosePoseByFewMarkersIsTooUnsure) {
+  (void)found();
+  for (int i = 0; i < 11; ++i) {
+    const Track& track = few(false);
+    ASSERT_TRUE(track.alive);
+    EXPECT_EQ(track.newest.time, Time{} + milliseconds(22));
+    EXPECT_EQ(track.motion.time, Time{} + milliseconds(22) * number_);
+    EXPECT_EQ(track.marker_mask, 7);
+  }
+  EXPECT_FALSE(few(false).alive) << "250 ms after the last that stood";
+}
+
+TEST_F(TrackToolsInTime, CallsNoPoseMeasuredThatIsUnsureButGoesOnByIt) {
+  EXPECT_FALSE(found(false).alive) << "a first pose that is unsure";
+  EXPECT_EQ(out_->tracks[0].reason, Reason::unsure);
+  const Time sure = found().newest.time;
+  followed().estimate.pose.translation.x() = 0.01;
+  const Track& track = found(false);
+  EXPECT_TRUE(track.alive);
+  EXPECT_FALSE(track.seen_now);
+  EXPECT_EQ(track.reason, Reason::unsure);
+  EXPECT_EQ(track.newest.time, sure);
+  EXPECT_EQ(track.motion.pose.translation.x(), 0.01);
+}
+
+TEST_F(TrackToolsInTime, LosesAToolThatIsExchangedOrTakenAway) {
+  ASSERT_TRUE(found().alive);
+  set_->items[0].identity = 6;
+  refused_ = true;
+  const Track* track = &frame();
+  EXPECT_FALSE(track->alive);
+  EXPECT_EQ(track->reason, Reason::tool_changed);
+  refused_ = false;
+  ASSERT_TRUE(found().alive);
+  set_->items[0] = Tool{};
+  track = &frame();
+  EXPECT_FALSE(track->alive);
+  EXPECT_EQ(track->reason, Reason::tool_changed);
+  EXPECT_EQ(found().reason, Reason::tool_changed) << "an empty slot finds nothing";
+}
+
+TEST_F(TrackToolsInTime, SaysOfASlotThatWasNeverFilledThatThereWasNoFrameYet) {
+  refused_ = true;
+  EXPECT_EQ(frame().reason, Reason::no_frame_yet);
+}
+
+TEST(TrackTools, GivesWhatTheHeadsetItselfIsOffByBesideTheMotionsCovariance) {
+  ToolSet set;
+  set.count = 1;
+  set.items[0].marker_count = 3;
+  graph::Latest<ToolSet> tools;
+  tools.set(set, 1, 0);
+  const auto fitted = std::make_unique<graph::Parts<FittedTools, k_tool_slices>>();
+  const auto followed = std::make_unique<graph::Parts<FollowedTools, k_tool_slices>>();
+  (*followed)[0].items[0].reason = Reason::none;
+  (*followed)[0].items[0].stands = true;
+  (*followed)[0].items[0].estimate.pose.translation = {1, 0, 0};
+  Anchor anchor;
+  anchor.now.head.valid = true;
+  anchor.now.lasting.diagonal() << Vector3::Constant(1e-6), Vector3::Constant(4e-6);
+  const auto last = std::make_unique<Estimates>(), out = std::make_unique<Estimates>();
+  glint::TrackTools node;
+  node({}, anchor, tools, *fitted, *followed, graph::Previous<Estimates>(*last), *out);
+  EXPECT_NEAR(out->tracks[0].head_covariance(1, 1), 5e-6, 1e-12);
+  anchor.now.head.valid = false;
+  node({}, anchor, tools, *fitted, *followed, graph::Previous<Estimates>(*last), *out);
+  EXPECT_TRUE(out->tracks[0].head_covariance.isZero()) << "in the camera's frame it is none";
+}
+
+}  // namespace
+}  // namespace glint
