@@ -2,7 +2,6 @@
 // the cell maps and follows goes on beneath.
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +11,7 @@
 #include "platform/boards/board_run.hpp"
 #include "platform/boards/system_share.hpp"
 #include "platform/budget/expected_board.hpp"
+#include "platform/exit_code.hpp"
 #include "platform/input_error.hpp"
 #include "schedules/node_bounds.hpp"
 
@@ -103,22 +103,11 @@ int main(int argc, char** argv) {
                                     "measure the operating system's share instead");
   frames->excludes(system);
   app.footer("Example: glint_board --frames loop.frames --count 10000 --can socketcan:can0");
-  try {
+  return glint::exit_code_of(app, "glint_board", [&] {
     app.parse(argc, argv);
     if (arguments.frames_file.empty() && !arguments.measure_system) {
       throw CLI::RequiredError("--frames or --measure-system");
     }
     return glint::run(arguments);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const glint::InputError& error) {
-    std::fprintf(stderr, "glint_board: %s\n", error.what());
-    return 2;
-  } catch (const glint::MissingDevice& error) {
-    std::fprintf(stderr, "glint_board: %s\n", error.what());
-    return 3;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "glint_board: %s\n", error.what());
-    return 1;
-  }
+  });
 }

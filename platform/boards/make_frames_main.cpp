@@ -1,11 +1,11 @@
 // glint_board_frames: renders a loop of frames for a board, on the host.
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <memory>
 
 #include "platform/boards/frame_loop.hpp"
 #include "platform/boards/worst_frames.hpp"
+#include "platform/exit_code.hpp"
 #include "platform/input_error.hpp"
 #include "platform/session/scenario_of.hpp"
 #include "platform/sim/simulator.hpp"
@@ -85,16 +85,8 @@ int main(int argc, char** argv) {
   app.add_option("--worst-every", arguments.worst_every,
                  "each so-manieth is drawn as a worst input; 0: none");
   app.footer("Example: glint_board_frames loop.frames --frames 48 --worst-every 8");
-  try {
+  return glint::exit_code_of(app, "glint_board_frames", [&] {
     app.parse(argc, argv);
     return glint::make(arguments);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const glint::InputError& error) {
-    std::fprintf(stderr, "glint_board_frames: %s\n", error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "glint_board_frames: %s\n", error.what());
-    return 1;
-  }
+  });
 }

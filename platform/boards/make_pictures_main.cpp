@@ -1,11 +1,11 @@
 // glint_board_pictures: renders depth pictures with a robot for a board's background, on the host.
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 
 #include "platform/boards/long_throw.hpp"
+#include "platform/exit_code.hpp"
 #include "platform/input_error.hpp"
 #include "platform/sensors/npy.hpp"
 #include "platform/session/scenario_of.hpp"
@@ -102,16 +102,8 @@ int main(int argc, char** argv) {
   app.add_option("--every", arguments.every, "frames from one to the next")
       ->check(CLI::PositiveNumber);
   app.footer("Example: glint_board_pictures pictures --cell cell.toml --urdf arm.urdf");
-  try {
+  return glint::exit_code_of(app, "glint_board_pictures", [&] {
     app.parse(argc, argv);
     return glint::make(arguments);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const glint::InputError& error) {
-    std::fprintf(stderr, "glint_board_pictures: %s\n", error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "glint_board_pictures: %s\n", error.what());
-    return 1;
-  }
+  });
 }

@@ -1,9 +1,9 @@
 #include "alignment_glint.hpp"
 
 #include <cstdlib>
-#include <ctime>
 
 #include "kernels/registration/align_model.hpp"
+#include "thread_seconds.hpp"
 
 namespace glint::bench {
 namespace {
@@ -15,12 +15,6 @@ struct Stage {
 };
 constexpr Stage k_stages[] = {{1, 16}, {0.5, 8}, {0.25, 4}, {0.125, 2}};
 constexpr int k_steps_most = 60;
-
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 Vector3f point_of(const float* xyz, int i) { return {xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]}; }
 

@@ -2,12 +2,12 @@
 // ended as it is unless told otherwise, after ten steps: more are slower and end nearer.
 #include <pcl/registration/icp.h>
 
-#include <ctime>
-
 #include "alignment_steps.hpp"
+#include "thread_seconds.hpp"
 
 namespace {
 
+using glint::bench::thread_seconds;
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 Cloud::Ptr cloud_of(const float* xyz, int count) {
@@ -15,12 +15,6 @@ Cloud::Ptr cloud_of(const float* xyz, int count) {
   cloud->reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) cloud->emplace_back(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
   return cloud;
-}
-
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 }  // namespace

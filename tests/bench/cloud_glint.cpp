@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <vector>
 
 #include "kernels/cloud/moving_least_squares.hpp"
@@ -10,17 +9,12 @@
 #include "kernels/cloud/radius_outlier.hpp"
 #include "kernels/cloud/snap_to_planes.hpp"
 #include "kernels/cloud/voxel_grid.hpp"
+#include "thread_seconds.hpp"
 
 namespace glint::bench {
 namespace {
 
 constexpr int k_slice = 4096;  // as a background group would call them
-
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 void give(const PointCloud& cloud, int step, CloudStepResult& result) {
   result.counts[step] = cloud.count;

@@ -9,19 +9,13 @@
 #include <pcl/segmentation/sac_segmentation.h>
 #include <pcl/surface/mls.h>
 
-#include <ctime>
-
 #include "cloud_steps.hpp"
+#include "thread_seconds.hpp"
 
 namespace {
 
+using glint::bench::thread_seconds;
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
-
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 template <class Points>
 void give(const Points& cloud, int step, CloudStepResult& result) {
