@@ -8,8 +8,8 @@
 #include "kernels/angles.hpp"
 #include "kernels/elementary.hpp"
 #include "kernels/pose/local_rays.hpp"
-#include "kernels/wire/can_frames.hpp"
 #include "platform/cells/calibration_files.hpp"
+#include "platform/cells/cell_can.hpp"
 #include "platform/cells/cell_headset.hpp"
 #include "platform/cells/cell_mapping.hpp"
 #include "platform/cells/cell_timing.hpp"
@@ -168,18 +168,7 @@ void CellParser::read_simulator(const toml::table* table) {
 }
 
 void read_sinks(TomlReader& root, Cell& cell) {
-  if (const toml::table* table = root.table("can")) {
-    TomlReader reader(*table, cell.file, "can.");
-    cell.can.sink = reader.text("sink", cell.can.sink);
-    cell.can.fd = reader.one_of("frames", "classic", {"classic", "fd"}) == "fd";
-    cell.can.base_id = static_cast<std::uint32_t>(
-        reader.integer("base_id", k_can_base_default, 1, k_can_base_max));
-    cell.can.bit_rate = reader.integer("bit_rate", cell.can.bit_rate, 10'000, 1'000'000);
-    cell.can.data_bit_rate =
-        reader.integer("data_bit_rate", cell.can.data_bit_rate, 10'000, 8'000'000);
-    cell.can.node = static_cast<int>(reader.integer("node", cell.can.node, 1, 127));
-    reader.done();
-  }
+  read_can(root.table("can"), cell);
   if (const toml::table* table = root.table("dds")) {
     TomlReader reader(*table, cell.file, "dds.");
     cell.dds.on = reader.boolean("on", cell.dds.on);

@@ -29,7 +29,8 @@ struct CanSettings {
   std::uint32_t base_id = 0x1A0;
   std::int64_t bit_rate = 1'000'000;
   std::int64_t data_bit_rate = 4'000'000;
-  int node = 32;  // heartbeat 0x700 + node
+  int node = 32;                         // heartbeat 0x700 + node
+  std::optional<std::uint32_t> buttons;  // of the frame that says which are held; nothing: none
 };
 
 struct DdsCellSettings {

@@ -125,6 +125,10 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
                        {"can_dropped", result.can.dropped},
                        {"can_failed", result.can.failed},
                        {"can_bus_load", result.can_bus_load},
+                       {"can_heard",
+                        {{"buttons", result.can_heard.heard},
+                         {"refused", result.can_heard.refused},
+                         {"why_not", result.can_not_heard}}},
                        {"dds_offered", result.dds.offered},
                        {"dds_written", result.dds.written},
                        {"ring_dropped", result.dds.ring_dropped},
@@ -225,6 +229,11 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
   row("page faults after start", std::to_string(result.page_faults_after_start));
   row("CAN frames", std::to_string(result.can_frames) + " (bus load " +
                         fixed(100 * result.can_bus_load, 1, "%, computed)"));
+  if (const ButtonFrameCounts& heard = result.can_heard; heard.any()) {
+    row("heard over CAN", std::to_string(heard.heard) + " frames of buttons; " +
+                              std::to_string(heard.refused) + " refused");
+  }
+  if (!result.can_not_heard.empty()) row("not heard over CAN", result.can_not_heard);
   row("DDS", std::to_string(result.dds.written) + " written, " +
                  std::to_string(result.dds_reader.received) + " received, " +
                  std::to_string(result.dds_reader.missed) + " missed, " +

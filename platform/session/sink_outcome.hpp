@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/can/button_frames.hpp"
 #include "platform/can/can_sink.hpp"
 #include "platform/dds/dds_inputs.hpp"
 #include "platform/dds/dds_sink.hpp"
@@ -21,7 +22,9 @@ struct SinkOptions {
 
 struct SinkOutcome {
   CanSinkCounts can;
-  double can_bus_load = 0;  // computed, of the bus that the cell declares
+  double can_bus_load = 0;      // computed, of the bus that the cell declares
+  ButtonFrameCounts can_heard;  // frames of buttons
+  std::string can_not_heard;    // why none can come, where the cell names one
   DdsCounts dds;
   HeardCounts heard;  // over DDS
   ReaderResult dds_reader;

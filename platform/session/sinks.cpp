@@ -93,6 +93,19 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     files_ = std::make_unique<FileSink>(tum_file_, csv_file_, can.when_full);
   }
 
+  if (cell.can.buttons) {
+    // Without real time nobody's hand could keep up with a run.
+    if (cell.realtime) {
+      buttons_ = open_can_buttons(cell.can.sink, *cell.can.buttons, {unix_offset_ns},
+                                  [this](const ButtonEvent& event) { offer_button(event); });
+    }
+    if (buttons_ == nullptr) {
+      can_not_heard_ = std::string("can.buttons: ") +
+                       (cell.realtime ? cell.can.sink + " is no bus" : "not in real time") +
+                       "; expected socketcan:IF in real time";
+    }
+  }
+
   // A simulated run that does not keep real time would only overrun its DDS readers.
   if (cell.dds.on && cell.realtime) {
     DdsSettings settings = dds_settings(cell, unix_offset_ns);
@@ -103,9 +116,7 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     if (options.with_reader) {
       reader_ = std::make_unique<ReaderProcess>(settings, in_folder(out_, "dds_reader.json"));
     }
-    const auto record_button = [recorder = recorder_.get()](const ButtonEvent& event) {
-      if (recorder != nullptr) (void)recorder->input_lane().offer_button(event);
-    };
+    const auto record_button = [this](const ButtonEvent& event) { offer_button(event); };
     const auto hand_on = [this](int tool, bool there) { tool_requests_.ask(tool, there); };
     inputs_ = std::make_unique<DdsInputs>(dds_->participant(), settings, record_button, hand_on);
     inputs_->start();
@@ -117,12 +128,23 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
   }
 }
 
+void Sinks::offer_button(const ButtonEvent& event) {
+  const std::lock_guard lock(one_button_);
+  if (recorder_ != nullptr) (void)recorder_->input_lane().offer_button(event);
+}
+
 void Sinks::close(SinkOutcome& result) {
   can_->flush();
   result.can = can_->counts();
   result.can_bus_load = can_bus_load_;
   can_.reset();
   if (!can_file_.empty()) result.files.push_back(can_file_);
+  result.can_not_heard = can_not_heard_;
+  if (buttons_ != nullptr) {
+    buttons_->stop();
+    result.can_heard = buttons_->counts();
+    buttons_.reset();
+  }
   if (inputs_ != nullptr) {
     inputs_->stop();
     result.heard = inputs_->counts();

@@ -2,13 +2,16 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <string>
 
+#include "platform/can/can_buttons.hpp"
 #include "platform/can/can_sink.hpp"
 #include "platform/cells/cell.hpp"
 #include "platform/dds/dds_inputs.hpp"
 #include "platform/dds/dds_sink.hpp"
 #include "platform/dds/reader_process.hpp"
+#include "platform/record/button_event.hpp"
 #include "platform/record/recorder.hpp"
 #include "platform/rt/followed_robot.hpp"
 #include "platform/rt/overrun_counters.hpp"
@@ -31,6 +34,10 @@ class Sinks {
   [[nodiscard]] Recorder* recorder() noexcept { return recorder_.get(); }
   [[nodiscard]] FileSink* files() noexcept { return files_.get(); }
 
+  // A button went down or up: into the recording. From any thread that may wait for another, thus
+  // neither the frame's nor the tick's.
+  void offer_button(const ButtonEvent& event);
+
   // What is asked for over DDS.
   [[nodiscard]] ToolRequests& tool_requests() noexcept { return tool_requests_; }
 
@@ -49,12 +56,15 @@ class Sinks {
   OverrunCounters overruns_;
   FollowedRobotNotes robot_notes_;
   ToolRequests tool_requests_;
+  std::mutex one_button_;               // the lane of inputs is for one thread at a time
+  std::unique_ptr<Recorder> recorder_;  // outlives those whose threads offer to it
+  std::unique_ptr<FileSink> files_;
   std::unique_ptr<CanSink> can_;
+  std::unique_ptr<CanButtons> buttons_;
   std::unique_ptr<ReaderProcess> reader_;  // started before the sink, ended after it
   std::unique_ptr<DdsSink> dds_;
   std::unique_ptr<DdsInputs> inputs_;
-  std::unique_ptr<Recorder> recorder_;
-  std::unique_ptr<FileSink> files_;
+  std::string can_not_heard_;
   std::string recording_file_, can_file_, tum_file_, csv_file_;
 };
 

@@ -1,0 +1,105 @@
+#include "platform/can/can_buttons.hpp"
+
+#include <linux/can.h>
+#include <poll.h>
+#include <pthread.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <ctime>
+#include <string_view>
+#include <utility>
+
+#include "platform/can/socketcan_socket.hpp"
+
+namespace glint {
+namespace {
+
+constexpr Duration k_look_again = milliseconds(20);
+constexpr int k_takes_max = 256;  // a wake-up
+constexpr std::string_view k_socketcan = "socketcan:";
+
+Time unix_time(const timespec& time) {
+  return Time{std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec};
+}
+
+// When the kernel received the message, by the Unix clock; now, where it does not say.
+Time unix_arrival(msghdr& message) {
+  timespec time{};
+  for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr;
+       part = CMSG_NXTHDR(&message, part)) {
+    if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SCM_TIMESTAMPNS) continue;
+    std::memcpy(&time, CMSG_DATA(part), sizeof time);
+    return unix_time(time);
+  }
+  ::clock_gettime(CLOCK_REALTIME, &time);
+  return unix_time(time);
+}
+
+}  // namespace
+
+CanButtons::CanButtons(Descriptor socket, std::uint32_t identifier, Duration unix_minus_board,
+                       ButtonFrames::OnButton on_button)
+    : socket_(std::move(socket)),
+      unix_minus_board_(unix_minus_board),
+      frames_(identifier, std::move(on_button)) {
+  const int on = 1;
+  ::setsockopt(socket_.get(), SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
+}
+
+CanButtons::~CanButtons() { stop(); }
+
+void CanButtons::start() {
+  if (thread_.joinable()) return;
+  stopping_ = false;
+  thread_ = std::thread([this] {
+    while (!stopping_) read(k_look_again);
+  });
+  pthread_setname_np(thread_.native_handle(), "glint_buttons");
+}
+
+void CanButtons::stop() {
+  stopping_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+int CanButtons::read(Duration limit) {
+  pollfd waiting{socket_.get(), POLLIN, 0};
+  if (::poll(&waiting, 1, static_cast<int>(limit.nanoseconds / 1'000'000)) <= 0) return 0;
+  int taken = 0;
+  while (taken < k_takes_max && take()) ++taken;
+  // An interface that went away is always ready, with nothing to take.
+  if (taken == 0) std::this_thread::sleep_for(std::chrono::nanoseconds(limit.nanoseconds));
+  return taken;
+}
+
+bool CanButtons::take() {
+  std::array<std::uint8_t, CANFD_MTU + 1> bytes{};  // one more, so that what is longer shows
+  alignas(cmsghdr) std::array<std::uint8_t, 256> control{};
+  iovec part{bytes.data(), bytes.size()};
+  msghdr message{};
+  message.msg_iov = &part;
+  message.msg_iovlen = 1;
+  message.msg_control = control.data();
+  message.msg_controllen = control.size();
+  const ssize_t size = ::recvmsg(socket_.get(), &message, MSG_DONTWAIT);
+  if (size < 0) return false;
+  frames_.hear(frame_of_socketcan({bytes.data(), static_cast<std::size_t>(size)}),
+               unix_arrival(message) - unix_minus_board_);
+  return true;
+}
+
+std::unique_ptr<CanButtons> open_can_buttons(const std::string& specification,
+                                             std::uint32_t identifier, Duration unix_minus_board,
+                                             ButtonFrames::OnButton on_button) {
+  if (!specification.starts_with(k_socketcan)) return nullptr;
+  auto buttons = std::make_unique<CanButtons>(
+      open_socketcan(specification.substr(k_socketcan.size()), CanFormat::classic, identifier),
+      identifier, unix_minus_board, std::move(on_button));
+  buttons->start();
+  return buttons;
+}
+
+}  // namespace glint

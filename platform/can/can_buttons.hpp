@@ -1,0 +1,52 @@
+// Buttons that come over CAN, read by a thread of their own beside the run.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "kernels/units.hpp"
+#include "platform/can/button_frames.hpp"
+#include "platform/can/descriptor.hpp"
+
+namespace glint {
+
+class CanButtons {
+ public:
+  // `socket` gives one frame a read, as a CAN socket does. Events are in the board's time:
+  // when the kernel received the frame, where it says so, else when it was read. `on_button` is
+  // called from the reading thread.
+  CanButtons(Descriptor socket, std::uint32_t identifier, Duration unix_minus_board,
+             ButtonFrames::OnButton on_button);
+  ~CanButtons();  // stop()
+  CanButtons(const CanButtons&) = delete;
+  CanButtons& operator=(const CanButtons&) = delete;
+
+  void start();
+  void stop();
+  // Without a thread: waits for a frame, at most `limit`, and takes what is there, but never more
+  // than 256. Gives how many it took.
+  int read(Duration limit);
+
+  // From any thread.
+  [[nodiscard]] ButtonFrameCounts counts() const noexcept { return frames_.counts(); }
+
+ private:
+  bool take();
+
+  Descriptor socket_;
+  Duration unix_minus_board_;
+  ButtonFrames frames_;
+  std::atomic<bool> stopping_{false};
+  std::thread thread_;
+};
+
+// Of "socketcan:IF", started; null for a log, which nothing comes from. Throws as open_can_sink.
+[[nodiscard]] std::unique_ptr<CanButtons> open_can_buttons(const std::string& specification,
+                                                           std::uint32_t identifier,
+                                                           Duration unix_minus_board,
+                                                           ButtonFrames::OnButton on_button);
+
+}  // namespace glint

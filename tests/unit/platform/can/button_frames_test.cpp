@@ -1,0 +1,125 @@
+// What a frame says of the buttons, and what is made of frames that say nothing.
+#include "platform/can/button_frames.hpp"
+
+#include <gtest/gtest.h>
+#include <linux/can.h>
+
+#include <cstring>
+#include <random>
+#include <vector>
+
+namespace glint {
+namespace {
+
+constexpr std::uint32_t k_identifier = 0x190;
+
+CanFrame held(std::uint8_t bits) {
+  CanFrame frame;
+  frame.identifier = k_identifier;
+  frame.length = 1;
+  frame.data[0] = bits;
+  return frame;
+}
+
+struct Heard {
+  std::vector<ButtonEvent> events;
+  ButtonFrames frames{k_identifier, [this](const ButtonEvent& event) { events.push_back(event); }};
+};
+
+// A frame as it comes from the kernel, of so many bytes.
+std::optional<CanFrame> from_kernel(std::uint32_t id, std::uint8_t length, std::size_t size) {
+  canfd_frame raw{};
+  raw.can_id = id;
+  raw.len = length;
+  raw.data[0] = 1;
+  std::array<std::uint8_t, CANFD_MTU + 1> bytes{};
+  std::memcpy(bytes.data(), &raw, sizeof raw);
+  return frame_of_socketcan({bytes.data(), size});
+}
+
+TEST(ButtonFrames, SayEachChangeOfEachButtonOnce) {
+  Heard heard;
+  heard.frames.hear(held(0b0001), {10});
+  heard.frames.hear(held(0b0001), {20});  // again and again: nothing new
+  heard.frames.hear(held(0b1010), {30});
+  heard.frames.hear(held(0b0000), {40});
+  const std::vector<ButtonEvent> expected{
+      {{10}, Button::draw, true},         {{30}, Button::draw, false},
+      {{30}, Button::delete_last, true},  {{30}, Button::finish, true},
+      {{40}, Button::delete_last, false}, {{40}, Button::finish, false}};
+  EXPECT_EQ(heard.events, expected);
+  EXPECT_EQ(heard.frames.counts().heard, 4u);
+  heard.frames.hear(held(0b0100), {50});
+  EXPECT_EQ(heard.events.back(), (ButtonEvent{{50}, Button::undo, true}));
+}
+
+TEST(ButtonFrames, LookAtNothingBeyondTheFourBits) {
+  Heard heard;
+  CanFrame frame = held(0xF0);
+  frame.length = 8;
+  frame.data[1] = 0xFF;
+  heard.frames.hear(frame, {});
+  EXPECT_TRUE(heard.events.empty());
+  EXPECT_EQ(heard.frames.counts().heard, 1u);
+}
+
+TEST(ButtonFrames, RefuseAndCountWhatIsNoButtonsFrame) {
+  Heard heard;
+  CanFrame empty = held(1), other = held(1), extended = held(1);
+  empty.length = 0;
+  other.identifier = k_identifier + 1;
+  extended.extended = true;
+  for (const CanFrame& frame : {empty, other, extended}) heard.frames.hear(frame, {});
+  heard.frames.hear({}, {});
+  EXPECT_TRUE(heard.events.empty());
+  EXPECT_EQ(heard.frames.counts().heard, 0u);
+  EXPECT_EQ(heard.frames.counts().refused, 4u);
+}
+
+TEST(FrameOfSocketCan, IsAClassicOrAnFdDataFrame) {
+  const auto classic = from_kernel(k_identifier, 8, CAN_MTU);
+  ASSERT_TRUE(classic);
+  EXPECT_EQ(classic->identifier, k_identifier);
+  EXPECT_EQ(classic->length, 8);
+  EXPECT_EQ(classic->data[0], 1);
+  EXPECT_FALSE(classic->fd || classic->extended);
+  const auto fd = from_kernel(0x1234567U | CAN_EFF_FLAG, 64, CANFD_MTU);
+  ASSERT_TRUE(fd);
+  EXPECT_EQ(fd->identifier, 0x1234567u);
+  EXPECT_EQ(fd->length, 64);
+  EXPECT_TRUE(fd->fd && fd->extended);
+}
+
+TEST(FrameOfSocketCan, IsNothingElse) {
+  EXPECT_FALSE(from_kernel(k_identifier | CAN_RTR_FLAG, 1, CAN_MTU));
+  EXPECT_FALSE(from_kernel(k_identifier | CAN_ERR_FLAG, 8, CAN_MTU));
+  EXPECT_FALSE(from_kernel(k_identifier, 9, CAN_MTU));
+  EXPECT_FALSE(from_kernel(k_identifier, 65, CANFD_MTU));
+  for (const std::size_t size : {0, 1, 15, 17, 71, 73}) {
+    EXPECT_FALSE(from_kernel(k_identifier, 1, size)) << size;
+  }
+}
+
+TEST(FrameOfSocketCan, KeepsToItsBoundsWhateverTheBytes) {
+  std::mt19937 random(7);
+  Heard heard;
+  int data_frames = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    std::vector<std::uint8_t> bytes(i % 3 == 0 ? random() % 80 : i % 3 == 1 ? CAN_MTU : CANFD_MTU);
+    for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
+    const auto frame = frame_of_socketcan(bytes);
+    if (frame) {
+      ++data_frames;
+      ASSERT_LE(frame->length, frame->fd ? 64 : 8);
+      ASSERT_LE(frame->identifier,
+                frame->extended ? k_can_extended_identifier_max : k_can_identifier_max);
+    }
+    heard.frames.hear(frame, {i});
+  }
+  EXPECT_GT(data_frames, 100);
+  const ButtonFrameCounts counts = heard.frames.counts();
+  EXPECT_EQ(counts.heard + counts.refused, 20'000u);
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,146 @@
+// The reading of frames, from a pair of sockets in place of a bus.
+#include "platform/can/can_buttons.hpp"
+
+#include <gtest/gtest.h>
+#include <linux/can.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <ctime>
+#include <thread>
+#include <vector>
+
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+constexpr std::uint32_t k_buttons = 0x190;
+constexpr Duration k_unix_minus_board = {1'000'000'000'000'000};
+
+Time board_now() {
+  timespec now{};
+  ::clock_gettime(CLOCK_REALTIME, &now);
+  return Time{std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec} - k_unix_minus_board;
+}
+
+// One end hears, the other is the pen.
+class Pair {
+ public:
+  explicit Pair(ButtonFrames::OnButton on_button) : Pair(made(), std::move(on_button)) {}
+
+  void send(std::uint8_t bits, std::uint32_t flags = 0) const {
+    can_frame raw{};
+    raw.can_id = k_buttons | flags;
+    raw.can_dlc = 1;
+    raw.data[0] = bits;
+    ASSERT_EQ(::send(pen_.get(), &raw, sizeof raw, 0), static_cast<ssize_t>(sizeof raw));
+  }
+  // Begins as a good frame does.
+  void send_bytes(std::size_t size) const {
+    std::vector<std::uint8_t> bytes(std::max(size, sizeof(can_frame)));
+    can_frame raw{};
+    raw.can_id = k_buttons;
+    raw.can_dlc = 1;
+    raw.data[0] = 1;
+    std::memcpy(bytes.data(), &raw, sizeof raw);
+    ASSERT_EQ(::send(pen_.get(), bytes.data(), size, 0), static_cast<ssize_t>(size));
+  }
+  CanButtons& buttons() { return buttons_; }
+
+ private:
+  struct Ends {
+    Descriptor pen, here;
+  };
+  static Ends made() {
+    int ends[2] = {-1, -1};
+    EXPECT_EQ(::socketpair(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0, ends), 0);
+    return {Descriptor(ends[0]), Descriptor(ends[1])};
+  }
+  Pair(Ends ends, ButtonFrames::OnButton on_button)
+      : pen_(std::move(ends.pen)),
+        buttons_(std::move(ends.here), k_buttons, k_unix_minus_board, std::move(on_button)) {}
+
+  Descriptor pen_;
+  CanButtons buttons_;
+};
+
+// A frame that waits is as old as it is, not as new as its reading.
+TEST(CanButtons, StampAFrameWhenItArrivedNotWhenItWasRead) {
+  std::vector<ButtonEvent> events;
+  Pair pair([&](const ButtonEvent& event) { events.push_back(event); });
+  const Time before = board_now();
+  pair.send(1);
+  const Time after = board_now();
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_EQ(pair.buttons().read(milliseconds(1000)), 1);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_GE(events[0].time, before);
+  EXPECT_LE(events[0].time, after);
+}
+
+// Each frame taken brings the next: the queue is never empty until 600 were sent.
+TEST(CanButtons, TakeNoMoreAWakeUpThanDeclared) {
+  int events = 0;
+  Pair* pen = nullptr;
+  Pair pair([&](const ButtonEvent& event) {
+    if (++events < 600) pen->send(event.pressed ? 0 : 1);
+  });
+  pen = &pair;
+  pair.send(1);
+  EXPECT_EQ(pair.buttons().read(milliseconds(1000)), 256);
+  EXPECT_EQ(pair.buttons().read(milliseconds(1000)), 256);
+  EXPECT_EQ(pair.buttons().read(milliseconds(1000)), 88);
+}
+
+TEST(CanButtons, RefuseHostileFramesAndGoOn) {
+  std::vector<ButtonEvent> events;
+  Pair pair([&](const ButtonEvent& event) { events.push_back(event); });
+  pair.send(1, CAN_RTR_FLAG);
+  pair.send(1, CAN_ERR_FLAG);
+  pair.send(1, CAN_EFF_FLAG);
+  pair.send_bytes(3);
+  pair.send_bytes(CANFD_MTU + 1);
+  pair.send_bytes(4096);
+  pair.send(2);
+  while (pair.buttons().read(milliseconds(1)) > 0) {
+  }
+  EXPECT_EQ(pair.buttons().counts().refused, 6u);
+  EXPECT_EQ(pair.buttons().counts().heard, 1u);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].button, Button::delete_last);
+}
+
+TEST(CanButtons, AreHeardByAThreadThatEndsWhenToldTo) {
+  std::atomic<int> events{0};
+  Pair pair([&](const ButtonEvent&) { ++events; });
+  pair.buttons().start();
+  pair.send(1);
+  for (int waited = 0; events < 1 && waited < 5'000; ++waited) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  EXPECT_EQ(events, 1);
+  pair.buttons().stop();
+  pair.send(0);
+  EXPECT_EQ(pair.buttons().counts().heard, 1u);
+  EXPECT_EQ(pair.buttons().read(milliseconds(1000)), 1);  // nobody else read it
+  EXPECT_EQ(events, 2);
+}
+
+TEST(CanButtons, DoNotComeFromALogAndNameTheInterfaceThatIsNotThere) {
+  EXPECT_EQ(open_can_buttons("log:can.log", k_buttons, {}, {}), nullptr);
+  try {
+    (void)open_can_buttons("socketcan:nocan7", k_buttons, {}, {});
+    ADD_FAILURE() << "opened";
+  } catch (const MissingDevice& error) {
+    EXPECT_NE(std::string(error.what()).find("socketcan:nocan7: no such network interface"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace glint

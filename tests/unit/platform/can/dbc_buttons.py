@@ -1,0 +1,48 @@
+"""Button frames encoded by canmatrix with the DBC file must be heard as what they say.
+
+    dbc_buttons.py READ_KNOWN_BUTTONS GLINT_DBC
+Exit 0: all as encoded; 1: something differs; 77: canmatrix is not installed.
+"""
+import contextlib
+import io
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+
+try:
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+        import canmatrix.formats
+except ImportError:
+    print("skipped: python3-canmatrix is not installed")
+    sys.exit(77)
+
+BUTTONS = ("Draw", "DeleteLast", "Undo", "Finish")
+FRAMES = 200
+
+
+def main():
+    reader, dbc = sys.argv[1:]
+    with contextlib.redirect_stdout(io.StringIO()):
+        message = canmatrix.formats.loadp_flat(dbc).frame_by_name("PenButtons")
+    draws, lines, expected = random.Random(3), [], []
+    before = dict.fromkeys(BUTTONS, 0)
+    for number in range(FRAMES):
+        held = {button: draws.randrange(2) for button in BUTTONS}
+        data = bytes(message.encode(held)).hex().upper()
+        lines.append(f"({number}.000000) can0 {message.arbitration_id.id:03X}#{data}\n")
+        expected += [f"{i} {held[b]}" for i, b in enumerate(BUTTONS) if held[b] != before[b]]
+        before = held
+    with tempfile.TemporaryDirectory() as folder:
+        log = pathlib.Path(folder) / "buttons.log"
+        log.write_text("".join(lines))
+        heard = subprocess.run([reader, log, str(message.arbitration_id.id)], text=True,
+                               capture_output=True, check=False)
+    found = heard.stdout.split("\n")[:-1]
+    print(f"{len(found)} changes heard of {len(expected)} in {FRAMES} frames, exit {heard.returncode}")
+    return 0 if heard.returncode == 0 and found == expected and expected else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

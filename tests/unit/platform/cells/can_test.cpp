@@ -1,0 +1,48 @@
+// The section [can] of a cell file.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "platform/cells/cell.hpp"
+#include "tests/unit/platform/cells/complaint.hpp"
+
+namespace glint {
+namespace {
+
+TEST(CellCan, HearsNoButtonsWhereItSaysNothing) {
+  EXPECT_FALSE(default_cell().can.buttons);
+  EXPECT_FALSE(cell_from_text("[can]\nnode = 3\n", "cell.toml").can.buttons);
+}
+
+TEST(CellCan, TakesTheIdentifierOfButtonsBesideItsOwn) {
+  for (const char* const free : {"0x190", "0x19F", "0x1B0", "0x7FF", "1"}) {
+    const Cell cell = cell_from_text("[can]\nbuttons = " + std::string(free) + "\n", "cell.toml");
+    EXPECT_EQ(cell.can.buttons, std::stoul(free, nullptr, 0)) << free;
+  }
+}
+
+TEST(CellCan, RefusesAnIdentifierOfButtonsWithWhichItSends) {
+  const std::string expected =
+      ", with which Glint sends; expected none of 0x1A0 to 0x1AF, 0xA0 and 0x720";
+  for (const char* const taken : {"0x1A0", "0x1A4", "0x1AE", "0x1AF", "0xA0", "0x720"}) {
+    EXPECT_EQ(test::complaint_about("[can]\nbuttons = " + std::string(taken) + "\n"),
+              "cell.toml:2: can.buttons is " + std::string(taken) + expected);
+  }
+  // Each tool has 16 of its own, from the base that the cell says.
+  const std::string two = "tools = [\"pen\", \"board\"]\n[can]\n";
+  EXPECT_EQ(test::complaint_about(two + "buttons = 0x1BF\n"),
+            "cell.toml:3: can.buttons is 0x1BF, with which Glint sends; expected none of 0x1A0 to "
+            "0x1BF, 0xA0 and 0x720");
+  EXPECT_EQ(test::complaint_about(two + "base_id = 0x200\nbuttons = 0x1BF\n"), "accepted");
+}
+
+TEST(CellCan, RefusesAnIdentifierOfButtonsBeyondElevenBits) {
+  for (const char* const wrong : {"0", "-1", "2048", "\"0x190\""}) {
+    EXPECT_EQ(test::complaint_about("[can]\nbuttons = " + std::string(wrong) + "\n"),
+              "cell.toml:2: can.buttons is " + std::string(wrong) +
+                  "; expected a whole number from 1 to 2047");
+  }
+}
+
+}  // namespace
+}  // namespace glint
