@@ -1,9 +1,12 @@
 // glint run: frames in, poses out over DDS and CAN, everything recorded.
+#include <unistd.h>
+
 #include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +16,9 @@
 #include "platform/cli/planned_run.hpp"
 #include "platform/cli/progress.hpp"
 #include "platform/cli/run_report.hpp"
+#include "platform/input_error.hpp"
+#include "platform/programming/key_buttons.hpp"
+#include "platform/programming/key_terminal.hpp"
 #include "platform/session/injection_text.hpp"
 #include "platform/session/session.hpp"
 
@@ -32,6 +38,7 @@ struct RunArguments {
   std::string board, plan;
   std::vector<std::string> inject;
   bool trace = false;
+  bool keys = false;
 };
 
 Cell cell_of(const RunArguments& arguments) {
@@ -49,6 +56,18 @@ Cell cell_of(const RunArguments& arguments) {
   return cell;
 }
 
+// Says which key does what; nothing without --keys.
+void listen_to_keys(const RunArguments& arguments, const Cell& cell,
+                    std::optional<KeyTerminal>& terminal) {
+  if (!arguments.keys) return;
+  if (!cell.realtime)
+    throw InputError(
+        "--keys: the run is not in real time; expected one that is (realtime = true, no --fast)");
+  terminal.emplace(STDIN_FILENO, "--keys: standard input");
+  std::printf("keys: %s\n", k_keys_text);
+  std::fflush(stdout);
+}
+
 int run(const RunArguments& arguments) {
   const Cell cell = cell_of(arguments);
   SessionOptions options;
@@ -57,13 +76,16 @@ int run(const RunArguments& arguments) {
     options.injections.push_back(injection_of(text));
   }
   options.trace = arguments.trace;
+  std::signal(SIGINT, [](int) { g_stop = true; });
+  std::signal(SIGTERM, [](int) { g_stop = true; });
+  std::optional<KeyTerminal> terminal;
+  listen_to_keys(arguments, cell, terminal);
+  if (terminal) options.keys = terminal->descriptor();
   make_folder(arguments.out);
   Progress progress("tracking");
   options.out = arguments.out;
   options.progress = [&](double done_s, double all_s) { progress.show(done_s, all_s); };
   options.stop = &g_stop;
-  std::signal(SIGINT, [](int) { g_stop = true; });
-  std::signal(SIGTERM, [](int) { g_stop = true; });
   SessionResult result = run_session(cell, options);
   draw_plots(arguments.out, result);
   const nlohmann::ordered_json summary = summary_of(cell, options.plan, result);
@@ -81,6 +103,7 @@ void add_run(CLI::App& app, int& exit_code) {
   command->footer(
       "Examples:\n  glint run --out out --json out/summary.json\n"
       "  glint run --config my_cell.toml --can socketcan:can0\n"
+      "  glint run --keys && glint path out/run.mcap --csv path.csv\n"
       "Tools that this sensor cannot tell apart are refused; of those that it may confuse, and of\n"
       "a tool's markers that may pass for others of its own, the table warns: `this cell`.");
   command->add_option("--config", arguments->config, "a cell file; without it the built-in one");
@@ -105,6 +128,8 @@ void add_run(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   command->add_flag("--trace", arguments->trace, "when every node ran: trace.spans in --out");
   command->add_flag("--no-dds", arguments->no_dds, "send nothing over DDS");
+  command->add_flag("--keys", arguments->keys,
+                    std::string("keys of this terminal are the pen's buttons: ") + k_keys_text);
   command->add_flag("--fast", arguments->as_fast_as_can_be,
                     "as fast as can be instead of in real time: no DDS, the same bytes every time");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

@@ -125,6 +125,7 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
                        {"can_dropped", result.can.dropped},
                        {"can_failed", result.can.failed},
                        {"can_bus_load", result.can_bus_load},
+                       {"key_events", result.key_events},
                        {"can_heard",
                         {{"buttons", result.can_heard.heard},
                          {"refused", result.can_heard.refused},
@@ -234,6 +235,7 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
                               std::to_string(heard.refused) + " refused");
   }
   if (!result.can_not_heard.empty()) row("not heard over CAN", result.can_not_heard);
+  if (result.key_events > 0) row("buttons by key", std::to_string(result.key_events) + " changes");
   row("DDS", std::to_string(result.dds.written) + " written, " +
                  std::to_string(result.dds_reader.received) + " received, " +
                  std::to_string(result.dds_reader.missed) + " missed, " +

@@ -4,12 +4,15 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <utility>
 
 #include "platform/dds/topic_names.hpp"
 #include "platform/mapping/cloud_files.hpp"
 #include "platform/mapping/depth_png.hpp"
+#include "platform/programming/key_reader.hpp"
+#include "platform/record/button_event.hpp"
 #include "platform/rt/allocation_counter.hpp"
 #include "platform/rt/clock.hpp"
 #include "platform/rt/machine_check.hpp"
@@ -215,6 +218,13 @@ SessionResult run_session(const Cell& cell, sim::Scenario scenario, const Sessio
   }
 
   Sinks sinks(cell, options, unix_offset_ns);
+  std::optional<KeyReader> keys;
+  if (options.keys) {
+    keys.emplace(*options.keys, now, [&sinks, &result](const ButtonEvent& event) {
+      ++result.key_events;
+      sinks.offer_button(event);
+    });
+  }
   std::unique_ptr<TraceWriter> trace;
   if (options.trace) {
     const std::string file = (std::filesystem::path(options.out) / "trace.spans").string();
@@ -245,6 +255,7 @@ SessionResult run_session(const Cell& cell, sim::Scenario scenario, const Sessio
     result.trace_spans = trace->written();
     result.trace_dropped = trace->dropped();
   }
+  keys.reset();
   sinks.close(result);
   return result;
 }

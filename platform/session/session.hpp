@@ -25,6 +25,7 @@ struct SessionOptions : SinkOptions {
   RunPlan plan;                             // who runs what, and the bounds; made without a board
   std::vector<Injection> injections;        // delays, to see what is done about them
   bool trace = false;                       // trace.spans in `out`
+  std::optional<int> keys;                  // a terminal whose keys are buttons: KeyTerminal's
 };
 
 struct SessionResult : SinkOutcome {
@@ -45,6 +46,7 @@ struct SessionResult : SinkOutcome {
   MachineCheck machine;                        // what spoils a live run's timing
   std::uint64_t trace_spans = 0, trace_dropped = 0;
   std::uint64_t can_frames = 0;
+  std::uint64_t key_events = 0;  // buttons that keys stood for
 };
 
 // On simulated frames: of the scenario that the cell asks for, or of one's own (its camera is the
