@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <latch>
 #include <thread>
 #include <variant>
 
@@ -20,13 +21,17 @@ Cell cell_that_records() {
 }
 
 TEST(ButtonsOfARun, AreAllRecordedThoughSeveralThreadsSayThem) {
-  constexpr int k_events = 200;
+  constexpr int k_events = 50000;
   const TemporaryFolder folder;
   SinkOutcome outcome;
-  Sinks sinks(cell_that_records(), {folder.path(), false, {}}, 0);
+  Cell cell = cell_that_records();
+  cell.realtime = false;  // a full queue is waited for
+  Sinks sinks(cell, {folder.path(), false, {}}, 0);
   std::array<std::thread, 3> threads;
+  std::latch together(3);
   for (std::size_t t = 0; t < threads.size(); ++t) {
-    threads[t] = std::thread([&sinks, t] {
+    threads[t] = std::thread([&sinks, &together, t] {
+      together.arrive_and_wait();
       for (int i = 0; i < k_events; ++i) {
         sinks.offer_button({{i}, static_cast<Button>(t), i % 2 == 0});
       }
