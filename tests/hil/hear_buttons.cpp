@@ -1,0 +1,57 @@
+// hear_buttons INTERFACE IDENTIFIER FRAMES: waits for so many frames of buttons and prints what
+// changed: which button (0 draw, 1 delete_last, 2 undo, 3 finish) and whether it is held. Exit 0:
+// so many came, each stamped between start and end; 1: not; 3: the interface is missing. For
+// tests/hil/guest.
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <thread>
+
+#include "platform/can/can_buttons.hpp"
+#include "platform/input_error.hpp"
+
+namespace {
+
+using namespace glint;
+
+constexpr int k_looks_max = 10'000;  // of 2 ms
+constexpr std::chrono::milliseconds k_look_again{2};
+
+Time unix_now() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return Time{std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()};
+}
+
+int hear(const std::string& interface, std::uint32_t identifier, std::uint64_t frames) {
+  const Time start = unix_now();
+  std::atomic<bool> stamps_hold{true};
+  const auto buttons =
+      open_can_buttons("socketcan:" + interface, identifier, {}, [&](const ButtonEvent& event) {
+        std::printf("%d %d\n", static_cast<int>(event.button), event.pressed);
+        if (event.time < start || event.time > unix_now()) stamps_hold = false;
+      });
+  const auto all = [&] { return buttons->counts().heard + buttons->counts().refused; };
+  for (int look = 0; all() < frames && look < k_looks_max; ++look) {
+    std::this_thread::sleep_for(k_look_again);
+  }
+  buttons->stop();
+  std::printf("heard %llu, refused %llu\n",
+              static_cast<unsigned long long>(buttons->counts().heard),
+              static_cast<unsigned long long>(buttons->counts().refused));
+  return all() == frames && stamps_hold ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 4) return 2;
+  try {
+    return hear(arguments[1], static_cast<std::uint32_t>(std::strtoul(arguments[2], nullptr, 0)),
+                std::strtoull(arguments[3], nullptr, 0));
+  } catch (const MissingDevice& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 3;
+  }
+}
