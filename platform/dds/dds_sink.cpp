@@ -94,6 +94,7 @@ std::shared_ptr<Participant> DdsSink::participant() const {
 void DdsSink::write_waiting() {
   HeadPose head;
   while (heads_.pop(head)) publisher_->write_head(head);
+  if (robot_.sample()) publisher_->write_robot(robot_.value());
   PoseSample sample;
   while (ring_.pop(sample)) {
     if (!publisher_->write(sample)) {

@@ -11,6 +11,7 @@
 #include <memory>
 #include <thread>
 
+#include "graph/latest.hpp"
 #include "graph/ring.hpp"
 #include "kernels/pose/head_pose.hpp"
 #include "kernels/wire/pose_sample.hpp"
@@ -56,6 +57,13 @@ class DdsSink {
   // say it again.
   bool offer_head(const HeadPose& head) noexcept { return heads_.push(head); }
 
+  // From one other thread only: where a robot that is followed now stands, for tf_static. Only the
+  // newest counts.
+  void offer_robot(const Pose& T_world_robot) noexcept {
+    robot_.write_slot() = T_world_robot;
+    robot_.publish(++robot_version_, 0);
+  }
+
   // The domain's participant, for readers of this process; empty after stop(). A reader that holds
   // it keeps the domain open.
   [[nodiscard]] std::shared_ptr<Participant> participant() const;
@@ -74,6 +82,8 @@ class DdsSink {
   using Counter = std::atomic<std::uint64_t>;
   graph::Ring<PoseSample, k_ring_capacity> ring_;
   graph::Ring<HeadPose, k_head_capacity> heads_;
+  graph::TripleBuffer<Pose> robot_;
+  std::uint64_t robot_version_ = 0;
   Counter offered_{0}, refused_{0}, written_{0}, write_failed_{0}, poses_written_{0};
   std::atomic<bool> accepting_{true};
   std::atomic<bool> stopping_{false};

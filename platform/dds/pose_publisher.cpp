@@ -140,6 +140,14 @@ void PosePublisher::write_head(const HeadPose& head) {
   dds_write(tf_, &tf);
 }
 
+void PosePublisher::write_robot(const Pose& T_world_robot) {
+  const FrameNames& frames = settings_.frames;
+  std::erase_if(settings_.static_transforms,
+                [&](const StaticTransform& one) { return one.child == frames.robot; });
+  settings_.static_transforms.push_back({frames.world, frames.robot, T_world_robot});
+  write_static_transforms();
+}
+
 void PosePublisher::write_static_transforms() {
   const Time now{dds_time()};
   std::vector<TransformMessage> transforms;

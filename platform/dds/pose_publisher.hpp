@@ -38,6 +38,9 @@ class PosePublisher {
   // tf: world to the camera, where the head's pose is known.
   void write_head(const HeadPose& head);
 
+  // tf_static: world to the robot, from now on; the other transforms as they were.
+  void write_robot(const Pose& T_world_robot);
+
   void write_diagnostics(const SinkFigures& figures);
 
   // Marks the end of every tool's stream and waits for the readers' receipts.

@@ -1,5 +1,6 @@
 #include "platform/dds/dds_sink.hpp"
 
+#include <map>
 #include <set>
 
 #include "platform/dds/messages.hpp"
@@ -188,6 +189,34 @@ TEST_F(Sinks, GiveALateListenerAllStaticTransforms) {
                             }),
             1u);
   EXPECT_EQ(children, (std::set<std::string>{"hmd_tof_optical", "robot_base"}));
+}
+
+TEST_F(Sinks, TellWhereARobotThatIsFollowedNowStandsBesideTheOtherStaticTransforms) {
+  DdsSettings settings = test_settings();
+  Pose robot;
+  robot.translation = Vector3(0.6, 0, -0.4);
+  settings.static_transforms = {{"hmd_world", "robot_base", robot},
+                                {"hmd_rig", "hmd_tof_optical", Pose{}}};
+  DdsSink sink(settings);
+  robot.translation.x() = 0.7;
+  sink.offer_robot(robot);
+  sink.start();
+  Peer peer(settings);
+  const dds_entity_t reader = peer.reader(tf_type(), k_tf_static_topic, Reliability::reliable,
+                                          Durability::transient_local, 100);
+  std::map<std::string, double> places;
+  const auto hear = [&](const TfMessage& message) {
+    places.clear();
+    for (std::uint32_t i = 0; i < message.transforms._length; ++i) {
+      const auto& one = message.transforms._buffer[i];
+      places[one.child_frame_id] = one.transform.translation.x;
+    }
+  };
+  const std::map<std::string, double> now{{"hmd_tof_optical", 0.0}, {"robot_base", 0.7}};
+  // One that listens early may hear first where it stood.
+  for (int message = 0; message < 2 && places != now; ++message)
+    EXPECT_EQ(take<TfMessage>(reader, 1, hear), 1u);
+  EXPECT_EQ(places, now);
 }
 
 TEST_F(Sinks, SayInDiagnosticsWhatIsWrongWithATool) {
