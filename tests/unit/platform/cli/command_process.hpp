@@ -1,0 +1,85 @@
+// A command as its user starts it: a process whose words go into a file.
+#pragma once
+
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace glint {
+
+class CommandProcess {
+ public:
+  // GLINT_PROGRAM with these arguments; what it writes to both outputs goes to `log`.
+  CommandProcess(std::vector<std::string> arguments, std::string log) : log_(std::move(log)) {
+    arguments.insert(arguments.begin(), GLINT_PROGRAM);
+    std::vector<char*> words;
+    for (std::string& argument : arguments) words.push_back(argument.data());
+    words.push_back(nullptr);
+    process_ = fork();
+    if (process_ != 0) return;
+    if (std::freopen(log_.c_str(), "w", stdout) != nullptr && dup2(1, 2) == 2) {
+      execv(words[0], words.data());
+    }
+    _exit(127);
+  }
+  ~CommandProcess() {
+    if (has_ended()) return;
+    kill(process_, SIGKILL);
+    waitpid(process_, nullptr, 0);
+  }
+  CommandProcess(const CommandProcess&) = delete;
+  CommandProcess& operator=(const CommandProcess&) = delete;
+
+  // Does something again and again until `done` holds or the process has ended; false when patience
+  // is over first.
+  template <class Act, class Done>
+  [[nodiscard]] bool meanwhile(Act act, Done done) {
+    const auto end = std::chrono::steady_clock::now() + k_patience;
+    while (!has_ended() && !done()) {
+      if (std::chrono::steady_clock::now() > end) return false;
+      act();
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return true;
+  }
+  // The exit code, when it has ended; -1: it did not within patience, or not by itself.
+  template <class Act>
+  [[nodiscard]] int exit_code(Act act) {
+    const bool ended = meanwhile(act, [] { return false; });
+    return ended && WIFEXITED(*status_) ? WEXITSTATUS(*status_) : -1;
+  }
+  [[nodiscard]] int exit_code() {
+    return exit_code([] {});
+  }
+  [[nodiscard]] bool has_ended() {
+    int status = 0;
+    if (!status_ && waitpid(process_, &status, WNOHANG) == process_) status_ = status;
+    return status_.has_value();
+  }
+  // As Ctrl-C does.
+  void interrupt() {
+    if (!has_ended()) kill(process_, SIGINT);
+  }
+  [[nodiscard]] std::string words() const {
+    std::ifstream file(log_);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+ private:
+  // Under a sanitizer on a busy machine, too.
+  static constexpr std::chrono::seconds k_patience{240};
+
+  std::string log_;
+  pid_t process_ = -1;
+  std::optional<int> status_;
+};
+
+}  // namespace glint
