@@ -70,11 +70,13 @@ void Diagnostics::add_timing(const OverrunCounters& overruns, std::string_view b
 void Diagnostics::add_robot(const FollowedRobotNotes& robot) {
   const std::int64_t followed = robot.followed.load(std::memory_order_relaxed);
   const std::int64_t jumps = robot.jumps.load(std::memory_order_relaxed);
+  const std::int64_t unsure = robot.unsure.load(std::memory_order_relaxed);
   const double shift_mm = 1e3 * robot.shift_m.load(std::memory_order_relaxed);
   const double turn_deg = k_degrees_per_radian * robot.turn_rad.load(std::memory_order_relaxed);
   std::vector<Value>& values = values_.emplace_back();
   values.push_back({keep("followed"), keep(std::to_string(followed))});
   values.push_back({keep("jumps_refused"), keep(std::to_string(jumps))});
+  values.push_back({keep("unsure"), keep(std::to_string(unsure))});
   values.push_back({keep("jump_mm"), keep(std::to_string(shift_mm))});
   values.push_back({keep("jump_deg"), keep(std::to_string(turn_deg))});
   if (!robot.jumped.load(std::memory_order_relaxed)) {

@@ -8,9 +8,9 @@
 namespace glint {
 
 struct FollowedRobotNotes {
-  std::atomic<std::int64_t> followed{0}, jumps{0};  // pictures so far
-  std::atomic<double> shift_m{0}, turn_rad{0};      // of the last jump
-  std::atomic<bool> jumped{false};                  // and none that was followed came after it
+  std::atomic<std::int64_t> followed{0}, jumps{0}, unsure{0};  // pictures so far
+  std::atomic<double> shift_m{0}, turn_rad{0};                 // of the last jump
+  std::atomic<bool> jumped{false};  // and none that was followed came after it
 };
 
 }  // namespace glint

@@ -141,6 +141,7 @@ void BackgroundGroup::note_robot(const RobotProgress& robot) const noexcept {
   notes.shift_m.store(robot.shift_m, std::memory_order_relaxed);
   notes.turn_rad.store(robot.turn_rad, std::memory_order_relaxed);
   notes.jumps.store(robot.jumps, std::memory_order_relaxed);
+  notes.unsure.store(robot.unsure, std::memory_order_relaxed);
   if (robot.jumps > counts_.robot.jumps) notes.jumped.store(true, std::memory_order_relaxed);
   if (robot.followed > counts_.robot.followed) notes.jumped.store(false, std::memory_order_relaxed);
   notes.followed.store(robot.followed, std::memory_order_relaxed);

@@ -7,6 +7,7 @@
 #include "platform/dds/dds_sink.hpp"
 #include "platform/dds/messages.hpp"
 #include "platform/dds/topic_names.hpp"
+#include "tests/unit/platform/dds/diagnostic_entry.hpp"
 #include "tests/unit/platform/dds/isolated_network.hpp"
 #include "tests/unit/platform/dds/peer.hpp"
 #include "tests/unit/platform/dds/samples.hpp"
@@ -140,13 +141,6 @@ TEST_F(TimingFields, CountTheTicksThatWereSkippedAndCloseTheStreamOnePeriodOn) {
             (std::map<std::uint32_t, std::uint64_t>{{5, 0}, {6, 0}, {9, 2}, {10, 2}, {11, 2}}));
 }
 
-// An entry of diagnostics: level, message, and the values by their keys.
-struct DiagnosticEntry {
-  int level = -1;
-  std::string message;
-  std::map<std::string, std::string> values;
-};
-
 DiagnosticEntry diagnostic_entry(const DdsSettings& settings, const std::string& name) {
   DdsSink sink(settings);
   Peer peer(settings);
@@ -155,16 +149,8 @@ DiagnosticEntry diagnostic_entry(const DdsSettings& settings, const std::string&
   EXPECT_TRUE(peer.meets(sink));
   sink.start();
   DiagnosticEntry found;
-  (void)take<DiagnosticsMessage>(reader, 1, [&](const DiagnosticsMessage& message) {
-    for (std::uint32_t i = 0; i < message.status._length; ++i) {
-      const auto& entry = message.status._buffer[i];
-      if (entry.name != name) continue;
-      found = {entry.level, entry.message, {}};
-      for (std::uint32_t v = 0; v < entry.values._length; ++v) {
-        found.values[entry.values._buffer[v].key] = entry.values._buffer[v].value;
-      }
-    }
-  });
+  (void)take<DiagnosticsMessage>(
+      reader, 1, [&](const DiagnosticsMessage& message) { found = entry_of(message, name); });
   return found;
 }
 
@@ -208,6 +194,7 @@ TEST_F(TimingFields, SayInDiagnosticsThatTheRobotWasSeenElsewhereAndHowFar) {
   EXPECT_EQ(followed.level, 0);
   EXPECT_EQ(followed.message, "followed");
   robot.jumps = 3;
+  robot.unsure = 2;
   robot.shift_m = 0.0312;
   robot.turn_rad = 0.035;
   robot.jumped = true;
@@ -218,6 +205,7 @@ TEST_F(TimingFields, SayInDiagnosticsThatTheRobotWasSeenElsewhereAndHowFar) {
             "moved, and find it anew (glint reference)");
   EXPECT_EQ(jumped.values.at("followed"), "12");
   EXPECT_EQ(jumped.values.at("jumps_refused"), "3");
+  EXPECT_EQ(jumped.values.at("unsure"), "2");
   EXPECT_EQ(jumped.values.at("jump_mm"), "31.200000");
   EXPECT_NEAR(std::stod(jumped.values.at("jump_deg")), 2.0054, 1e-3);
   robot.jumped = false;  // seen again where it is taken to be

@@ -3,7 +3,7 @@
 
 #include "platform/rt/allocation_counter.hpp"
 #include "platform/session/background_group.hpp"
-#include "tests/unit/platform/session/followed_robot.hpp"
+#include "tests/unit/platform/session/box_on_a_slide.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
 
 namespace glint {
@@ -31,23 +31,6 @@ TEST(RobotNotes, SayHowFarARobotJumpedUntilItIsSeenWhereItWas) {
   EXPECT_GT(notes.followed, 7);
 }
 
-constexpr double k_heard_m = 0.1;
-
-// The box on a slide: its model stands where the pictures show it when the slide is at k_heard_m.
-RobotCloud on_a_slide(const std::string& path) {
-  RobotCloud robot = read_robot_cloud(path);
-  robot.links.push_back("carriage");
-  robot.inputs = {"slide"};
-  TreeJoint& slide = robot.tree.joints[0];
-  slide.kind = JointKind::sliding;
-  slide.axis = Vector3::UnitX();
-  slide.input = 0;
-  robot.tree.joint_count = robot.tree.input_count = 1;
-  robot.point_links.assign(robot.points.size(), 1);
-  for (Vector3f& point : robot.points) point.x() -= static_cast<float>(k_heard_m);
-  return robot;
-}
-
 void say(graph::TripleBuffer<HeardJoints>& heard, const std::vector<std::string>& names,
          const std::vector<double>& positions) {
   HeardJoints& joints = heard.write_slot();
@@ -63,9 +46,7 @@ void say(graph::TripleBuffer<HeardJoints>& heard, const std::vector<std::string>
 TEST(HeardJointsOfARobot, PoseItsModelInPlaceOfTheCells) {
   const TemporaryFolder folder;
   Cell cell = short_cell(1);
-  follow_a_box(folder.path(), 0, cell);
-  write_robot_cloud(cell.mapping->model, on_a_slide(cell.mapping->model));
-  cell.mapping->joints = {0};
+  follow_a_box_on_a_slide(folder.path(), cell);
   const auto followed = [&](graph::TripleBuffer<HeardJoints>* heard) {
     BackgroundGroup group(cell, *plan_by_rule(cell).background, nullptr,
                           read_background_scene(cell, nullptr));
@@ -76,7 +57,7 @@ TEST(HeardJointsOfARobot, PoseItsModelInPlaceOfTheCells) {
   };
   EXPECT_EQ(followed(nullptr), 0);
   graph::TripleBuffer<HeardJoints> heard;
-  say(heard, {"gripper", "slide"}, {7, k_heard_m});
+  say(heard, {"gripper", "slide"}, {7, k_slide_shown_m});
   EXPECT_GE(followed(&heard), 5);
 }
 

@@ -1,0 +1,84 @@
+// `glint run` as a process, live, and this one as the driver of the robot that it follows.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/unit/platform/cli/command_process.hpp"
+#include "tests/unit/platform/dds/diagnostic_entry.hpp"
+#include "tests/unit/platform/dds/isolated_network.hpp"
+#include "tests/unit/platform/dds/robot_speaker.hpp"
+#include "tests/unit/platform/robot/files.hpp"
+#include "tests/unit/platform/session/box_on_a_slide.hpp"
+
+namespace glint {
+namespace {
+
+// The run says each second on /diagnostics what became of its pictures; that is waited for.
+class HeardJointsOfARun : public DdsTest {
+ protected:
+  // A cell with [mapping] keys of the test's own.
+  [[nodiscard]] std::vector<std::string> run_of(const std::string& mapping) const {
+    const std::string cell_file = files_.write(
+        "cell.toml",
+        "tools = [\"pen\"]\n[simulator]\nduration_s = 600\n[background]\nperiod_ms = 1\n[robot]\n"
+        "position_mm = [600, 0, -400]\n[mapping]\nsource = \".\"\nperiod_ms = 100\n"
+        "pictures_a_map = 1000\nstride = 8\nvoxels_max = 20_000\nmodel = "
+        "\"robot.ply\"\njoints = [0]\n" +
+            mapping);
+    Cell cell = load_cell(cell_file);
+    follow_a_box_on_a_slide(files_.folder(), cell);
+    return {"run", "--config", cell_file, "--out", files_.folder(), "--json", path("summary.json")};
+  }
+  [[nodiscard]] std::string path(const char* name) const { return files_.folder() + "/" + name; }
+
+  // Of the newest message, a count of the robot's; 0 before the first.
+  [[nodiscard]] long robot_count(const char* key) {
+    void* sample[1] = {nullptr};
+    dds_sample_info_t info;
+    while (dds_take(diagnostics_, sample, &info, 1, 1) == 1) {
+      if (info.valid_data) {
+        robot_ = entry_of(*static_cast<const DiagnosticsMessage*>(sample[0]), "glint: robot");
+      }
+      dds_return_loan(diagnostics_, sample, 1);
+    }
+    const auto found = robot_.values.find(key);
+    return found == robot_.values.end() ? 0 : std::stol(found->second);
+  }
+  // Ctrl-C, and what the run leaves.
+  [[nodiscard]] nlohmann::json end(CommandProcess& run) const {
+    run.interrupt();
+    EXPECT_EQ(run.exit_code(), 0) << run.words();
+    std::ifstream file(path("summary.json"));
+    return nlohmann::json::parse(file).at("background").at("references");
+  }
+
+  const test::Files files_;
+  RobotSpeaker driver_{{"gripper", "slide"}, {9, 0}};
+  dds_entity_t diagnostics_ =
+      driver_.peer().reader(diagnostics_type(), k_diagnostics_topic, Reliability::reliable,
+                            Durability::volatile_data, 10);
+  DiagnosticEntry robot_;
+};
+
+TEST_F(HeardJointsOfARun, LetItFollowWhatItCannotFollowWithoutThem) {
+  CommandProcess run(run_of(""), path("words.txt"));
+  ASSERT_TRUE(run.meanwhile(
+      [] {}, [&] { return robot_count("unsure") + robot_count("jumps_refused") >= 1; }));
+  ASSERT_FALSE(run.has_ended()) << run.words();
+  EXPECT_EQ(robot_count("followed"), 0);
+  double slide = 0;
+  const auto move = [&] {
+    slide = std::min(slide + 0.01, k_slide_shown_m);
+    driver_.move_to({9, slide});
+    driver_.say_joints();
+  };
+  EXPECT_TRUE(run.meanwhile(move, [&] { return robot_count("followed") >= 1; }));
+  ASSERT_FALSE(run.has_ended()) << run.words();
+  const nlohmann::json robot = end(run);
+  EXPECT_GE(robot.at("followed"), 1);
+  EXPECT_GE(robot.at("joint_states_used"), 1);
+  EXPECT_EQ(robot.at("joint_states_passed_over"), 0);
+}
+
+}  // namespace
+}  // namespace glint
