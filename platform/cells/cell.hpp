@@ -106,6 +106,8 @@ struct MappingSettings {
   // Of the robot that is followed in the same pictures; empty: none is.
   std::string model;           // of `glint reference --export-model`
   std::vector<double> joints;  // their positions, in the model's order: radians, metres
+  // Joint states that came longer before a picture than this say nothing of it.
+  Duration joints_lost_after = milliseconds(1000);
 };
 
 struct Cell {

@@ -34,6 +34,8 @@ void read_mapping(const toml::table& table, const ResolvedPath& path, Cell& cell
   mapping.voxels_max = number("voxels_max", mapping.voxels_max, 1, 1 << 22);
   mapping.model = path(reader.text("model", ""), "mapping.model");
   mapping.joints = reader.numbers("joints");
+  mapping.joints_lost_after = from_ms(
+      reader.real("joints_lost_after_ms", mapping.joints_lost_after.seconds() * 1e3, 1, 60'000));
   reader.done();
 }
 

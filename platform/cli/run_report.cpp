@@ -220,7 +220,10 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
                        std::to_string(robot.unsure) + " told too little");
       if (background->joints_used + background->joints_passed_over > 0) {
         row("robot's joints", "heard: by " + std::to_string(background->joints_used) + " states, " +
-                                  std::to_string(background->joints_passed_over) + " lacked some");
+                                  std::to_string(background->joints_passed_over) +
+                                  " passed over; " +
+                                  std::to_string(background->pictures_without_joints) +
+                                  " pictures too long after them");
       }
     }
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 
 #include "platform/dds/topic_names.hpp"
 
@@ -61,12 +62,18 @@ std::uint64_t count_up(std::atomic<std::uint64_t>& counter, std::uint64_t by = 1
   return now;
 }
 
+Time steady_now() {
+  const auto passed = std::chrono::steady_clock::now().time_since_epoch();
+  return Time{std::chrono::duration_cast<std::chrono::nanoseconds>(passed).count()};
+}
+
 }  // namespace
 
 DdsInputs::DdsInputs(std::shared_ptr<Participant> participant, const DdsSettings& settings,
                      OnButton on_button, OnTool on_tool)
     : participant_(std::move(participant)),
       unix_minus_board_(settings.unix_minus_board),
+      board_minus_steady_(Time{dds_time()} - unix_minus_board_ - steady_now()),
       on_button_(std::move(on_button)),
       on_tool_(std::move(on_tool)),
       tool_names_(settings.tool_names),
@@ -181,7 +188,7 @@ void DdsInputs::take_tools(dds_entity_t reader, bool there) {
   count_up(refused_, take_bounded<TextMessage>(reader, text_type(), k_tool_bytes, use));
 }
 
-Time DdsInputs::now() const { return Time{dds_time()} - unix_minus_board_; }
+Time DdsInputs::now() const { return steady_now() + board_minus_steady_; }
 
 HeardCounts DdsInputs::counts() const noexcept {
   HeardCounts counts;

@@ -77,6 +77,7 @@ class DdsInputs {
 
   std::shared_ptr<Participant> participant_;
   Duration unix_minus_board_;
+  Duration board_minus_steady_;  // a step of Unix time moves no arrival
   OnButton on_button_;
   OnTool on_tool_;
   std::vector<std::string> tool_names_;

@@ -71,24 +71,34 @@ void Diagnostics::add_robot(const FollowedRobotNotes& robot) {
   const std::int64_t followed = robot.followed.load(std::memory_order_relaxed);
   const std::int64_t jumps = robot.jumps.load(std::memory_order_relaxed);
   const std::int64_t unsure = robot.unsure.load(std::memory_order_relaxed);
+  const std::int64_t without_joints = robot.without_joints.load(std::memory_order_relaxed);
   const double shift_mm = 1e3 * robot.shift_m.load(std::memory_order_relaxed);
   const double turn_deg = k_degrees_per_radian * robot.turn_rad.load(std::memory_order_relaxed);
   std::vector<Value>& values = values_.emplace_back();
   values.push_back({keep("followed"), keep(std::to_string(followed))});
   values.push_back({keep("jumps_refused"), keep(std::to_string(jumps))});
   values.push_back({keep("unsure"), keep(std::to_string(unsure))});
+  values.push_back({keep("without_joints"), keep(std::to_string(without_joints))});
   values.push_back({keep("jump_mm"), keep(std::to_string(shift_mm))});
   values.push_back({keep("jump_deg"), keep(std::to_string(turn_deg))});
-  if (!robot.jumped.load(std::memory_order_relaxed)) {
-    add_entry(k_ok, keep("glint: robot"), keep(followed > 0 ? "followed" : "not yet seen"), values);
-    return;
+  std::string warning;
+  if (robot.jumped.load(std::memory_order_relaxed)) {
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "seen %.1f mm and %.1f deg from where it is taken to be, refused: stop, look "
+                  "what moved, and find it anew (glint reference)",
+                  shift_mm, turn_deg);
+    warning = text;
   }
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "seen %.1f mm and %.1f deg from where it is taken to be, refused: stop, look what "
-                "moved, and find it anew (glint reference)",
-                shift_mm, turn_deg);
-  add_entry(k_warn, keep("glint: robot"), keep(text), values);
+  if (robot.joints_lost.load(std::memory_order_relaxed)) {
+    warning += warning.empty() ? "" : "; ";
+    warning += "not followed: no joint states for too long; see to the robot's driver";
+  }
+  if (warning.empty()) {
+    add_entry(k_ok, keep("glint: robot"), keep(followed > 0 ? "followed" : "not yet seen"), values);
+  } else {
+    add_entry(k_warn, keep("glint: robot"), keep(warning), values);
+  }
 }
 
 void Diagnostics::add_entry(std::uint8_t level, char* name, char* message,

@@ -52,7 +52,8 @@ BackgroundGroup::BackgroundGroup(const Cell& cell, const GroupPlan<Background>& 
     : runner_(background_settings(cell, plan, trace)),
       period_(cell.background->period),
       scene_(std::move(scene)),
-      robot_(std::move(scene_.model), std::move(scene_.robot)),
+      robot_(std::move(scene_.model), std::move(scene_.robot),
+             cell.mapping ? cell.mapping->joints_lost_after : Duration{}),
       sinks_(sinks) {
   ExtendMap& map = graph_.node<ExtendMap>();
   map.limits = limits_of(cell);
@@ -147,16 +148,27 @@ void BackgroundGroup::note_robot(const RobotProgress& robot) const noexcept {
   notes.followed.store(robot.followed, std::memory_order_relaxed);
 }
 
+// A robot of which nobody says any more how it stands is not looked for: it may stand anyhow.
+bool BackgroundGroup::knows_joints_at(Time time) noexcept {
+  if (heard_ == nullptr) return true;
+  robot_.update(*heard_);
+  counts_.joints_used = robot_.used();
+  counts_.joints_passed_over = robot_.passed_over();
+  const bool known = robot_.is_known_at(time);
+  if (!known) without_joints_ = ++counts_.pictures_without_joints;
+  if (sinks_.notes != nullptr) {
+    sinks_.notes->without_joints.store(counts_.pictures_without_joints, std::memory_order_relaxed);
+    sinks_.notes->joints_lost.store(!known, std::memory_order_relaxed);
+  }
+  return known;
+}
+
 void BackgroundGroup::show(std::int64_t number) noexcept {
   if (number <= shown_) return;
   counts_.pictures_missed += number - shown_ - 1;
   shown_ = number;
-  if (heard_ != nullptr) {
-    robot_.update(*heard_);
-    counts_.joints_used = robot_.used();
-    counts_.joints_passed_over = robot_.passed_over();
-  }
   const DepthLoop& pictures = scene_.pictures;
+  const Time taken = pictures.time_of(number);
   const DepthFrame& frame = pictures.picture(number);
   (void)tracked_.sample();
   const auto end = std::copy_n(
@@ -167,8 +179,8 @@ void BackgroundGroup::show(std::int64_t number) noexcept {
   const auto count = static_cast<std::size_t>(all - left_out_.begin());
   graph_.input<ShownDepth>() = {
       {frame.picture(), pictures.camera(), frame.T_world_camera, std::span(left_out_).first(count)},
-      pictures.scene(number),
-      pictures.time_of(number),
+      knows_joints_at(taken) ? pictures.scene(number) : ShownDepth::Scene{},
+      taken,
       static_cast<std::uint64_t>(number)};
 }
 

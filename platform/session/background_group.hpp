@@ -36,6 +36,7 @@ struct BackgroundCounts {
   MapTotals map;
   RobotProgress robot;
   std::int64_t joints_used = 0, joints_passed_over = 0;  // of the states that were heard
+  std::int64_t pictures_without_joints = 0;  // not followed: the joints heard last were too old
 };
 
 // Where a robot that is followed is told, in front of every tick that reads it; each may be null.
@@ -71,8 +72,12 @@ class BackgroundGroup {
 
   // Pictures so far that show the robot where no drift takes it; any thread may ask.
   [[nodiscard]] std::int64_t jumps() const noexcept { return jumps_; }
+  // Pictures so far that were not followed, because the joints heard last were too old; likewise.
+  [[nodiscard]] std::int64_t without_joints() const noexcept { return without_joints_; }
   // The joint that the first state without all of the model's lacked, null: none did; likewise.
   [[nodiscard]] const std::string* lacking_joint() const noexcept { return robot_.lacking(); }
+  // Why the first state with all of them could not pose the model; Reason::none: all could.
+  [[nodiscard]] Reason unusable_joints() const noexcept { return robot_.unusable(); }
 
   // When run() has returned: a last map of all pictures that were shown whole.
   void finish() noexcept;
@@ -85,6 +90,7 @@ class BackgroundGroup {
   [[nodiscard]] bool is_free() const noexcept;
   void tell_robot(const RobotProgress& robot) noexcept;
   void note_robot(const RobotProgress& robot) const noexcept;
+  [[nodiscard]] bool knows_joints_at(Time time) noexcept;
 
   Background graph_;
   std::vector<std::byte> memory_;
@@ -95,7 +101,7 @@ class BackgroundGroup {
   graph::TripleBuffer<HeardJoints>* heard_ = nullptr;
   RobotSinks sinks_;
   std::uint64_t robot_version_ = 1;
-  std::atomic<std::int64_t> jumps_{0};
+  std::atomic<std::int64_t> jumps_{0}, without_joints_{0};
   std::int64_t shown_ = 0;
   std::int64_t next_ = 0;  // slice in order
   graph::TripleBuffer<TrackedCapsules> tracked_;

@@ -25,7 +25,8 @@ nlohmann::ordered_json as_json(const BackgroundCounts& counts) {
             {"unsure", counts.robot.unsure},
             {"last", name_of(counts.robot.last)},
             {"joint_states_used", counts.joints_used},
-            {"joint_states_passed_over", counts.joints_passed_over}}}};
+            {"joint_states_passed_over", counts.joints_passed_over},
+            {"pictures_without_joints", counts.pictures_without_joints}}}};
 }
 
 }  // namespace glint

@@ -60,11 +60,12 @@ void counted(Body body) {
 
 // What was said of the robot, once each.
 struct ToldOfRobot {
-  bool jumped = false, lacking = false;
+  bool jumped = false, lacking = false, unusable = false, lost = false;
 };
 
-// A line when the robot is first seen to have jumped, and when its joints are first heard without
-// one that its model has; not by a real-time thread.
+// A line when the robot is first seen to have jumped, when its joints are first heard without one
+// that its model has, or as they cannot be, and when they are first no longer heard; not by a
+// real-time thread.
 void tell_of_robot(const SessionGroups& groups, ToldOfRobot& told) {
   const BackgroundGroup* const background = groups.background();
   if (background == nullptr) return;
@@ -79,6 +80,21 @@ void tell_of_robot(const SessionGroups& groups, ToldOfRobot& told) {
     std::fprintf(stderr,
                  "%s: a state without a position of joint '%s': its model stays where it was\n",
                  k_joint_states_topic, joint->c_str());
+  }
+  if (const Reason reason = background->unusable_joints();
+      reason != Reason::none && !told.unusable) {
+    told.unusable = true;
+    std::fprintf(stderr,
+                 "%s: a state that cannot pose the robot: %s; expected positions of at most %.0e "
+                 "rad or m: its model stays where it was\n",
+                 k_joint_states_topic, std::string(name_of(reason)).c_str(), k_joint_position_max);
+  }
+  if (!told.lost && background->without_joints() > 0) {
+    told.lost = true;
+    std::fprintf(stderr,
+                 "%s: nothing for longer than mapping.joints_lost_after_ms: the robot is not "
+                 "followed until it is heard again\n",
+                 k_joint_states_topic);
   }
 }
 

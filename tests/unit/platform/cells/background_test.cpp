@@ -53,7 +53,7 @@ TEST(CellMapping, HasABackgroundAndSettingsOfItsOwn) {
   EXPECT_FALSE(default_cell().mapping);
   const Cell cell = cell_from_text(
       "[mapping]\nsource = \"pictures\"\nperiod_ms = 40\npictures_a_map = 3\nstride = 2\n"
-      "voxel_mm = 20\nvoxels_max = 5000\n",
+      "voxel_mm = 20\nvoxels_max = 5000\njoints_lost_after_ms = 300\n",
       "there/cell.toml");
   ASSERT_TRUE(cell.mapping && cell.background);
   EXPECT_EQ(cell.mapping->source, "there/pictures");
@@ -62,6 +62,7 @@ TEST(CellMapping, HasABackgroundAndSettingsOfItsOwn) {
   EXPECT_EQ(cell.mapping->stride, 2);
   EXPECT_DOUBLE_EQ(cell.mapping->voxel_m, 0.02);
   EXPECT_EQ(cell.mapping->voxels_max, 5000);
+  EXPECT_EQ(cell.mapping->joints_lost_after, milliseconds(300));
   EXPECT_EQ(cell.background->period, milliseconds(10));
 }
 
@@ -74,6 +75,8 @@ TEST(CellMapping, RefusesWhatIsMissingOrOutOfRangeByItsLine) {
             "cell.toml:3: mapping.stride is 0; expected a whole number from 1 to 64");
   EXPECT_EQ(complaint_about(source + "voxel_mm = 0\n"),
             "cell.toml:3: mapping.voxel_mm is 0; expected a number from 1 to 1000");
+  EXPECT_EQ(complaint_about(source + "joints_lost_after_ms = 0\n"),
+            "cell.toml:3: mapping.joints_lost_after_ms is 0; expected a number from 1 to 60000");
   EXPECT_NE(complaint_about(source + "folder = 0\n").find("unknown key mapping.folder"),
             std::string::npos);
 }

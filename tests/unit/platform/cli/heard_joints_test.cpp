@@ -80,5 +80,23 @@ TEST_F(HeardJointsOfARun, LetItFollowWhatItCannotFollowWithoutThem) {
   EXPECT_EQ(robot.at("joint_states_passed_over"), 0);
 }
 
+TEST_F(HeardJointsOfARun, AreMissedWhenTheyStopAndServeWhenTheyComeAgain) {
+  CommandProcess run(run_of("joints_lost_after_ms = 500\n"), path("words.txt"));
+  driver_.move_to({9, k_slide_shown_m});
+  const auto speak = [&] { driver_.say_joints(); };
+  const auto warns = [&] { return robot_count("without_joints") > 0 && robot_.level == 1; };
+  ASSERT_TRUE(run.meanwhile(speak, [&] { return robot_count("followed") >= 1; }));
+  EXPECT_TRUE(run.meanwhile([] {}, warns));
+  EXPECT_EQ(robot_.message,
+            "not followed: no joint states for too long; see to the robot's driver");
+  const long followed = robot_count("followed");
+  EXPECT_TRUE(run.meanwhile(
+      speak, [&] { return robot_count("followed") >= followed + 2 && robot_.level == 0; }));
+  ASSERT_FALSE(run.has_ended()) << run.words();
+  EXPECT_GE(end(run).at("pictures_without_joints"), 1);
+  EXPECT_NE(run.words().find("rt/joint_states: nothing for longer than mapping.joints_lost_after"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace glint

@@ -212,5 +212,24 @@ TEST_F(TimingFields, SayInDiagnosticsThatTheRobotWasSeenElsewhereAndHowFar) {
   EXPECT_EQ(diagnostic_entry(settings, "glint: robot").level, 0);
 }
 
+TEST_F(TimingFields, SayInDiagnosticsThatTheRobotsJointsAreNoLongerHeard) {
+  FollowedRobotNotes robot;
+  DdsSettings settings = test_settings();
+  settings.robot = &robot;
+  robot.without_joints = 4;
+  robot.joints_lost = true;
+  const DiagnosticEntry lost = diagnostic_entry(settings, "glint: robot");
+  EXPECT_EQ(lost.level, 1);
+  EXPECT_EQ(lost.message, "not followed: no joint states for too long; see to the robot's driver");
+  EXPECT_EQ(lost.values.at("without_joints"), "4");
+  robot.jumped = true;
+  const std::string both = diagnostic_entry(settings, "glint: robot").message;
+  EXPECT_EQ(both.rfind("seen 0.0 mm", 0), 0u) << both;
+  EXPECT_NE(both.find("; " + lost.message), std::string::npos) << both;
+  robot.jumped = false;
+  robot.joints_lost = false;
+  EXPECT_EQ(diagnostic_entry(settings, "glint: robot").level, 0);
+}
+
 }  // namespace
 }  // namespace glint

@@ -32,15 +32,16 @@ TEST(RobotNotes, SayHowFarARobotJumpedUntilItIsSeenWhereItWas) {
 }
 
 void say(graph::TripleBuffer<HeardJoints>& heard, const std::vector<std::string>& names,
-         const std::vector<double>& positions) {
+         const std::vector<double>& positions, Time arrival = {}) {
   HeardJoints& joints = heard.write_slot();
   joints = {};
+  joints.time = at_ms(1'000'000);  // a stamp of another machine, which counts for nothing
   joints.count = static_cast<int>(names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     names[i].copy(joints.names[i].data(), k_heard_name_max);
     joints.positions[i] = positions[i];
   }
-  heard.publish(heard.version() + 1, 0);
+  heard.publish(heard.version() + 1, arrival.nanoseconds);
 }
 
 TEST(HeardJointsOfARobot, PoseItsModelInPlaceOfTheCells) {
@@ -59,6 +60,41 @@ TEST(HeardJointsOfARobot, PoseItsModelInPlaceOfTheCells) {
   graph::TripleBuffer<HeardJoints> heard;
   say(heard, {"gripper", "slide"}, {7, k_slide_shown_m});
   EXPECT_GE(followed(&heard), 5);
+}
+
+// There is a picture each 100 ms.
+TEST(HeardJointsOfARobot, AreNotFollowedByOnceTheyAreTooOld) {
+  const TemporaryFolder folder;
+  Cell cell = short_cell(1);
+  follow_a_box_on_a_slide(folder.path(), cell);
+  cell.mapping->joints_lost_after = milliseconds(250);
+  FollowedRobotNotes notes;
+  BackgroundGroup group(cell, *plan_by_rule(cell).background, nullptr,
+                        read_background_scene(cell, nullptr), {nullptr, nullptr, &notes});
+  graph::TripleBuffer<HeardJoints> heard;
+  group.hear(heard);
+  group.reach(at_ms(350));  // what is given does not age
+  EXPECT_EQ(group.counts().pictures_without_joints, 0);
+  say(heard, {"slide"}, {k_slide_shown_m}, at_ms(350));
+  group.reach(at_ms(690));
+  const std::int64_t followed = group.counts().robot.followed;
+  EXPECT_GE(followed, 1);
+  EXPECT_FALSE(notes.joints_lost);
+  EXPECT_EQ(group.counts().pictures_without_joints, 0);
+  group.reach(at_ms(1190));  // it came more than 250 ms before all from 700 ms on
+  const std::int64_t without = group.counts().pictures_without_joints;
+  EXPECT_GE(without, 4);
+  EXPECT_EQ(group.without_joints(), without);
+  EXPECT_EQ(notes.without_joints, without);
+  EXPECT_TRUE(notes.joints_lost);
+  EXPECT_LE(group.counts().robot.followed, followed + 1);  // one was under way
+  say(heard, {"gripper"}, {7}, at_ms(1190));               // says nothing of the slide
+  group.reach(at_ms(1290));
+  EXPECT_GT(group.counts().pictures_without_joints, without);
+  say(heard, {"slide"}, {k_slide_shown_m}, at_ms(1300));
+  group.reach(at_ms(1590));
+  EXPECT_FALSE(notes.joints_lost);
+  EXPECT_GE(group.counts().robot.followed, followed + 2);
 }
 
 // The box's model on a slide, and what hears of the slide.
@@ -81,7 +117,7 @@ class HeardJointsOfASlide : public testing::Test {
   Cell cell_ = short_cell(1);
   graph::TripleBuffer<HeardJoints> heard_;
   const RobotCloud model_ = box_on_a_slide();
-  HeardRobot robot_{model_, posed_at(0.02)};
+  HeardRobot robot_{model_, posed_at(0.02), milliseconds(1000)};
 };
 
 TEST_F(HeardJointsOfASlide, ArePassedOverAndCountedWhereOneIsMissing) {
@@ -98,6 +134,15 @@ TEST_F(HeardJointsOfASlide, ArePassedOverAndCountedWhereOneIsMissing) {
   EXPECT_TRUE(stands_at(0.3));
   EXPECT_EQ(robot_.used(), 1);
   EXPECT_EQ(robot_.passed_over(), 1);
+}
+
+TEST_F(HeardJointsOfASlide, ArePassedOverWithTheReasonWhereTheyCannotBe) {
+  say(heard_, {"slide"}, {2 * k_joint_position_max});
+  robot_.update(heard_);
+  EXPECT_TRUE(stands_at(0.02));
+  EXPECT_EQ(robot_.passed_over(), 1);
+  EXPECT_EQ(robot_.lacking(), nullptr);
+  EXPECT_EQ(robot_.unusable(), Reason::out_of_range);
 }
 
 TEST_F(HeardJointsOfASlide, PoseItByTheNewestStateOnceAndWithoutMemory) {
