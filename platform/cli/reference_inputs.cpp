@@ -5,6 +5,7 @@
 #include "platform/cli/progress.hpp"
 #include "platform/dds/topic_names.hpp"
 #include "platform/input_error.hpp"
+#include "platform/reference/camera_info.hpp"
 
 namespace glint {
 namespace {
@@ -16,6 +17,15 @@ Pose checked(const Pose& pose, const std::string& what) {
     throw InputError(what + ": expected x,y,z,roll,pitch,yaw in metres and radians");
   }
   return pose;
+}
+
+// A guess in a frame that is named is of the camera's, where the calibration names that.
+void check_frame(const HeardGuess& guess, const std::string& camera_file) {
+  const std::string found = guess.frame.data(), expected = read_camera_frame(camera_file);
+  if (found.empty() || expected.empty() || found == expected) return;
+  throw InputError(std::string(k_initial_pose_topic) + ": a guess in frame \"" + found +
+                   "\"; expected T_camera_base in \"" + expected + "\", the frame_id of " +
+                   camera_file);
 }
 
 }  // namespace
@@ -79,6 +89,7 @@ Pose start_of(ReferenceArguments& arguments, const AnyRobot& robot, ReferenceLis
   const Vector3& t = heard.guess.pose.translation;
   std::printf("guess      [%.3f, %.3f, %.3f] m of %s, in frame \"%s\"\n", t.x(), t.y(), t.z(),
               k_initial_pose_topic, heard.guess.frame.data());
+  check_frame(heard.guess, arguments.scene.camera);
   return checked(heard.guess.pose, k_initial_pose_topic);
 }
 

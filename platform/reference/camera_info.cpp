@@ -130,4 +130,10 @@ CameraModel read_camera_info(const std::string& path) {
   return camera;
 }
 
+std::string read_camera_frame(const std::string& path) {
+  const Entries entries = entries_of(path);
+  const Entry* frame = find(entries, {"header/frame_id"});
+  return frame == nullptr ? "" : frame->text;
+}
+
 }  // namespace glint

@@ -1,7 +1,10 @@
 // A command as its user starts it: a process whose words go into a file.
 #pragma once
 
+#include <fcntl.h>
+#include <gtest/gtest.h>
 #include <signal.h>
+#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,15 +26,15 @@ class CommandProcess {
     std::vector<char*> words;
     for (std::string& argument : arguments) words.push_back(argument.data());
     words.push_back(nullptr);
-    process_ = fork();
-    if (process_ != 0) return;
-    if (std::freopen(log_.c_str(), "w", stdout) != nullptr && dup2(1, 2) == 2) {
-      execv(words[0], words.data());
-    }
-    _exit(127);
+    posix_spawn_file_actions_t outputs;
+    posix_spawn_file_actions_init(&outputs);
+    posix_spawn_file_actions_addopen(&outputs, 1, log_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    posix_spawn_file_actions_adddup2(&outputs, 1, 2);
+    EXPECT_EQ(posix_spawn(&process_, words[0], &outputs, nullptr, words.data(), environ), 0);
+    posix_spawn_file_actions_destroy(&outputs);
   }
   ~CommandProcess() {
-    if (has_ended()) return;
+    if (process_ < 0 || has_ended()) return;
     kill(process_, SIGKILL);
     waitpid(process_, nullptr, 0);
   }

@@ -22,6 +22,7 @@ class ReferenceCommand : public DdsTest {
     const SceneFrame frame = post_arm_scene(robot, k_shown_positions).front();
     files_.write("depth.npy", npy_float32_bytes({{120, 160}, frame.depth_m}));
     files_.write("camera.yaml",
+                 "header:\n  stamp: {sec: 0, nanosec: 0}\n  frame_id: hmd_tof_optical\n"
                  "width: 160\nheight: 120\nk: [150, 0, 79.5, 0, 150, 59.5, 0, 0, 1]\n");
   }
   [[nodiscard]] std::string path(const char* name) const { return files_.folder() + "/" + name; }
@@ -55,6 +56,23 @@ TEST_F(ReferenceCommand, FindsTheRobotThatItHearsOf) {
     EXPECT_NEAR(T[row + 3], k_post_arm_truth.translation(r), 1e-3);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(T[row + static_cast<std::size_t>(c)], turn(r, c), 3e-3);
   }
+}
+
+TEST_F(ReferenceCommand, RefusesAGuessInAnotherFrameThanItsCameras) {
+  RobotSpeaker speaker({"turn", "slide"}, k_shown_positions);
+  speaker.say_description(post_arm_xml());
+  CommandProcess command(listens("120"), path("words.txt"));
+  const int code = command.exit_code([&] {
+    speaker.say_joints();
+    speaker.say_guess(k_post_arm_guess, "map");
+  });
+  EXPECT_EQ(code, 2);
+  const std::string words = command.words();
+  EXPECT_NE(words.find("glint: rt/initialpose: a guess in frame \"map\"; expected T_camera_base in "
+                       "\"hmd_tof_optical\", the frame_id of " +
+                       path("camera.yaml")),
+            std::string::npos)
+      << words;
 }
 
 TEST_F(ReferenceCommand, EndsWithTheJointsThatNobodySaid) {

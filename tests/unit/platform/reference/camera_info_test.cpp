@@ -61,5 +61,13 @@ TEST(CameraInfo, NamesWhatIsMissingOrWrong) {
   expect_input_error([&] { (void)read_camera_info(files.folder() + "/no.yaml"); }, {"no.yaml"});
 }
 
+TEST(CameraInfo, NamesItsFrameOnlyWhereAMessageDoes) {
+  const Files files;
+  const std::string k = "width: 4\nheight: 3\nk: [2, 0, 1, 0, 2, 1, 0, 0, 1]\n";
+  const std::string header = "header:\n  stamp:\n    sec: 7\n  frame_id: 'tof_optical'\n";
+  EXPECT_EQ(read_camera_frame(files.write("message.yaml", header + k)), "tof_optical");
+  EXPECT_EQ(read_camera_frame(files.write("file.yaml", "camera_name: tof\n" + k)), "");
+}
+
 }  // namespace
 }  // namespace glint
