@@ -12,8 +12,8 @@ namespace glint {
 // integers; the model returned as integer + 0.5. Throws InputError naming file and line.
 [[nodiscard]] CameraModel read_camera_info(const std::string& path);
 
-// The frame that such a message names (header: frame_id); empty: none, as camera_calibration's file
-// has it. Throws InputError where it cannot be opened.
+// The frame that such a message names (header: frame_id); empty: none, as in a calibration file.
+// Throws InputError where it cannot be opened.
 [[nodiscard]] std::string read_camera_frame(const std::string& path);
 
 }  // namespace glint
