@@ -55,7 +55,7 @@ BoardGroups::BoardGroups(const Cell& cell, Sinks& sinks, const Clock& now,
             {sinks.can(), sinks.dds(), nullptr,
              sinks.recorder() != nullptr ? &sinks.recorder()->tick_lane() : nullptr},
             unix_offset_ns, frames, tick_runner_, frame_.overrun_notes()) {
-  frame_.tell_head_to(sinks.dds());
+  frame_.tell_transforms_to(sinks.dds());
   robot_.write_slot() = declared_robot_frame(cell);
   robot_.publish(1, 0);
   if (!cell.background) return;
@@ -63,7 +63,7 @@ BoardGroups::BoardGroups(const Cell& cell, Sinks& sinks, const Clock& now,
   background_ = std::make_unique<BackgroundGroup>(
       cell, *plan_by_rule(cell).background, nullptr, std::move(scene),
       RobotSinks{&robot_, recorder != nullptr ? &recorder->slice_lane() : nullptr,
-                 &sinks.robot_notes()});
+                 &sinks.robot_notes(), sinks.dds()});
 }
 
 void BoardGroups::process(const ArrivedFrame& arrived) noexcept {

@@ -92,8 +92,8 @@ std::shared_ptr<Participant> DdsSink::participant() const {
 }
 
 void DdsSink::write_waiting() {
-  HeadPose head;
-  while (heads_.pop(head)) publisher_->write_head(head);
+  FrameTransforms frame;
+  while (frames_.pop(frame)) publisher_->write_frame(frame);
   if (robot_.sample()) publisher_->write_robot(robot_.value());
   PoseSample sample;
   while (ring_.pop(sample)) {

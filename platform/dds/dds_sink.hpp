@@ -13,9 +13,9 @@
 
 #include "graph/latest.hpp"
 #include "graph/ring.hpp"
-#include "kernels/pose/head_pose.hpp"
 #include "kernels/wire/pose_sample.hpp"
 #include "platform/dds/dds_settings.hpp"
+#include "platform/dds/frame_transforms.hpp"
 
 namespace glint {
 
@@ -33,7 +33,7 @@ struct DdsCounts {
 class DdsSink {
  public:
   static constexpr int k_ring_capacity = 1024;  // 4 s of one tool at 250 Hz
-  static constexpr int k_head_capacity = 64;    // 1.4 s of frames
+  static constexpr int k_frame_capacity = 64;   // 1.4 s of frames
 
   // Joins the domain. Throws MissingDevice when the network interface is not there or has no IPv4
   // address, InputError when a setting is out of range or the domain is already open in this
@@ -53,9 +53,9 @@ class DdsSink {
   // From one thread only. False: the sample was dropped and counted. A tool's ticks must advance.
   bool offer(const PoseSample& sample) noexcept;
 
-  // From one other thread only: where the headset is, for tf. False: no room, and the next one will
-  // say it again.
-  bool offer_head(const HeadPose& head) noexcept { return heads_.push(head); }
+  // From one other thread only: what a frame tells tf. False: no room, and the next one will say it
+  // again.
+  bool offer_frame(const FrameTransforms& frame) noexcept { return frames_.push(frame); }
 
   // From one other thread only: where a robot that is followed now stands, for tf_static. Only the
   // newest counts.
@@ -81,7 +81,7 @@ class DdsSink {
 
   using Counter = std::atomic<std::uint64_t>;
   graph::Ring<PoseSample, k_ring_capacity> ring_;
-  graph::Ring<HeadPose, k_head_capacity> heads_;
+  graph::Ring<FrameTransforms, k_frame_capacity> frames_;
   graph::TripleBuffer<Pose> robot_;
   std::uint64_t robot_version_ = 0;
   Counter offered_{0}, refused_{0}, written_{0}, write_failed_{0}, poses_written_{0};

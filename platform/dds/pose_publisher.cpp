@@ -129,14 +129,16 @@ void PosePublisher::write_pose(const ToolStream& stream, const PoseSample& sampl
   dds_write(tf_, &tf);
 }
 
-void PosePublisher::write_head(const HeadPose& head) {
-  if (!head.valid) return;
-  TransformMessage transform =
-      transform_message(header_message(unix_time(head.time), settings_.frames.world.c_str()),
-                        settings_.frames.camera.c_str(), head.T_world_camera);
+void PosePublisher::write_frame(const FrameTransforms& frame) {
+  if (!frame.head.valid) return;
+  const FrameNames& names = settings_.frames;
+  const HeaderMessage header = header_message(unix_time(frame.head.time), names.world.c_str());
+  TransformMessage transforms[] = {
+      transform_message(header, names.camera.c_str(), frame.head.T_world_camera),
+      transform_message(header, names.robot.c_str(), frame.T_world_robot)};
   TfMessage tf{};
-  tf.transforms._length = tf.transforms._maximum = 1;
-  tf.transforms._buffer = &transform;
+  tf.transforms._length = tf.transforms._maximum = frame.robot_known ? 2 : 1;
+  tf.transforms._buffer = transforms;
   dds_write(tf_, &tf);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/pose/head_pose.hpp"
+#include "platform/dds/frame_transforms.hpp"
 #include "platform/dds/messages.hpp"
 #include "platform/dds/participant.hpp"
 #include "platform/dds/topic_names.hpp"
@@ -35,8 +35,8 @@ class PosePublisher {
   // the status, or the tick does not follow the tool's last one; then nothing is written.
   bool write(const PoseSample& sample);
 
-  // tf: world to the camera, where the head's pose is known.
-  void write_head(const HeadPose& head);
+  // tf: world to the camera and to a robot on a body, where the head's pose is known.
+  void write_frame(const FrameTransforms& frame);
 
   // tf_static: world to the robot, from now on; the other transforms as they were.
   void write_robot(const Pose& T_world_robot);

@@ -131,6 +131,7 @@ void BackgroundGroup::tell_robot(const RobotProgress& robot) noexcept {
     (void)sinks_.lane->offer_robot_frame({robot_version_, robot.time, frame.state,
                                           frame.T_world_robot, frame.rms_m, frame.in_reference});
   }
+  if (sinks_.dds != nullptr) sinks_.dds->offer_robot(frame.T_world_robot);
   if (sinks_.published == nullptr) return;
   sinks_.published->write_slot() = frame;
   sinks_.published->publish(robot_version_, robot.time.nanoseconds);

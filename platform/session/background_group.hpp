@@ -15,6 +15,7 @@
 #include "graph/latest.hpp"
 #include "nodes/mapper.hpp"
 #include "platform/cells/cell.hpp"
+#include "platform/dds/dds_sink.hpp"
 #include "platform/record/recorder.hpp"
 #include "platform/rt/followed_robot.hpp"
 #include "platform/rt/real_time_thread.hpp"
@@ -44,6 +45,7 @@ struct RobotSinks {
   graph::TripleBuffer<RobotFrame>* published = nullptr;  // holds version 1: the cell's own
   RecorderLane* lane = nullptr;
   FollowedRobotNotes* notes = nullptr;
+  DdsSink* dds = nullptr;
 };
 
 // What the cell's map is made by. Throws InputError where it would refuse a slice's bound.

@@ -33,6 +33,8 @@ FrameGroup::FrameGroup(const Cell& cell, graph::TripleBuffer<ToolSet>& tool_set,
       now_(std::move(now)),
       runner_(&runner),
       lane_(lane),
+      robot_on_body_(cell.robot_given && cell.robot_in_reference),
+      T_body_robot_(cell.T_world_robot),
       lost_after_(cell.lost_after) {
   configure(cell, *tracker_);
   tracker_->latest<ToolSet>().bind(tool_set);
@@ -43,7 +45,7 @@ void FrameGroup::process(const ArrivedFrame& arrived) noexcept {
   if (method_ != nullptr) {
     newest_ = &method_->process(arrived);
     publish(*newest_);
-    if (dds_ != nullptr) (void)dds_->offer_head(arrived.head);
+    tell_transforms(arrived.head);
     if (lane_ != nullptr) record(arrived);
     return;
   }
@@ -59,7 +61,7 @@ void FrameGroup::process(const ArrivedFrame& arrived) noexcept {
   }
   runner_->settle(*tracker_);
   if (!overrun_.happened()) *in_time_ = *newest_;
-  if (dds_ != nullptr) (void)dds_->offer_head(arrived.head);
+  tell_transforms(arrived.head);
   if (lane_ != nullptr) record(arrived);
 }
 
@@ -78,6 +80,13 @@ void FrameGroup::answer(const ArrivedFrame& arrived) noexcept {
   }
   newest_ = substitute_.get();
   (void)notes_.push({k_frame_group, overrun_});  // full: the choice records it all the same
+}
+
+void FrameGroup::tell_transforms(const HeadPose& head) const noexcept {
+  if (dds_ == nullptr) return;
+  const bool known = robot_on_body_ && newest_->reference_known;
+  (void)dds_->offer_frame(
+      {head, known, known ? newest_->T_world_reference * T_body_robot_ : Pose{}});
 }
 
 void FrameGroup::record(const ArrivedFrame& arrived) noexcept {

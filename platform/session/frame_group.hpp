@@ -27,8 +27,9 @@ class FrameGroup {
              GroupRunner<Tracker>& runner, RecorderLane* lane,
              std::unique_ptr<FrameMethod> method = nullptr);
 
-  // Where the headset is goes there, too, after each frame's estimates; null: nowhere.
-  void tell_head_to(DdsSink* dds) noexcept { dds_ = dds; }
+  // Where the headset is goes there, too, after each frame's estimates, and where the robot is
+  // that stands on the reference body; null: nowhere.
+  void tell_transforms_to(DdsSink* dds) noexcept { dds_ = dds; }
 
   // Estimates are published before anything is offered: latency first. Of a frame that was not in
   // time, what the policy says is published.
@@ -45,6 +46,7 @@ class FrameGroup {
   void publish(const Estimates& estimates) noexcept;
   void answer(const ArrivedFrame& arrived) noexcept;
   void record(const ArrivedFrame& arrived) noexcept;
+  void tell_transforms(const HeadPose& head) const noexcept;
 
   std::unique_ptr<Tracker> tracker_ = std::make_unique<Tracker>();
   graph::RateGroup<Tracker> group_;
@@ -55,6 +57,8 @@ class FrameGroup {
   GroupRunner<Tracker>* runner_;
   RecorderLane* lane_;
   DdsSink* dds_ = nullptr;
+  bool robot_on_body_;
+  Pose T_body_robot_;  // the reference body's
   Duration lost_after_;
   graph::OverrunDecision overrun_;  // of the last frame
   std::unique_ptr<Estimates> in_time_ = std::make_unique<Estimates>();

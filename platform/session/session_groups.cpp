@@ -76,13 +76,13 @@ SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, st
   robot_.write_slot() = declared_robot_frame(cell);
   robot_.publish(1, 0);
   outcomes_.resize(frames);
-  frame_.tell_head_to(sinks.dds());
+  frame_.tell_transforms_to(sinks.dds());
   if (options.plan.background) {
     Recorder* const recorder = sinks.recorder();
     background_ = std::make_unique<BackgroundGroup>(
         cell, *options.plan.background, trace, std::move(scene),
         RobotSinks{&robot_, recorder != nullptr ? &recorder->slice_lane() : nullptr,
-                   &sinks.robot_notes()});
+                   &sinks.robot_notes(), sinks.dds()});
     if (sinks.inputs() != nullptr) background_->hear(sinks.inputs()->joints());
   }
 }

@@ -52,7 +52,7 @@ DdsSettings dds_settings(const Cell& cell, std::int64_t unix_offset_ns) {
   settings.tick_period = tick_period(cell);
   settings.actuation_delay = cell.actuation_delay;
   settings.unix_minus_board = {unix_offset_ns};
-  if (cell.robot_given) {
+  if (cell.robot_given && !cell.robot_in_reference) {
     settings.static_transforms.push_back(
         {settings.frames.world, settings.frames.robot, cell.T_world_robot});
   }

@@ -13,6 +13,8 @@
 namespace glint {
 namespace {
 
+constexpr double k_given_m = 0.6;  // along x, where run_of() has the robot
+
 // The run says each second on /diagnostics what became of its pictures; that is waited for.
 class HeardJointsOfARun : public DdsTest {
  protected:
@@ -44,6 +46,22 @@ class HeardJointsOfARun : public DdsTest {
     const auto found = robot_.values.find(key);
     return found == robot_.values.end() ? 0 : std::stol(found->second);
   }
+  // Whether tf_static ever said that the robot stands elsewhere than the cell has it.
+  [[nodiscard]] bool was_moved_in_tf() const {
+    bool moved = false;
+    void* sample[1] = {nullptr};
+    dds_sample_info_t info;
+    while (dds_take(statics_, sample, &info, 1, 1) == 1) {
+      const auto* message = static_cast<const TfMessage*>(sample[0]);
+      for (std::uint32_t i = 0; info.valid_data && i < message->transforms._length; ++i) {
+        const TransformMessage& one = message->transforms._buffer[i];
+        const bool robot = std::string_view(one.child_frame_id) == "robot_base";
+        moved = moved || (robot && one.transform.translation.x != k_given_m);
+      }
+      dds_return_loan(statics_, sample, 1);
+    }
+    return moved;
+  }
   // Ctrl-C, and what the run leaves.
   [[nodiscard]] nlohmann::json end(CommandProcess& run) const {
     run.interrupt();
@@ -57,6 +75,8 @@ class HeardJointsOfARun : public DdsTest {
   dds_entity_t diagnostics_ =
       driver_.peer().reader(diagnostics_type(), k_diagnostics_topic, Reliability::reliable,
                             Durability::volatile_data, 10);
+  dds_entity_t statics_ = driver_.peer().reader(tf_type(), k_tf_static_topic, Reliability::reliable,
+                                                Durability::transient_local, 1000);
   DiagnosticEntry robot_;
 };
 
@@ -66,6 +86,7 @@ TEST_F(HeardJointsOfARun, LetItFollowWhatItCannotFollowWithoutThem) {
       [] {}, [&] { return robot_count("unsure") + robot_count("jumps_refused") >= 1; }));
   ASSERT_FALSE(run.has_ended()) << run.words();
   EXPECT_EQ(robot_count("followed"), 0);
+  EXPECT_FALSE(was_moved_in_tf());
   double slide = 0;
   const auto move = [&] {
     slide = std::min(slide + 0.01, k_slide_shown_m);
@@ -73,6 +94,7 @@ TEST_F(HeardJointsOfARun, LetItFollowWhatItCannotFollowWithoutThem) {
     driver_.say_joints();
   };
   EXPECT_TRUE(run.meanwhile(move, [&] { return robot_count("followed") >= 1; }));
+  EXPECT_TRUE(run.meanwhile([] {}, [&] { return was_moved_in_tf(); }));
   ASSERT_FALSE(run.has_ended()) << run.words();
   const nlohmann::json robot = end(run);
   EXPECT_GE(robot.at("followed"), 1);

@@ -100,10 +100,10 @@ TEST_F(Sinks, PublishWhereTheHeadsetIsWhileItKnows) {
   ASSERT_TRUE(peer.meets(sink));
   sink.start();
   HeadPose head{Time{} + milliseconds(30), false, {Quaternion::Identity(), Vector3(9, 9, 9)}};
-  EXPECT_TRUE(sink.offer_head(head));
+  EXPECT_TRUE(sink.offer_frame({head, false, {}}));
   head.valid = true;
   head.T_world_camera = {Quaternion(0.5, -0.5, 0.5, 0.5), Vector3(1, 2, 3)};
-  EXPECT_TRUE(sink.offer_head(head));
+  EXPECT_TRUE(sink.offer_frame({head, false, {}}));
   EXPECT_EQ(take<TfMessage>(reader, 1,
                             [&](const TfMessage& message) {
                               ASSERT_EQ(message.transforms._length, 1u);
@@ -114,6 +114,28 @@ TEST_F(Sinks, PublishWhereTheHeadsetIsWhileItKnows) {
                                         k_board_start.nanoseconds + 30'000'000);
                               EXPECT_EQ(seen.transform.translation.z, 3);
                               EXPECT_EQ(seen.transform.rotation.x, -0.5);
+                            }),
+            1u);
+}
+
+TEST_F(Sinks, PublishWhereARobotStandsThatIsOnABodyWithTheHeadset) {
+  DdsSink sink(test_settings());
+  Peer peer(test_settings());
+  const dds_entity_t reader =
+      peer.reader(tf_type(), k_tf_topic, Reliability::reliable, Durability::volatile_data, 100);
+  ASSERT_TRUE(peer.meets(sink));
+  sink.start();
+  const HeadPose head{Time{} + milliseconds(30), true, Pose{}};
+  EXPECT_TRUE(sink.offer_frame({head, true, {Quaternion::Identity(), Vector3(4, 5, 6)}}));
+  EXPECT_EQ(take<TfMessage>(reader, 1,
+                            [&](const TfMessage& message) {
+                              ASSERT_EQ(message.transforms._length, 2u);
+                              const TransformMessage& robot = message.transforms._buffer[1];
+                              EXPECT_STREQ(robot.header.frame_id, "hmd_world");
+                              EXPECT_STREQ(robot.child_frame_id, "robot_base");
+                              EXPECT_EQ(unix_ns(robot.header.stamp),
+                                        k_board_start.nanoseconds + 30'000'000);
+                              EXPECT_EQ(robot.transform.translation.z, 6);
                             }),
             1u);
 }
