@@ -228,6 +228,7 @@ TEST_F(Sinks, TellWhereARobotThatIsFollowedNowStandsBesideTheOtherStaticTransfor
                                           Durability::transient_local, 100);
   std::map<std::string, double> places;
   const auto hear = [&](const TfMessage& message) {
+    EXPECT_EQ(message.transforms._length, 2u);
     places.clear();
     for (std::uint32_t i = 0; i < message.transforms._length; ++i) {
       const auto& one = message.transforms._buffer[i];
