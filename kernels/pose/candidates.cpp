@@ -1,10 +1,11 @@
 #include "kernels/pose/candidates.hpp"
-#include "kernels/pose/marker_range.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
+
+#include "kernels/pose/marker_range.hpp"
 
 namespace glint {
 namespace {

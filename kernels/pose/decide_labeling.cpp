@@ -1,7 +1,8 @@
 #include "kernels/pose/decide_labeling.hpp"
-#include "kernels/pose/marker_range.hpp"
 
 #include <algorithm>
+
+#include "kernels/pose/marker_range.hpp"
 
 namespace glint {
 namespace {

@@ -168,6 +168,14 @@ std::optional<MarkerFrame> read_markers(MessageBytes bytes) {
     marker.along_y = get_vector(from);
   }
   if (from.failed()) return std::nullopt;
+  if (from.at_end()) return frame;  // and from before what a tool's own depth bias needs
+  if (from.get<std::uint32_t>() != count) return std::nullopt;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Marker& marker = frame.markers.items[i];
+    marker.bias_taken_m = from.get<float>();
+    marker.peak = from.get<std::uint16_t>();
+  }
+  if (from.failed()) return std::nullopt;
   return frame;
 }
 

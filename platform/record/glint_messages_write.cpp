@@ -76,6 +76,12 @@ void write_message(CdrWriter& to, const MarkerFrame& frame, Duration unix_offset
     put_vector(to, marker.along_x);
     put_vector(to, marker.along_y);
   }
+  to.put_length(static_cast<std::size_t>(frame.markers.count));
+  for (int i = 0; i < frame.markers.count; ++i) {
+    const Marker& marker = frame.markers.items[static_cast<std::size_t>(i)];
+    to.put(marker.bias_taken_m);
+    to.put(marker.peak);
+  }
 }
 
 void write_message(CdrWriter& to, const ChoiceRecord& choice, Duration unix_offset) {

@@ -61,12 +61,16 @@ constexpr std::array k_definitions{
     Definition{"glint_msgs/MarkerTurn",
                "geometry_msgs/Vector3 along_x  # of the ray, by a pixel\n"
                "geometry_msgs/Vector3 along_y  # of each zero: not known\n"},
+    Definition{"glint_msgs/MarkerDepth",
+               "float32 bias_taken_m  # off surface_range_m: the camera's depth bias\n"
+               "uint16 peak           # the brightest pixel, raw; 0: no image gave it\n"},
     Definition{"glint_msgs/Markers",
                "std_msgs/Header header  # middle of the exposure\n"
                "int64 mid_exposure_ns\nint64 arrival_ns\nuint32 sequence\nuint8 reason\n"
                "glint_msgs/Marker[] markers\n"
                "glint_msgs/MarkerSigma[] sigmas  # of the same; older recordings have none\n"
-               "glint_msgs/MarkerTurn[] turns    # of the same; older recordings have none\n"},
+               "glint_msgs/MarkerTurn[] turns    # of the same; older recordings have none\n"
+               "glint_msgs/MarkerDepth[] depths  # of the same; older recordings have none\n"},
     Definition{"glint_msgs/Choice",
                "std_msgs/Header header\nint64 nominal_ns\nuint64 activation\nuint8 group\n"
                "uint8 overrun  # 0: none; else 1 noticed ahead, 2 missed; plus 4 times the policy\n"

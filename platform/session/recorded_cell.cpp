@@ -18,6 +18,17 @@ Vector3 vector_of(const json& item) {
   return Vector3(item.at(0).get<double>(), item.at(1).get<double>(), item.at(2).get<double>());
 }
 
+json as_json(const DepthBias& bias) {
+  return {{"offset_m", bias.offset_m},
+          {"per_metre", bias.per_metre},
+          {"dim_m", bias.dim_m},
+          {"range_m", {bias.range_min_m, bias.range_max_m}}};
+}
+DepthBias bias_of(const json& item) {
+  const json& range = item.at("range_m");
+  return {item.at("offset_m"), item.at("per_metre"), item.at("dim_m"), range.at(0), range.at(1)};
+}
+
 json as_json(const ToolSet& set) {
   json tools = json::array();
   for (int t = 0; t < set.count; ++t) {
@@ -31,6 +42,7 @@ json as_json(const ToolSet& set) {
                      {"marker_radius_m", tool.marker_radius_m},
                      {"shape", tool.shape == MarkerShape::sphere ? "sphere" : "disc"},
                      {"tip_m", as_json(tool.tip_m)}});
+    if (tool.depth_bias.is_measured()) tools.back()["depth_bias"] = as_json(tool.depth_bias);
   }
   return tools;
 }
@@ -49,6 +61,7 @@ ToolSet tools_of(const json& tools, const std::string& path) {
     tool.marker_radius_m = item.at("marker_radius_m");
     tool.shape = item.at("shape") == "disc" ? MarkerShape::disc : MarkerShape::sphere;
     tool.tip_m = vector_of(item.at("tip_m"));
+    if (item.contains("depth_bias")) tool.depth_bias = bias_of(item.at("depth_bias"));
     if (const Reason reason = prepare_tool(tool); reason != Reason::none) {
       throw InputError(path + ": tools.json: tool " + name + " is " + std::string(name_of(reason)) +
                        "; expected a rigid body of markers");

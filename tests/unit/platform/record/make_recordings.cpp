@@ -94,7 +94,8 @@ void add_frame(Sample& sample, const FrameBuffer& buffer, const FrameLayout& lay
 
 void add_markers(Sample& sample, const MarkerFrame& frame) {
   sample.writer.write_markers(frame);
-  json markers = json::array(), sigmas = json::array(), turns = json::array();
+  json markers = json::array(), sigmas = json::array(), turns = json::array(),
+       depths = json::array();
   for (int i = 0; i < frame.markers.count; ++i) {
     const Marker& marker = frame.markers.items[static_cast<std::size_t>(i)];
     markers.push_back({{"ray", xyz(marker.ray)},
@@ -108,6 +109,7 @@ void add_markers(Sample& sample, const MarkerFrame& frame) {
                       {"y_px", marker.sigma_px[1]},
                       {"range_m", marker.range_sigma_m}});
     turns.push_back({{"along_x", xyz(marker.along_x)}, {"along_y", xyz(marker.along_y)}});
+    depths.push_back({{"bias_taken_m", marker.bias_taken_m}, {"peak", marker.peak}});
   }
   sample.expect("/glint/blobs", frame.arrival,
                 {{"header", sample.header(frame.mid_exposure, "hmd_tof_optical")},
@@ -117,7 +119,8 @@ void add_markers(Sample& sample, const MarkerFrame& frame) {
                  {"reason", static_cast<int>(frame.reason)},
                  {"markers", markers},
                  {"sigmas", sigmas},
-                 {"turns", turns}});
+                 {"turns", turns},
+                 {"depths", depths}});
 }
 
 void add_inputs(Sample& sample) {

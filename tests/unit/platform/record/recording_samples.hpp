@@ -80,6 +80,8 @@ inline MarkerFrame sample_markers(int count) {
     marker.range_sigma_m = 0.125F;
     marker.along_x = Vector3(0.004, 0.0, -0.003);
     marker.along_y = Vector3(0.0, 0.005 + 0.001 * i, 0.0);
+    marker.bias_taken_m = 0.0625F;
+    marker.peak = static_cast<std::uint16_t>(900 + i);
   }
   return frame;
 }

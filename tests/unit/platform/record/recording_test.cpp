@@ -156,18 +156,26 @@ TEST(Recording, GivesBackMarkersAtLevelBlobs) {
     EXPECT_EQ(a.range_sigma_m, b.range_sigma_m);
     EXPECT_EQ(a.along_x, b.along_x);
     EXPECT_EQ(a.along_y, b.along_y);
+    EXPECT_EQ(a.bias_taken_m, b.bias_taken_m);
+    EXPECT_EQ(a.peak, b.peak);
   }
 }
 
-// A message as it was written before markers had turns, and before they had sigmas: its last arrays
-// left out.
+// A message as it was written before markers had what a tool's own depth bias needs, turns, and
+// sigmas: its last arrays left out.
 TEST(Recording, ReadsMarkersOfOlderRecordings) {
   CdrWriter writer;
   write_message(writer, sample_markers(3), {});
   // Its number and three a marker, after a byte that fills up to it; its number and six a marker,
-  // with four bytes between.
-  const std::size_t sigmas = 1 + 4 + 3 * 3 * 4, turns = 4 + 4 + 3 * 6 * 8;
-  const auto all = writer.bytes();
+  // with four bytes between; its number and a float and two bytes a marker, filled up but the last.
+  const std::size_t sigmas = 1 + 4 + 3 * 3 * 4, turns = 4 + 4 + 3 * 6 * 8, depths = 4 + 2 * 8 + 6;
+  const auto message = writer.bytes();
+  const auto all = message.first(message.size() - depths);
+  const auto without_depths = read_markers(all);
+  ASSERT_TRUE(without_depths);
+  EXPECT_EQ(without_depths->markers.items[2].along_y, Vector3(0.0, 0.007, 0.0));
+  EXPECT_EQ(without_depths->markers.items[2].peak, 0);
+  EXPECT_FALSE(read_markers(message.first(message.size() - 1)));
   const auto without_turns = read_markers(all.first(all.size() - turns));
   ASSERT_TRUE(without_turns);
   EXPECT_EQ(without_turns->markers.items[2].sigma_px[0], 0.25F);

@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include "platform/cells/tool_writer.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
 
 namespace glint {
@@ -22,6 +23,29 @@ TEST_P(Replay, DecidesAlikeWithOneWorkerAndWithTwo) {
     EXPECT_EQ(result.output_sha256, run.output_sha256);
     EXPECT_EQ(result.records, run.ticks - 3);  // none before the first frame names its tools
   }
+}
+
+// What the camera's bias took off a marker's range and how bright it was must be in the recording,
+// as the tool's bias must be.
+TEST_P(Replay, TakesAToolsOwnDepthBiasOff) {
+  TemporaryFolder folder;
+  const std::string cell_file = folder.path() + "/cell.toml";
+  Tool own = default_cell().tools.items[0];
+  own.depth_bias = {0.004, 0.002, 0.001, 0.2, 1.2};
+  std::ofstream(folder.path() + "/own.toml") << tool_toml_text(own, "with a bias of its own");
+  std::ofstream(cell_file) << "tools = [\"own.toml\"]\n[camera.depth_bias]\noffset_mm = 3\n"
+                              "range_mm = [200, 1200]\n[record]\nlevel = \""
+                           << GetParam() << "\"\n";
+  Cell cell = load_cell(cell_file);
+  cell.realtime = false;
+  cell.workers = 1;
+  cell.simulator.duration_s = 1.0;
+  cell.dds.on = false;
+  const SessionResult run = short_run(cell, folder.path());
+  ASSERT_GT(run.accuracy.poses, 30);
+  const ReplayResult result = replay(run.recording_file, {});
+  EXPECT_TRUE(result.agrees()) << result.mismatches << " differ, first " << result.first_mismatch;
+  EXPECT_EQ(result.output_sha256, run.output_sha256);
 }
 
 INSTANTIATE_TEST_SUITE_P(AtEveryLevel, Replay, testing::Values("full", "roi", "blobs", "outputs"),
