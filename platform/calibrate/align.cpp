@@ -1,11 +1,11 @@
 #include "platform/calibrate/align.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "platform/calibrate/align_refine.hpp"
 #include "platform/calibrate/align_start.hpp"
+#include "platform/calibrate/largest_sigma.hpp"
 #include "platform/calibrate/robust.hpp"
 #include "platform/calibrate/say.hpp"
 #include "platform/calibrate/smooth_series.hpp"
@@ -17,9 +17,8 @@ namespace {
 constexpr double k_grid_s = 0.01;
 constexpr double k_contrast_shift_s = 0.1;
 constexpr std::size_t k_start_samples = 200;  // of the grid search
-constexpr double k_inlier_chi_square = 22.5;  // of 6 components: one good sample in 1000 goes
-constexpr double k_position_sigma_min_m = 1e-6;
-constexpr double k_rotation_sigma_min_rad = 1e-6;
+constexpr double k_alignment_sigma_min_m = 1e-6;
+constexpr double k_alignment_sigma_min_rad = 1e-6;
 constexpr int k_refinements = 3;
 
 std::vector<StampedPose> thinned(std::span<const StampedPose> poses) {
@@ -74,26 +73,13 @@ Noise noise_of(std::span<const AlignSample> samples, const AlignStart& start) {
       rotation.push_back(turn[axis]);
     }
   }
-  return {std::max(sigma_of(position), k_position_sigma_min_m),
-          std::max(sigma_of(rotation), k_rotation_sigma_min_rad)};
+  return {std::max(sigma_of(position), k_alignment_sigma_min_m),
+          std::max(sigma_of(rotation), k_alignment_sigma_min_rad)};
 }
 
 double chi_square(const AlignSample& sample, const AlignStart& start, const Noise& noise) {
   return align_miss(sample, start).squaredNorm() / (noise.position_m * noise.position_m) +
          align_turn(sample, start).squaredNorm() / (noise.rotation_rad * noise.rotation_rad);
-}
-
-std::vector<AlignSample> kept_of(std::span<const AlignSample> samples,
-                                 const std::vector<bool>& kept) {
-  std::vector<AlignSample> result;
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    if (kept[i]) result.push_back(samples[i]);
-  return result;
-}
-
-double largest_sigma(const Matrix3& covariance) {
-  return std::sqrt(
-      std::max(0.0, Eigen::SelfAdjointEigenSolver<Matrix3>(covariance).eigenvalues().maxCoeff()));
 }
 
 void check_turns(const AlignResult& result, const AlignSettings& settings,
@@ -164,7 +150,7 @@ AlignResult align_series(std::span<const StampedPose> poses, std::span<const Sta
     for (AlignSample& sample : samples) {
       sample.position_sigma_m = noise.position_m;
       sample.rotation_sigma_rad = noise.rotation_rad;
-      result.kept.push_back(chi_square(sample, start, noise) <= k_inlier_chi_square);
+      result.kept.push_back(chi_square(sample, start, noise) <= k_chi_square_of_six);
     }
     fit = round == 0 ? refined_alignment(samples, start, settings.lever_arm, AlignLoss::cauchy)
                      : refined_alignment(kept_of(samples, result.kept), start, settings.lever_arm,

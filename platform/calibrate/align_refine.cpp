@@ -5,12 +5,12 @@
 #include <Eigen/Eigenvalues>
 
 #include "platform/calibrate/pose_block.hpp"
+#include "platform/calibrate/robust.hpp"
 
 namespace glint {
 namespace {
 
-constexpr int k_iterations_max = 100;
-constexpr double k_cauchy_sigmas = 3;
+constexpr int k_alignment_iterations_max = 100;
 // Of the information scaled to a diagonal of one: what is smaller is not determined.
 constexpr double k_eigenvalue_min = 1e-10;
 constexpr std::size_t k_block_residuals = 6 * 5;  // five samples' noise may hang together
@@ -104,7 +104,7 @@ AlignFit refined_alignment(std::span<const AlignSample> samples, const AlignStar
 
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-  solver.max_num_iterations = k_iterations_max;
+  solver.max_num_iterations = k_alignment_iterations_max;
   solver.function_tolerance = 1e-12;
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;

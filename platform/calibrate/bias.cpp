@@ -13,9 +13,8 @@
 namespace glint {
 namespace {
 
-constexpr double k_speed_window_s = 0.1;      // to both sides
-constexpr double k_inlier_chi_square = 22.5;  // of 6 components: one good sample in 1000 goes
-constexpr double k_sigma_min = 1e-9;          // metres and radians: the samples are all alike
+constexpr double k_speed_window_s = 0.1;  // to both sides
+constexpr double k_sigma_min = 1e-9;      // metres and radians: the samples are all alike
 
 Time later(Time time, double seconds) {
   return time + Duration{static_cast<std::int64_t>(std::llround(1e9 * seconds))};
@@ -212,7 +211,7 @@ BiasResult calibrate_bias(std::span<const StampedPose> poses,
   const Middle middle = robust_middle(errors);
   for (const Vector6& error : errors) {
     const double square = (error - middle.value).cwiseQuotient(middle.sigma).squaredNorm();
-    result.kept.push_back(square <= k_inlier_chi_square);
+    result.kept.push_back(square <= k_chi_square_of_six);
     if (result.kept.back()) near.push_back(error);
   }
   result.outliers = result.samples - static_cast<int>(near.size());

@@ -3,12 +3,12 @@
 #include "kernels/calibrate/marker_residual.hpp"
 #include "platform/calibrate/bundle.hpp"
 #include "platform/calibrate/pose_block.hpp"
+#include "platform/calibrate/robust.hpp"
 
 namespace glint {
 namespace {
 
-constexpr int k_iterations_max = 100;
-constexpr double k_cauchy_sigmas = 3;
+constexpr int k_bundle_iterations_max = 100;
 constexpr double k_unit_m = 1e-3;  // residuals in millimetres: near one
 
 struct MarkerCost {
@@ -54,7 +54,7 @@ Bundle refined_bundle(Bundle start, std::span<const LabelledPoint> points, doubl
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_SCHUR;
   solver.linear_solver_ordering.reset(order);
-  solver.max_num_iterations = k_iterations_max;
+  solver.max_num_iterations = k_bundle_iterations_max;
   solver.function_tolerance = 1e-10;
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;

@@ -10,7 +10,7 @@
 namespace glint {
 namespace {
 
-constexpr double k_pixel_sigma_px = 0.1;   // declared of a blob that tells none
+constexpr double k_untold_sigma_px = 0.1;  // declared of a blob that tells none
 constexpr double k_range_sigma_m = 0.003;  // likewise
 constexpr double k_range_sigma_min_m = 1e-6;
 constexpr double k_low = 0.05, k_high = 0.95;  // of what was seen
@@ -40,8 +40,8 @@ DepthSample sample_of(const SeenMarker& seen, const Tool& tool, Brightness brigh
   if (brightness == Brightness::estimated)
     sample.dimness = DepthBias::k_reference_counts / std::max(seen.blob.peak, 1.0);
   const auto known = [](double sigma, double otherwise) { return sigma > 0 ? sigma : otherwise; };
-  sample.sigma_x_px = known(seen.blob.sigma_x_px, k_pixel_sigma_px);
-  sample.sigma_y_px = known(seen.blob.sigma_y_px, k_pixel_sigma_px);
+  sample.sigma_x_px = known(seen.blob.sigma_x_px, k_untold_sigma_px);
+  sample.sigma_y_px = known(seen.blob.sigma_y_px, k_untold_sigma_px);
   sample.sigma_range_m = known(seen.blob.sigma_range_m, k_range_sigma_m);
   return sample;
 }

@@ -8,13 +8,13 @@
 
 #include "platform/calibrate/correlation.hpp"
 #include "platform/calibrate/pose_block.hpp"
+#include "platform/calibrate/robust.hpp"
 
 namespace glint {
 namespace {
 
-constexpr int k_iterations_max = 50;
-constexpr double k_cauchy_sigmas = 3;
-constexpr double k_eigenvalue_min = 1e-10;  // of the information scaled to a diagonal of one
+constexpr int k_depth_iterations_max = 50;
+constexpr double k_bias_eigenvalue_min = 1e-10;  // of the information scaled to a diagonal of one
 
 struct DepthCost {
   DepthSample sample;
@@ -94,7 +94,7 @@ void judge(const std::vector<RangedFrame>& frames, Brightness brightness, DepthF
   const Vector3 unit = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Matrix3 scaled = unit.asDiagonal() * information * unit.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Matrix3> solver(scaled);
-  fit.determined = solver.eigenvalues()[0] > k_eigenvalue_min;
+  fit.determined = solver.eigenvalues()[0] > k_bias_eigenvalue_min;
   if (!fit.determined) return;
   const Matrix3 root = solver.operatorInverseSqrt();
   for (Vector3& score : scores) score = root * (unit.asDiagonal() * score);
@@ -142,7 +142,7 @@ DepthFit refined_depth(std::vector<RangedFrame>& frames, const Vector3& start,
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_SCHUR;
   solver.linear_solver_ordering.reset(order);
-  solver.max_num_iterations = k_iterations_max;
+  solver.max_num_iterations = k_depth_iterations_max;
   solver.function_tolerance = 1e-12;
   solver.parameter_tolerance = 1e-12;
   solver.logging_type = ceres::SILENT;

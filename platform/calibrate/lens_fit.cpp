@@ -14,7 +14,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_iterations_max = 200;
+constexpr int k_lens_iterations_max = 200;
 constexpr std::size_t k_fitted_max = 20'000;  // of the rays; all of them are judged
 constexpr std::size_t k_rays_min = 1'000;
 constexpr double k_pinhole_tangent = 0.36;  // 20 degrees: so far any lens is a pinhole, to begin
@@ -107,7 +107,7 @@ Lens12 fitted(const std::vector<SeenRay>& rays, Lens12 lens) {
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = k_iterations_max;
+  options.max_num_iterations = k_lens_iterations_max;
   options.function_tolerance = 1e-12;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;

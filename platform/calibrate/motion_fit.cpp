@@ -8,7 +8,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_iterations_max = 60;
+constexpr int k_motion_iterations_max = 60;
 constexpr double k_log_most = 9.2;     // of either unknown from the start: a factor of 10^4
 constexpr double k_difference = 0.05;  // of a logarithm, for the likelihood's curvature
 // What is known beforehand of the damping, 1 sigma of its logarithm around the start: where motion
@@ -108,7 +108,7 @@ MotionFit most_likely(const MotionSeries& series, MotionPart part, const MotionU
   const ceres::GradientProblem problem(new Cost(series, part, start, settings, evaluated));
   ceres::GradientProblemSolver::Options options;
   options.line_search_direction_type = ceres::BFGS;
-  options.max_num_iterations = k_iterations_max;
+  options.max_num_iterations = k_motion_iterations_max;
   options.function_tolerance = 1e-7;
   options.gradient_tolerance = 1e-6;
   options.logging_type = ceres::SILENT;

@@ -1,19 +1,20 @@
 #include "platform/calibrate/pivot.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "platform/calibrate/correlation.hpp"
+#include "platform/calibrate/largest_sigma.hpp"
 #include "platform/calibrate/pivot_linear.hpp"
 #include "platform/calibrate/pivot_refine.hpp"
+#include "platform/calibrate/robust.hpp"
 #include "platform/calibrate/say.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {
 namespace {
 
-constexpr int k_first_look =
+constexpr int k_pivot_first_look =
     k_pivot_noise_poses_min;  // poses before the tip's sigma is first looked at
 constexpr int k_refine_rounds = 3;
 
@@ -35,14 +36,6 @@ void set_noise(std::vector<PivotSample>& samples, const PivotNoise& noise) {
 double chi_square(const PivotSample& sample, const PivotPoint& point) {
   const Vector3 miss = pivot_miss(sample, point);
   return miss.dot(miss_covariance(sample, point).llt().solve(miss));
-}
-
-template <class Item>
-std::vector<Item> kept_of(const std::vector<Item>& items, const std::vector<bool>& kept) {
-  std::vector<Item> result;
-  for (std::size_t i = 0; i < items.size(); ++i)
-    if (kept[i]) result.push_back(items[i]);
-  return result;
 }
 
 std::vector<bool> near_ones(const std::vector<PivotSample>& samples, const PivotPoint& point,
@@ -72,11 +65,6 @@ Matrix3 tip_covariance(const std::vector<PivotSample>& kept, const PivotPoint& p
   return information.inverse().topLeftCorner<3, 3>() * (sum / freedom);
 }
 
-double largest_sigma(const Matrix3& covariance) {
-  return std::sqrt(
-      std::max(0.0, Eigen::SelfAdjointEigenSolver<Matrix3>(covariance).eigenvalues().maxCoeff()));
-}
-
 // Whether the beginning of the series is enough for the wanted sigma; by the linear start alone.
 bool enough(const std::vector<PivotSample>& samples, std::span<const StampedPose> poses,
             const PivotSettings& settings) {
@@ -85,7 +73,7 @@ bool enough(const std::vector<PivotSample>& samples, std::span<const StampedPose
   set_noise(known, pivot_noise(known, point));
   const std::vector<bool> near = near_ones(known, point, settings.inlier_chi_square);
   const std::vector<PivotSample> kept = kept_of(known, near);
-  const std::vector<StampedPose> moved = kept_of(std::vector(poses.begin(), poses.end()), near);
+  const std::vector<StampedPose> moved = kept_of(poses, near);
   if (kept.size() < static_cast<std::size_t>(k_pivot_poses_min) ||
       rotation_spread(moved).spread_rad[0] < settings.spread_min_rad)
     return false;
@@ -95,7 +83,7 @@ bool enough(const std::vector<PivotSample>& samples, std::span<const StampedPose
 
 std::size_t poses_needed(std::span<const StampedPose> poses, const PivotSettings& settings) {
   if (settings.stop_sigma_m <= 0) return poses.size();
-  for (std::size_t n = k_first_look; n < poses.size(); n += n / 4) {
+  for (std::size_t n = k_pivot_first_look; n < poses.size(); n += n / 4) {
     if (enough(samples_of(poses.first(n), settings.centre_m), poses.first(n), settings)) return n;
   }
   return poses.size();
@@ -141,8 +129,7 @@ PivotResult calibrate_pivot(std::span<const StampedPose> poses, const PivotSetti
   for (int round = 0; round < k_refine_rounds; ++round) {
     set_noise(samples, few ? pivot_noise_alike(samples, point) : pivot_noise(samples, point));
     result.kept = near_ones(samples, point, gate);
-    const std::vector<StampedPose> moved =
-        kept_of(std::vector(poses.begin(), poses.end()), result.kept);
+    const std::vector<StampedPose> moved = kept_of(poses, result.kept);
     result.spread = rotation_spread(moved);
     check_motion(result, settings, what);
     point = few          ? plain_pivot(kept_of(samples, result.kept))

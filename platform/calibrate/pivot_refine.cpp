@@ -4,11 +4,12 @@
 
 #include <vector>
 
+#include "platform/calibrate/robust.hpp"
+
 namespace glint {
 namespace {
 
-constexpr int k_iterations_max = 50;
-constexpr double k_cauchy_sigmas = 3;
+constexpr int k_pivot_iterations_max = 50;
 
 struct PivotCost {
   PivotSample sample;
@@ -55,7 +56,7 @@ PivotPoint refined_pivot(std::span<const PivotSample> samples, const PivotPoint&
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_SCHUR;
   solver.linear_solver_ordering.reset(order);
-  solver.max_num_iterations = k_iterations_max;
+  solver.max_num_iterations = k_pivot_iterations_max;
   solver.function_tolerance = 1e-12;
   solver.parameter_tolerance = 1e-12;
   solver.logging_type = ceres::SILENT;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "platform/calibrate/correlation.hpp"
+#include "platform/calibrate/largest_sigma.hpp"
 #include "platform/calibrate/robust.hpp"
 #include "platform/calibrate/say.hpp"
 #include "platform/calibrate/spin_refine.hpp"
@@ -13,7 +14,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_first_look = 30;  // poses before the sigma is first looked at
+constexpr int k_spin_first_look = 30;  // poses before the sigma is first looked at
 constexpr double k_outlier_sigmas = 4;
 constexpr double k_wobble_sigma_min_rad = 1e-7;
 constexpr int k_start_rounds = 3;
@@ -24,14 +25,6 @@ std::vector<Vector3> misses_of(std::span<const StampedPose> poses, const SpinAxi
     misses.push_back(pose.pose.rotation * axis.tool - axis.tracker);
   }
   return misses;
-}
-
-std::vector<StampedPose> kept_of(std::span<const StampedPose> poses,
-                                 const std::vector<bool>& kept) {
-  std::vector<StampedPose> result;
-  for (std::size_t i = 0; i < poses.size(); ++i)
-    if (kept[i]) result.push_back(poses[i]);
-  return result;
 }
 
 // The direction that moved least, and where it pointed on average.
@@ -83,11 +76,6 @@ Matrix3 axis_covariance(std::span<const StampedPose> poses, const SpinAxis& axis
   return tool * information.inverse().topLeftCorner<2, 2>() * tool.transpose() * variance;
 }
 
-double largest_sigma(const Matrix3& covariance) {
-  return std::sqrt(
-      std::max(0.0, Eigen::SelfAdjointEigenSolver<Matrix3>(covariance).eigenvalues().maxCoeff()));
-}
-
 // The tool's point nearest to its origin that stays on one line along the axis: of the normal
 // equations' solutions, which are free along the axis, the shortest.
 void find_foot(std::span<const StampedPose> poses, const SpinAxis& axis, SpinResult& result) {
@@ -131,7 +119,7 @@ std::vector<Quaternion> rotations_of(std::span<const StampedPose> poses) {
 
 std::size_t poses_needed(std::span<const StampedPose> poses, const SpinSettings& settings) {
   if (settings.stop_sigma_rad <= 0) return poses.size();
-  for (std::size_t n = k_first_look; n < poses.size(); n += n / 4) {
+  for (std::size_t n = k_spin_first_look; n < poses.size(); n += n / 4) {
     const SpinAxis axis = robust_start(poses.first(n), settings.towards_m);
     const std::vector<Vector3> misses = misses_of(poses.first(n), axis);
     const std::vector<StampedPose> kept = kept_of(poses.first(n), near_ones(misses));

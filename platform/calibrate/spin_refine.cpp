@@ -3,12 +3,12 @@
 #include <ceres/ceres.h>
 
 #include "kernels/calibrate/axis_residual.hpp"
+#include "platform/calibrate/robust.hpp"
 
 namespace glint {
 namespace {
 
-constexpr int k_iterations_max = 50;
-constexpr double k_cauchy_sigmas = 3;
+constexpr int k_spin_iterations_max = 50;
 
 struct AxisCost {
   Quaternion rotation;
@@ -39,7 +39,7 @@ SpinAxis refined_axis(std::span<const Quaternion> rotations, const SpinAxis& sta
   problem.SetManifold(axis.tracker.data(), new ceres::SphereManifold<3>);
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
-  solver.max_num_iterations = k_iterations_max;
+  solver.max_num_iterations = k_spin_iterations_max;
   solver.function_tolerance = 1e-14;
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;

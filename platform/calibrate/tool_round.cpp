@@ -9,7 +9,6 @@
 namespace glint {
 namespace {
 
-constexpr double k_inlier_chi_square = 16.3;  // of 3 components: one good point in 1000 goes
 constexpr double k_noise_min_m = 2e-5;
 constexpr double k_cluster_noises = 6;
 constexpr double k_cluster_radius_min_m = 0.002;
@@ -24,7 +23,7 @@ double robust_noise(const ToolRound& round) {
 }
 
 void drop_outliers(ToolRound& round) {
-  const double limit = std::sqrt(k_inlier_chi_square) * robust_noise(round);
+  const double limit = std::sqrt(k_chi_square_of_three) * robust_noise(round);
   std::erase_if(round.points, [&](const LabelledPoint& point) {
     return bundle_miss(round.bundle, point).norm() > limit;
   });

@@ -1,10 +1,10 @@
 #include "platform/experiments/alignment.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <vector>
 
 #include "kernels/motion/interpolate.hpp"
+#include "platform/calibrate/robust.hpp"
 
 namespace glint {
 namespace {
@@ -12,15 +12,9 @@ namespace {
 constexpr int k_rounds = 5;  // the set that counts stands still after two or three
 constexpr double k_medians_kept = 3;
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Keeps what lies within k_medians_kept times the median distance.
 std::vector<bool> near_ones(const std::vector<double>& distances) {
-  const double limit = k_medians_kept * median(distances);
+  const double limit = k_medians_kept * median_of(distances);
   std::vector<bool> kept;
   for (const double distance : distances) kept.push_back(distance <= limit);
   return kept;

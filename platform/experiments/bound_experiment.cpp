@@ -46,7 +46,7 @@ std::string name_of(const BoundCase& c) {
 }
 
 // What one method's poses are, beside the truth and the bound.
-struct Errors {
+struct BoundErrors {
   std::string method;
   std::int64_t frames = 0, found = 0, flips = 0;
   double position = 0, tip = 0, rotation = 0;  // sums of squares
@@ -83,7 +83,7 @@ double nees_of(const RefinedPose& refined, const Pose& truth, const Vector3& tip
   return factor ? error.dot(factor.value.solve(error)) / 6 : 1e9;
 }
 
-ExperimentCase case_of(const BoundCase& c, const Errors& errors, bool judged) {
+ExperimentCase case_of(const BoundCase& c, const BoundErrors& errors, bool judged) {
   const bool glint = errors.method == "glint";
   const Bar ratio = glint && judged ? Bar::at_most(k_above_bound_most) : Bar::none();
   ExperimentCase out{name_of(c), errors.method, errors.found, {}};
@@ -113,7 +113,7 @@ ExperimentCase case_of(const BoundCase& c, const Errors& errors, bool judged) {
 }
 
 struct Methods {
-  Errors glint{"glint"}, svd{"svd"}, seed{"seed"};
+  BoundErrors glint{"glint"}, svd{"svd"}, seed{"seed"};
 };
 
 void try_sample(const BoundCase& c, const Camera& camera, SampleNumbers& numbers,
@@ -138,7 +138,7 @@ void try_sample(const BoundCase& c, const Camera& camera, SampleNumbers& numbers
   }
   const Matrix6 tip_bound = cramer_rao_bound(camera, tool, truth, tool.tip_m, c.noise);
   const Matrix6 mean_bound = cramer_rao_bound(camera, tool, truth, marker_mean(tool), c.noise);
-  for (Errors* errors : {&methods.glint, &methods.svd, &methods.seed}) ++errors->frames;
+  for (BoundErrors* errors : {&methods.glint, &methods.svd, &methods.seed}) ++errors->frames;
   const RefinedPose refined = refine_pose(weighted, tool.tip_m, nullptr, settings.refine);
   if (refined.reason == Reason::none) {
     methods.glint.add(c.tool, drawn, refined.T_camera_tool, mean_bound, tip_bound);
@@ -185,7 +185,7 @@ CaseList run_bound(const CaseOptions& options) {
   CaseList list{"bound", {}, {}};
   for (std::size_t k = 0; k < cases.size(); ++k) {
     const Methods methods = run_case(cases[k], k, camera, samples, options.seed);
-    for (const Errors* errors : {&methods.glint, &methods.svd, &methods.seed})
+    for (const BoundErrors* errors : {&methods.glint, &methods.svd, &methods.seed})
       list.cases.push_back(case_of(cases[k], *errors, cases[k].tilt.judged && !options.quick));
     if (options.progress) options.progress(static_cast<int>(k) + 1, static_cast<int>(cases.size()));
   }
@@ -200,7 +200,7 @@ std::vector<ExperimentCase> bound_cases_at(const Camera& camera, double range_m,
   for (std::size_t k = 0; k < cases.size(); ++k) {
     if (!cases[k].tilt.judged || cases[k].range_m != range_m) continue;
     const Methods methods = run_case(cases[k], k, camera, samples, seed);
-    for (const Errors* errors : {&methods.glint, &methods.svd, &methods.seed})
+    for (const BoundErrors* errors : {&methods.glint, &methods.svd, &methods.seed})
       out.push_back(case_of(cases[k], *errors, false));
   }
   return out;

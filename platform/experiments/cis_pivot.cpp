@@ -83,7 +83,7 @@ std::vector<std::vector<Vector3>> frames_optical(const std::string& path,
   return frames;
 }
 
-struct Errors {
+struct TipErrors {
   std::vector<double> mm;
   [[nodiscard]] double mean() const {
     return std::accumulate(mm.begin(), mm.end(), 0.0) / static_cast<double>(mm.size());
@@ -92,7 +92,7 @@ struct Errors {
 };
 
 void judge_pivot(const std::string& name, const std::vector<std::vector<Vector3>>& frames,
-                 const Vector3& answer_m, CaseList& list, Errors& errors) {
+                 const Vector3& answer_m, CaseList& list, TipErrors& errors) {
   const PivotResult result = calibrate_pivot(poses_of(frames, name), {}, name);
   errors.mm.push_back(1e3 * (result.post_m - answer_m).norm());
   list.cases.push_back({name,
@@ -106,7 +106,7 @@ void judge_pivot(const std::string& name, const std::vector<std::vector<Vector3>
 
 void run_problem_1(const std::string& folder, CaseList& list) {
   const std::string ending = "-empivot.txt";
-  Errors em, optical;
+  TipErrors em, optical;
   for (const std::string& path : cis_paths(folder, ending)) {
     const std::string name = stem(path, ending), start = folder + "/" + name;
     if (!std::filesystem::exists(start + "-output1.txt")) continue;  // a case without answer
@@ -116,7 +116,7 @@ void run_problem_1(const std::string& folder, CaseList& list) {
                 answer.points_m(0, 2)[1], list, optical);
   }
   if (em.mm.empty()) return;
-  const auto add = [&](const char* name, const Errors& errors) {
+  const auto add = [&](const char* name, const TipErrors& errors) {
     list.cases.push_back({name,
                           "glint",
                           static_cast<std::int64_t>(errors.mm.size()),
@@ -151,7 +151,7 @@ void run_problem_3(const std::string& folder, CaseList& list) {
   if (paths.empty()) return;
   const std::vector<Vector3> a = body_of(folder + "/Problem3-BodyA.txt");
   const std::vector<Vector3> b = body_of(folder + "/Problem3-BodyB.txt");
-  Errors all;
+  TipErrors all;
   for (const std::string& path : paths) {
     const std::string name = stem(path, ending);
     if (!std::filesystem::exists(folder + "/" + name + "-Answer.txt")) continue;
@@ -165,7 +165,7 @@ void run_problem_3(const std::string& folder, CaseList& list) {
                        std::to_string(a.size() + b.size() - 2));
     }
     const std::vector<Vector3> answers = answer.points_m(0, count);
-    Errors errors;
+    TipErrors errors;
     for (std::size_t f = 0; f < count; ++f) {
       const std::vector<Vector3> frame = readings.points_m(f * per_frame, per_frame);
       errors.mm.push_back(1e3 * (two_body_tip(a, b, frame, path) - answers[f]).norm());

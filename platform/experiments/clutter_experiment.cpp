@@ -19,7 +19,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_frames = 2000, k_frames_quick = 60;
+constexpr int k_clutter_frames = 2000, k_clutter_frames_quick = 60;
 constexpr int k_seed_frames = 300, k_seed_frames_quick = 10;
 constexpr std::array k_strays = {0, 20, 50, 100, 200};
 constexpr int k_runs_a_blob = 8;  // as a cell file that states blobs only has it
@@ -138,7 +138,7 @@ ExperimentCase refusal(const std::string& name, const ToolSet& tools, const Bar&
 }
 
 std::vector<ClutterCase> cases_of(const CaseOptions& options) {
-  const int frames = options.quick ? k_frames_quick : k_frames;
+  const int frames = options.quick ? k_clutter_frames_quick : k_clutter_frames;
   std::vector<ClutterCase> cases;
   const ToolSet five = five_tools(options.seed);
   for (const int strays : k_strays)

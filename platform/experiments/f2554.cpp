@@ -18,7 +18,7 @@ namespace {
 constexpr int k_poses = 100;  // of each part
 constexpr int k_quick_poses = 15;
 constexpr int k_held_frames = 3;       // of each pose; the middle one is judged
-constexpr double k_turn_rad = 0.4363;  // 25 degrees to either side
+constexpr double k_roll_rad = 0.4363;  // 25 degrees to either side
 constexpr double k_grid_m = 0.05;      // between points, 3 x 3 x 2 of them
 
 // The tool in one pose after the other.
@@ -126,7 +126,7 @@ ExperimentCase distance_case(std::size_t poses, const std::vector<TipPair>& tips
 }
 
 // Evenly from one side to the other.
-double swing(int i, int count) { return k_turn_rad * (2.0 * i / std::max(count - 1, 1) - 1); }
+double swing(int i, int count) { return k_roll_rad * (2.0 * i / std::max(count - 1, 1) - 1); }
 
 Vector3 grid_point(int i) { return k_grid_m * Vector3(i % 3 - 1, i / 3 % 3 - 1, i / 9 % 2 - 0.5); }
 
@@ -148,7 +148,7 @@ CaseList run_f2554(const CaseOptions& options) {
   const sim::RandomKey key{options.seed, sim::Stream::hand, 0};
   std::vector<Pose> poses;
   for (int i = 0; i < count; ++i) {
-    const Vector3 by = 0.5 * k_turn_rad * sim::gaussian_vector(key, static_cast<std::uint64_t>(i));
+    const Vector3 by = 0.5 * k_roll_rad * sim::gaussian_vector(key, static_cast<std::uint64_t>(i));
     poses.push_back(turned(rest, tool.tip_m, tip_world, by));
   }
   list.cases.push_back(point_case("single point", poses.size(), run(poses), &plots[0]));
@@ -164,7 +164,7 @@ CaseList run_f2554(const CaseOptions& options) {
   poses.clear();
   for (int i = 0; i < count; ++i) {
     const Vector3 by =
-        0.2 * k_turn_rad * sim::gaussian_vector(key, static_cast<std::uint64_t>(1000 + i));
+        0.2 * k_roll_rad * sim::gaussian_vector(key, static_cast<std::uint64_t>(1000 + i));
     poses.push_back(turned(rest, tool.tip_m, tip_world + grid_point(i), by));
   }
   list.cases.push_back(distance_case(poses.size(), run(poses)));

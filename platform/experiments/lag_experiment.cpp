@@ -14,22 +14,22 @@ namespace glint {
 namespace {
 
 constexpr double k_speed_m_s = 0.5, k_turn_rad_s = 90 / k_degrees_per_radian;
-constexpr double k_tilt_rad = 30 / k_degrees_per_radian;
+constexpr double k_lag_tilt_rad = 30 / k_degrees_per_radian;
 constexpr int k_still_frames = 90;   // 2 s
 constexpr int k_moving_frames = 28;  // 0.6 s: then it is as near to the camera as it may come
-constexpr int k_runs = 1000, k_quick_runs = 40;
+constexpr int k_lag_runs = 1000, k_lag_quick_runs = 40;
 
-// Errors by frame after the start, in axes that begin with the run's own direction of motion.
+// LagErrors by frame after the start, in axes that begin with the run's own direction of motion.
 struct FrameErrors {
   Vector6 sum = Vector6::Zero(), squares = Vector6::Zero();
 };
-using Errors = std::array<FrameErrors, k_moving_frames>;
+using LagErrors = std::array<FrameErrors, k_moving_frames>;
 
-void one_start(const std::vector<Vector3>& model, const PointNoise& noise, Errors& errors) {
+void one_start(const std::vector<Vector3>& model, const PointNoise& noise, LagErrors& errors) {
   const PointCamera camera;
   ToolMotion motion;
   motion.settings = EstimatorSettings{}.motion;
-  const Pose start = held_pose(k_tilt_rad, noise.seed, noise.run);
+  const Pose start = held_pose(k_lag_tilt_rad, noise.seed, noise.run);
   const Vector3 ahead = direction(noise.seed, noise.run, 1);
   const Vector3 axis = direction(noise.seed, noise.run, 2);
   const Quaternion along = Quaternion::FromTwoVectors(ahead, Vector3::UnitX());
@@ -59,7 +59,7 @@ struct Worst {
 };
 
 // The largest at `seconds` after the start or later.
-Worst worst_after(const Errors& errors, double seconds, int runs) {
+Worst worst_after(const LagErrors& errors, double seconds, int runs) {
   Worst worst;
   for (int frame = 0; frame < k_moving_frames; ++frame) {
     if ((frame_time(frame) - Time{}).seconds() < seconds) continue;
@@ -75,9 +75,9 @@ Worst worst_after(const Errors& errors, double seconds, int runs) {
 
 ExperimentCase start_case(const CaseOptions& options, const std::string& name, double noise_share,
                           double after_s, std::array<double, 2> limits) {
-  const int runs = options.quick ? k_quick_runs : k_runs;
+  const int runs = options.quick ? k_lag_quick_runs : k_lag_runs;
   const std::vector<Vector3> model = tool_8700339();
-  Errors errors;
+  LagErrors errors;
   for (int run = 0; run < runs; ++run) {
     one_start(model, {noise_share, options.seed, static_cast<std::uint64_t>(run)}, errors);
     if (options.progress) options.progress(run + 1, runs);

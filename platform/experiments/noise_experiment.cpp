@@ -14,10 +14,10 @@
 namespace glint {
 namespace {
 
-constexpr int k_frames = 100'000;
-constexpr int k_frames_quick = 500;
+constexpr int k_noise_frames = 100'000;
+constexpr int k_noise_frames_quick = 500;
 constexpr double k_pixel_sigma_px = 0.1;
-constexpr double k_gross_m = 0.02, k_gross_rad = 15 * k_radians_per_degree;
+constexpr double k_noise_gross_m = 0.02, k_noise_gross_rad = 15 * k_radians_per_degree;
 constexpr std::array k_noises_m = {0.0, 0.001, 0.002, 0.003, 0.005};
 
 enum class Knowledge { nothing, prior };
@@ -38,7 +38,7 @@ std::string name_of(const NoiseCase& c) {
   return text.data();
 }
 
-struct Tally {
+struct NoiseTally {
   std::int64_t frames = 0, found = 0, wrong = 0, gross = 0;
   std::int64_t hypotheses = 0, hypotheses_most = 0, full = 0;
 
@@ -50,20 +50,20 @@ struct Tally {
       const auto at = static_cast<std::size_t>(i);
       const Vector3& marker = c.tool.tool.markers_m[at];
       other = other || (labeling.marker[at] >= 0 && labeling.marker[at] != view.truth[at]);
-      far = far || (pose * marker - truth * marker).norm() > k_gross_m;
+      far = far || (pose * marker - truth * marker).norm() > k_noise_gross_m;
     }
     wrong += other ? 1 : 0;
-    gross += far || turned_by(pose, truth) > k_gross_rad ? 1 : 0;
+    gross += far || turned_by(pose, truth) > k_noise_gross_rad ? 1 : 0;
   }
 };
 
-struct Bars {
+struct NoiseBars {
   Bar found, wrong, gross;
 };
 
 // Of each in 100,000 frames.
-Bars bars_of(const NoiseCase& c) {
-  Bars bars{Bar::none(), Bar::at_most(0), Bar::none()};
+NoiseBars bars_of(const NoiseCase& c) {
+  NoiseBars bars{Bar::none(), Bar::at_most(0), Bar::none()};
   if (c.knowledge == Knowledge::prior) {
     bars.found = Bar::at_least(99.99);
     bars.gross = Bar::at_most(0);
@@ -77,9 +77,9 @@ Bars bars_of(const NoiseCase& c) {
   return bars;
 }
 
-ExperimentCase case_of(const NoiseCase& c, const std::string& method, const Tally& tally,
+ExperimentCase case_of(const NoiseCase& c, const std::string& method, const NoiseTally& tally,
                        bool judged) {
-  const Bars bars = judged ? bars_of(c) : Bars{};
+  const NoiseBars bars = judged ? bars_of(c) : NoiseBars{};
   const auto frames = static_cast<double>(tally.frames);
   return {name_of(c),
           method,
@@ -93,7 +93,7 @@ ExperimentCase case_of(const NoiseCase& c, const std::string& method, const Tall
 }
 
 struct Tallies {
-  Tally glint, svd;
+  NoiseTally glint, svd;
 };
 
 void try_frame(const NoiseCase& c, const NoisyFrame& frame, const EstimatorSettings& settings,
@@ -108,7 +108,7 @@ void try_frame(const NoiseCase& c, const NoisyFrame& frame, const EstimatorSetti
   Labelings labelings;
   (void)propose_labelings(frame.view.markers, c.tool.tool, gated,
                           predicted ? &frame.prior.T_camera_tool : nullptr, scratch, labelings);
-  for (Tally* tally : {&tallies.glint, &tallies.svd}) {
+  for (NoiseTally* tally : {&tallies.glint, &tallies.svd}) {
     ++tally->frames;
     tally->hypotheses += labelings.hypotheses;
     tally->hypotheses_most = std::max<std::int64_t>(tally->hypotheses_most, labelings.hypotheses);
@@ -147,7 +147,7 @@ CaseList run_noise(const CaseOptions& options) {
   const Camera camera = ahat_ray_table();
   const PointTool ndi = ndi_8700339(), pointer = sttar_pointer();
   const std::vector<NoiseCase> cases = cases_of(ndi, pointer);
-  const int frames = options.quick ? k_frames_quick : k_frames;
+  const int frames = options.quick ? k_noise_frames_quick : k_noise_frames;
   const auto scratch = std::make_unique<CorrespondScratch>();
   const auto frame = std::make_unique<NoisyFrame>();
   CaseList list{"noise", {}, {}};

@@ -36,10 +36,10 @@ const std::vector<NamedPredictor>& rivals() {
   return k_rivals;
 }
 
-using Errors = std::vector<PredictionError>;  // one a horizon
+using HorizonErrors = std::vector<PredictionError>;  // one a horizon
 
 ExperimentCase case_of(const char* recording, std::size_t h, const std::string& method,
-                       const Errors& errors) {
+                       const HorizonErrors& errors) {
   return {std::string(recording) + ", " + k_ahead[h],
           method,
           errors[h].n,
@@ -48,14 +48,14 @@ ExperimentCase case_of(const char* recording, std::size_t h, const std::string& 
 }
 
 void add_ratios(ExperimentCase& glint, const Shares& shares, const PredictionError& own,
-                const std::vector<Errors>& others, std::size_t h, bool judged) {
+                const std::vector<HorizonErrors>& others, std::size_t h, bool judged) {
   double position = others[0][h].position_rms_m, rotation = others[0][h].rotation_rms_rad;
   const auto bar = [&](double limit) { return judged ? Bar::at_most(limit) : Bar::none(); };
   glint.figures.push_back(
       {"position_of_linear", "", own.position_rms_m / position, bar(shares.position_of_linear)});
   glint.figures.push_back(
       {"rotation_of_linear", "", own.rotation_rms_rad / rotation, bar(shares.rotation_of_linear)});
-  for (const Errors& other : others) {
+  for (const HorizonErrors& other : others) {
     position = std::min(position, other[h].position_rms_m);
     rotation = std::min(rotation, other[h].rotation_rms_rad);
   }
@@ -74,8 +74,8 @@ CaseList run_prediction(const CaseOptions& options) {
   for (std::size_t i = 0; i < truths.size(); ++i) {
     const NoisyRecording measured = noisy(truths[i], settings, options.seed);
     GlintPredictor glint(EstimatorSettings{}.motion);
-    const Errors own = prediction_errors(measured, glint, k_horizons, settings);
-    std::vector<Errors> others;
+    const HorizonErrors own = prediction_errors(measured, glint, k_horizons, settings);
+    std::vector<HorizonErrors> others;
     for (const NamedPredictor& rival : rivals())
       others.push_back(prediction_errors(measured, *rival.make(), k_horizons, settings));
     for (std::size_t h = 0; h < k_horizons.size(); ++h) {

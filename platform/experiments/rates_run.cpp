@@ -23,7 +23,7 @@ namespace {
 
 constexpr Duration k_tick = milliseconds(4);
 constexpr Time k_never{INT64_MIN / 2};
-constexpr double k_tilt_rad = 0.5;
+constexpr double k_rates_tilt_rad = 0.5;
 constexpr std::uint64_t k_view_case = 3000;  // of the random numbers
 
 // The pen, its pose that of its markers' middle.
@@ -38,7 +38,7 @@ Tool middle_pen() {
 // A hand that rests and draws, from any place of its cycle on.
 sim::MotionPointer hand_of(const RatesRun& run) {
   sim::HandSettings settings;
-  settings.T_world_tool = held_pose(k_tilt_rad, run.seed, run.run);
+  settings.T_world_tool = held_pose(k_rates_tilt_rad, run.seed, run.run);
   const sim::RandomKey key{run.seed, sim::Stream::hand, 1};
   settings.begin_s = -settings.cycle_s * sim::uniform(key, run.run);
   return sim::hand_motion(settings, run.seed, run.run);

@@ -48,7 +48,7 @@ Pose seed_about(const Pose& truth, double shift_m, double degrees, std::uint64_t
 }
 
 // Ends beside the best known pose, and what the verdicts said of them.
-struct Tally {
+struct ReferenceTally {
   int runs = 0, accepted = 0, ambiguous = 0, right = 0, right_refused = 0, wrong_accepted = 0;
   std::vector<double> mm, degrees, sigma_mm, sigma_degrees;  // of the accepted, against `truth`
 
@@ -109,7 +109,7 @@ class Experiment {
 
   void together(const std::string& name, const std::vector<SceneFrame>& frames) {
     const Pose best = optimum(frames).T_world_base;
-    Tally tally;
+    ReferenceTally tally;
     int near_best = 0, near_published = 0;
     std::vector<double> surface, share;
     for (int i = 0; i < seeds_; ++i) {
@@ -130,7 +130,7 @@ class Experiment {
   }
 
   void far(const std::string& name, const std::vector<SceneFrame>& frames) {
-    Tally tally;
+    ReferenceTally tally;
     for (int i = 0; i < seeds_; ++i)
       tally.add(find_reference(frames, seed(0.4, 40, i), {}), scan_.published);
     add(name, seeds_, tally.verdicts());
@@ -173,7 +173,7 @@ class Experiment {
     const std::vector<SceneFrame> one{scan_.frames[number]};
     const Pose best = optimum(one).T_world_base;
     int near_best = 0;
-    Tally tally;
+    ReferenceTally tally;
     for (int i = 0; i < seeds_; ++i) {
       const Reference r = find_reference(one, seed(0.1, 10, i), {});
       near_best += apart(r.found.alignment.T_world_base, best).within(10, 1) ? 1 : 0;
@@ -193,7 +193,7 @@ class Experiment {
     SimulationSettings settings;
     settings.half_hidden = settings.mask = false;
     settings.positions = {0, -quarter, 0, -quarter, 0, 0};
-    Tally tally;
+    ReferenceTally tally;
     for (int i = 0; i < seeds_; ++i) {
       const auto number = static_cast<std::uint64_t>(i);
       const SimulatedScene scene = simulate_scene(robot, settings, options_.seed, number);
@@ -220,7 +220,7 @@ class Experiment {
   void simulated(const std::string& name, const RobotModel& robot, int views, bool mask,
                  const RobotCloud* cloud) {
     const int count = options_.quick ? k_simulated_quick : k_simulated;
-    Tally tally;
+    ReferenceTally tally;
     for (int i = 0; i < count; ++i) {
       SimulationSettings settings;
       settings.views = views;

@@ -16,15 +16,15 @@ namespace {
 constexpr double k_stroke_m = 0.1, k_stroke_rad = 40 / k_degrees_per_radian, k_stroke_s = 0.7;
 constexpr double k_stop_s = 1.0;
 constexpr std::array<double, 2> k_after_s = {0.5, 2.0};
-constexpr int k_frames = 138;  // to just over 2 s after the stop
-constexpr int k_runs = 1000, k_quick_runs = 40;
+constexpr int k_rest_frames = 138;  // to just over 2 s after the stop
+constexpr int k_rest_runs = 1000, k_rest_quick_runs = 40;
 
-struct Bars {
+struct RestBars {
   double tilt_deg;
   std::array<double, 2> rotation_deg;
 };
 constexpr std::array<double, 2> k_position_mm = {0.15, 0.075};
-constexpr std::array<Bars, 3> k_cases = {
+constexpr std::array<RestBars, 3> k_cases = {
     {{0, {0.35, 0.20}}, {25, {0.25, 0.12}}, {45, {0.25, 0.12}}}};
 
 struct Sums {
@@ -55,7 +55,7 @@ void one_rest(const std::vector<Vector3>& model, double tilt_rad, const PointNoi
   const Vector3 from = k_stroke_m * direction(noise.seed, noise.run, 1);
   const Vector3 turned = k_stroke_rad * direction(noise.seed, noise.run, 2);
   std::size_t taken = 0;
-  for (int frame = 0; frame < k_frames; ++frame) {
+  for (int frame = 0; frame < k_rest_frames; ++frame) {
     const Time time = frame_time(frame);
     const double seconds = (time - Time{}).seconds();
     const double left = 1 - sim::smooth_step(seconds, k_stop_s - k_stroke_s, k_stroke_s);
@@ -75,11 +75,11 @@ void one_rest(const std::vector<Vector3>& model, double tilt_rad, const PointNoi
 }  // namespace
 
 CaseList run_rest(const CaseOptions& options) {
-  const int runs = options.quick ? k_quick_runs : k_runs;
+  const int runs = options.quick ? k_rest_quick_runs : k_rest_runs;
   const std::vector<Vector3> model = tool_8700339();
   CaseList list{"rest", {}, {}};
   int done = 0;
-  for (const Bars& bars : k_cases) {
+  for (const RestBars& bars : k_cases) {
     Results results;
     for (int run = 0; run < runs; ++run) {
       one_rest(model, bars.tilt_deg / k_degrees_per_radian,

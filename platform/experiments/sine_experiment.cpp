@@ -12,43 +12,43 @@
 namespace glint {
 namespace {
 
-constexpr double k_tilt_rad = 25 / k_degrees_per_radian;
+constexpr double k_sine_tilt_rad = 25 / k_degrees_per_radian;
 constexpr double k_swing_rad_s = 2 * 6.283185307179586;
-constexpr Duration k_ahead = milliseconds(25);
-constexpr int k_frames = 225, k_first_judged = 45;
-constexpr int k_runs = 100, k_quick_runs = 10;
+constexpr Duration k_sine_ahead = milliseconds(25);
+constexpr int k_sine_frames = 225, k_first_judged = 45;
+constexpr int k_sine_runs = 100, k_sine_quick_runs = 10;
 
-struct Swing {
+struct SineSwing {
   const char* name;
   int axis;
   double amplitude_m;
   double bar_mm;
 };
-constexpr Swing k_swings[] = {{"+-50 mm lateral", 0, 0.05, 1.8},
-                              {"+-50 mm axial", 2, 0.05, 3.1},
-                              {"+-25 mm lateral", 0, 0.025, 1.3},
-                              {"+-25 mm axial", 2, 0.025, 2.2}};
+constexpr SineSwing k_swings[] = {{"+-50 mm lateral", 0, 0.05, 1.8},
+                                  {"+-50 mm axial", 2, 0.05, 3.1},
+                                  {"+-25 mm lateral", 0, 0.025, 1.3},
+                                  {"+-25 mm axial", 2, 0.025, 2.2}};
 
-Pose swung(const Pose& middle, const Swing& swing, double phase, Time time) {
+Pose swung(const Pose& middle, const SineSwing& swing, double phase, Time time) {
   Pose pose = middle;
   const double angle = k_swing_rad_s * (time - Time{}).seconds() + phase;
   pose.translation[swing.axis] += swing.amplitude_m * sine_cosine(angle).sine;
   return pose;
 }
 
-ExperimentCase swing_case(const CaseOptions& options, const Swing& swing, const char* method,
+ExperimentCase swing_case(const CaseOptions& options, const SineSwing& swing, const char* method,
                           const std::function<PredictorPointer()>& make, Bar bar) {
   const PointCamera camera;
   const std::vector<Vector3> model = tool_8700339();
-  const int runs = options.quick ? k_quick_runs : k_runs;
+  const int runs = options.quick ? k_sine_quick_runs : k_sine_runs;
   double squares = 0;
   int n = 0;
   for (int run = 0; run < runs; ++run) {
     const PointNoise noise{1, options.seed, static_cast<std::uint64_t>(run)};
-    const Pose middle = held_pose(k_tilt_rad, noise.seed, noise.run);
+    const Pose middle = held_pose(k_sine_tilt_rad, noise.seed, noise.run);
     const double phase = 0.7 * run;  // of no simple ratio to the turn
     const PredictorPointer predictor = make();
-    for (int frame = 0; frame < k_frames; ++frame) {
+    for (int frame = 0; frame < k_sine_frames; ++frame) {
       const Time time = frame_time(frame);
       Result<UncertainPose> measured = measure(camera, model, swung(middle, swing, phase, time),
                                                noise, static_cast<std::uint64_t>(frame));
@@ -56,8 +56,8 @@ ExperimentCase swing_case(const CaseOptions& options, const Swing& swing, const 
       measured.value.time = time;
       predictor->update(measured.value);
       if (frame < k_first_judged) continue;
-      const Vector3 truth = swung(middle, swing, phase, time + k_ahead).translation;
-      squares += (predictor->predict(time + k_ahead).translation - truth).squaredNorm();
+      const Vector3 truth = swung(middle, swing, phase, time + k_sine_ahead).translation;
+      squares += (predictor->predict(time + k_sine_ahead).translation - truth).squaredNorm();
       ++n;
     }
     if (options.progress) options.progress(run + 1, runs);
@@ -73,7 +73,7 @@ ExperimentCase swing_case(const CaseOptions& options, const Swing& swing, const 
 CaseList run_sine(const CaseOptions& options) {
   CaseList list{"sine", {}, {}};
   const ToolMotionSettings settings = EstimatorSettings{}.motion;
-  for (const Swing& swing : k_swings) {
+  for (const SineSwing& swing : k_swings) {
     list.cases.push_back(swing_case(
         options, swing, "glint", [&] { return std::make_unique<GlintPredictor>(settings); },
         Bar::at_most(swing.bar_mm)));
