@@ -2,28 +2,54 @@
 
 namespace glint {
 
+Reason PoseCloudRun::start(const LinkCloud& robot, const LinkPoses& poses,
+                           std::span<Vector3f> points, std::span<Vector3f> normals) noexcept {
+  const std::size_t count = robot.cloud.points.size();
+  const bool fits = count <= k_model_points_max && robot.cloud.normals.size() == count &&
+                    robot.links.size() == count && points.size() == count &&
+                    normals.size() == count;
+  robot_ = fits ? robot : LinkCloud{};
+  poses_ = &poses;
+  points_ = points;
+  normals_ = normals;
+  link_ = -1;
+  at_ = 0;
+  reason_ = fits ? Reason::none : Reason::out_of_range;
+  return reason_;
+}
+
+bool PoseCloudRun::step(StepBudget& budget) noexcept {
+  for (; at_ < robot_.links.size() && !budget.spent(); ++at_) {
+    if (robot_.links[at_] != link_) {
+      if (robot_.links[at_] >= poses_->count) {
+        robot_ = LinkCloud{};
+        reason_ = Reason::out_of_range;
+        return false;
+      }
+      turn_to(robot_.links[at_]);
+      budget.take(k_posed_link_steps);
+    }
+    points_[at_] = rotation_ * robot_.cloud.points[at_] + translation_;
+    normals_[at_] = rotation_ * robot_.cloud.normals[at_];
+    budget.take(k_posed_point_steps);
+  }
+  return at_ < robot_.links.size();
+}
+
+void PoseCloudRun::turn_to(int link) noexcept {
+  const Pose& pose = poses_->T_root_link[static_cast<std::size_t>(link)];
+  rotation_ = pose.rotation.toRotationMatrix().cast<float>();
+  translation_ = pose.translation.cast<float>();
+  link_ = link;
+}
+
 Reason pose_cloud(const LinkCloud& robot, const LinkPoses& poses, std::span<Vector3f> points,
                   std::span<Vector3f> normals) noexcept {
-  const std::size_t count = robot.cloud.points.size();
-  if (count > k_model_points_max || robot.cloud.normals.size() != count ||
-      robot.links.size() != count || points.size() != count || normals.size() != count) {
-    return Reason::out_of_range;
+  PoseCloudRun run;
+  if (run.start(robot, poses, points, normals) != Reason::none) return run.reason();
+  for (StepBudget all; run.step(all); all = StepBudget()) {
   }
-  int link = -1;
-  Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();
-  Vector3f translation = Vector3f::Zero();
-  for (std::size_t i = 0; i < count; ++i) {
-    if (robot.links[i] != link) {
-      link = robot.links[i];
-      if (link >= poses.count) return Reason::out_of_range;
-      const Pose& pose = poses.T_root_link[static_cast<std::size_t>(link)];
-      rotation = pose.rotation.toRotationMatrix().cast<float>();
-      translation = pose.translation.cast<float>();
-    }
-    points[i] = rotation * robot.cloud.points[i] + translation;
-    normals[i] = rotation * robot.cloud.normals[i];
-  }
-  return Reason::none;
+  return run.reason();
 }
 
 }  // namespace glint

@@ -159,22 +159,5 @@ TEST(SplatCloud, TakesNoHeapAndGivesTheSameBitsAgain) {
   EXPECT_EQ(first.T_world_base.rotation.coeffs(), again.T_world_base.rotation.coeffs());
 }
 
-TEST(PoseCloud, MovesEachPointWithItsLink) {
-  const std::vector<Vector3f> points = {{1, 0, 0}, {1, 0, 0}}, normals = points;
-  const std::vector<std::uint16_t> links = {0, 1};
-  LinkPoses poses;
-  poses.count = 2;
-  poses.T_root_link[1] = {Quaternion(Eigen::AngleAxisd(M_PI / 2, Vector3::UnitZ())), {0, 0, 5}};
-  std::vector<Vector3f> moved(2), turned(2);
-  ASSERT_EQ(pose_cloud({{points, normals, 0.01f}, links}, poses, moved, turned), Reason::none);
-  EXPECT_EQ(moved[0], points[0]);
-  EXPECT_LT((moved[1] - Vector3f(0, 1, 5)).norm(), 1e-6f);
-  EXPECT_LT((turned[1] - Vector3f(0, 1, 0)).norm(), 1e-6f);
-  poses.count = 1;
-  EXPECT_EQ(pose_cloud({{points, normals, 0.01f}, links}, poses, moved, turned),
-            Reason::out_of_range);
-  EXPECT_EQ(pose_cloud({{points, {}, 0.01f}, links}, poses, moved, turned), Reason::out_of_range);
-}
-
 }  // namespace
 }  // namespace glint
