@@ -11,6 +11,7 @@
 #include "kernels/cloud/map_slices.hpp"
 #include "kernels/limits.hpp"
 #include "kernels/registration/scene_view.hpp"
+#include "kernels/robot/forward_kinematics.hpp"
 #include "kernels/units.hpp"
 
 namespace glint {
@@ -24,8 +25,16 @@ struct ShownDepth {
     std::span<const float> depth_m;  // along the axis; none: no robot is looked for
   };
 
+  // Where the robot's links were: other poses have another number. Without poses a robot is looked
+  // for only by those of the last number.
+  struct Links {
+    const LinkPoses* poses = nullptr;
+    std::uint64_t number = 0;
+  };
+
   MapPicture picture;
   Scene scene;
+  Links links;
   Time time;
   std::uint64_t number = 0;  // another number is another picture; 0: there is none
 };

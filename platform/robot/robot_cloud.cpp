@@ -183,13 +183,19 @@ class Reader {
 
 }  // namespace
 
-PosedCloud posed_cloud(const RobotCloud& robot, std::span<const double> positions,
-                       const std::string& what) {
+LinkPoses link_poses(const RobotCloud& robot, std::span<const double> positions,
+                     const std::string& what) {
   LinkPoses poses;
   if (forward_kinematics(robot.tree, positions, poses) != Reason::none) {
     throw InputError(what + ": " + std::to_string(positions.size()) + " positions; expected " +
                      std::to_string(robot.inputs.size()) + ", finite");
   }
+  return poses;
+}
+
+PosedCloud posed_cloud(const RobotCloud& robot, std::span<const double> positions,
+                       const std::string& what) {
+  const LinkPoses poses = link_poses(robot, positions, what);
   PosedCloud out;
   out.points.resize(robot.points.size());
   out.normals.resize(robot.points.size());

@@ -33,8 +33,10 @@ struct PosedCloud {
   [[nodiscard]] ModelCloud cloud() const { return {points, normals, spacing_m}; }
 };
 
-// At these positions (radians, metres; one for each input). Throws InputError naming `what` where
-// the positions are none.
+// At these positions (radians, metres; one for each input). Both throw InputError naming `what`
+// where the positions are none.
+[[nodiscard]] LinkPoses link_poses(const RobotCloud& robot, std::span<const double> positions,
+                                   const std::string& what);
 [[nodiscard]] PosedCloud posed_cloud(const RobotCloud& robot, std::span<const double> positions,
                                      const std::string& what);
 

@@ -52,7 +52,7 @@ BackgroundGroup::BackgroundGroup(const Cell& cell, const GroupPlan<Background>& 
     : runner_(background_settings(cell, plan, trace)),
       period_(cell.background->period),
       scene_(std::move(scene)),
-      robot_(std::move(scene_.model), std::move(scene_.robot),
+      robot_(scene_.model, scene_.poses,
              cell.mapping ? cell.mapping->joints_lost_after : Duration{}),
       sinks_(sinks) {
   ExtendMap& map = graph_.node<ExtendMap>();
@@ -65,7 +65,8 @@ BackgroundGroup::BackgroundGroup(const Cell& cell, const GroupPlan<Background>& 
   }
   FollowRobot& robot = graph_.node<FollowRobot>();
   robot.limits = map.limits;
-  robot.model = robot_.cloud();
+  robot.model = scene_.model.cloud();
+  robot.links = robot_.links();
   robot.T_world_robot = cell.T_world_robot;
   robot.covariance.diagonal() << k_given_variance_m2, k_given_variance_m2, k_given_variance_m2,
       k_given_variance_rad2, k_given_variance_rad2, k_given_variance_rad2;
@@ -178,9 +179,11 @@ void BackgroundGroup::show(std::int64_t number) noexcept {
   const auto room = static_cast<std::size_t>(left_out_.end() - end);
   const auto all = std::copy_n(held.begin(), std::min(held.size(), room), end);
   const auto count = static_cast<std::size_t>(all - left_out_.begin());
+  const bool known = knows_joints_at(taken);
   graph_.input<ShownDepth>() = {
       {frame.picture(), pictures.camera(), frame.T_world_camera, std::span(left_out_).first(count)},
-      knows_joints_at(taken) ? pictures.scene(number) : ShownDepth::Scene{},
+      known ? pictures.scene(number) : ShownDepth::Scene{},
+      robot_.links(),
       taken,
       static_cast<std::uint64_t>(number)};
 }

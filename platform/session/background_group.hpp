@@ -57,8 +57,8 @@ class BackgroundGroup {
   BackgroundGroup(const Cell& cell, const GroupPlan<Background>& plan, TraceWriter* trace,
                   BackgroundScene scene, RobotSinks sinks = {});
 
-  // The robot's joints from now on; before the first slice. Posing its points anew comes before the
-  // slice that begins a picture, in this group's time, and is not among that slice's steps.
+  // The robot's joints from now on; before the first slice. The newest are taken up by the slice
+  // that begins a picture.
   void hear(graph::TripleBuffer<HeardJoints>& joints) noexcept { heard_ = &joints; }
 
   // The thread that run() wants to be called in.

@@ -9,7 +9,7 @@ BackgroundScene read_background_scene(const Cell& cell, DepthPngReader png) {
   scene.pictures = {read_depth_sequence(mapping.source, png), mapping.period};
   if (mapping.model.empty()) return scene;
   scene.model = read_robot_cloud(mapping.model);
-  scene.robot = posed_cloud(scene.model, mapping.joints, cell.file + ": mapping.joints");
+  scene.poses = link_poses(scene.model, mapping.joints, cell.file + ": mapping.joints");
   return scene;
 }
 

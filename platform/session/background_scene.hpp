@@ -10,7 +10,7 @@ namespace glint {
 struct BackgroundScene {
   DepthLoop pictures;
   RobotCloud model;
-  PosedCloud robot;  // the model's points in its base's frame, at the cell's joints
+  LinkPoses poses;  // of the model's links, at the cell's joints
 };
 
 // Empty where the cell has no [mapping]. Throws InputError naming the file that is missing or

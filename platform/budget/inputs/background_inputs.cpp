@@ -128,6 +128,7 @@ class MapKernel final : public inputs::NodeKernel<ExtendMap> {
       const Pose moved{Quaternion::Identity(), Vector3(0.05 * p, 0, 0)};
       out.shown = {{{k_side, k_side, of.depth}, of.camera, moved, of.left_out},
                    {},
+                   {},
                    Time{},
                    static_cast<std::uint64_t>(p)};
       out.node(out.shown, progress_);

@@ -1,4 +1,6 @@
-// A robot that is followed: a slice begins with a picture, or so many steps behind.
+// A robot that is followed: a slice begins with a picture, or so many steps behind. Half of the
+// pictures come when its links were moved: its points are posed first, each on another link than
+// the one before.
 #include <algorithm>
 #include <vector>
 
@@ -9,22 +11,31 @@
 namespace glint {
 namespace {
 
-constexpr int k_view_side = 40, k_model_side = 24, k_views = 4, k_behind_steps = 20'000;
-constexpr int k_behinds = 48;  // as many slices as the longest picture has
+constexpr int k_view_side = 40, k_views = 5, k_behind_steps = 20'000;
+constexpr int k_behinds = 48;  // as many slices as the longest picture of the small model has
+// The last view is of more points than one slice poses.
+constexpr int k_small_side = 24, k_large_side = 48;
+static_assert(k_large_side * k_large_side * k_posed_item_steps_max > k_background_steps_max);
 
 // A bent sheet with a rim, and the depth that a camera has of it before a wall.
 struct SheetScene {
   std::vector<Vector3f> points, normals;
+  std::vector<std::uint16_t> links;  // in turn
+  float spacing_m;
   std::vector<float> depth;
   Pose T_camera_sheet;
 
   explicit SheetScene(int kind) {
     inputs::Numbers numbers(InputKind::worst, static_cast<std::uint64_t>(kind) + 100);
-    // The last one is so near that it fills the picture.
-    T_camera_sheet.translation = Vector3(0, 0, kind == k_views - 1 ? 0.25 : 0.6 + 0.1 * kind);
-    for (int i = 0; i < k_model_side * k_model_side; ++i) {
-      const double x = 0.01 * (i % k_model_side - k_model_side / 2);
-      const double y = 0.01 * (i / k_model_side - k_model_side / 2);
+    // The last two are so near that they fill the picture.
+    T_camera_sheet.translation = Vector3(0, 0, kind >= k_views - 2 ? 0.25 : 0.6 + 0.1 * kind);
+    const int side = kind == k_views - 1 ? k_large_side : k_small_side;
+    const double spacing = 0.24 / side;
+    spacing_m = static_cast<float>(spacing);
+    for (int i = 0; i < side * side; ++i) {
+      const double x = spacing * (i % side - side / 2);
+      const double y = spacing * (i / side - side / 2);
+      links.push_back(static_cast<std::uint16_t>(i % 2));
       points.push_back(Vector3(x, y, 2 * x * x - 3 * x * y).cast<float>());
       normals.push_back(Vector3(-4 * x + 3 * y, 3 * x, 1).normalized().cast<float>());
     }
@@ -43,6 +54,7 @@ class RobotKernel final : public inputs::NodeKernel<FollowRobot> {
  public:
   RobotKernel() : NodeKernel("FollowRobot") {
     for (int i = 0; i < k_views; ++i) scenes_.emplace_back(i);
+    poses_.count = 2;
   }
   void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
     inputs::Numbers numbers(kind, number);
@@ -50,7 +62,8 @@ class RobotKernel final : public inputs::NodeKernel<FollowRobot> {
     const SheetScene& scene = scenes_[worst ? (number + k_views - 1) % k_views
                                             : static_cast<std::uint64_t>(numbers.below(k_views))];
     start_ = FollowRobot{};
-    start_.model = {scene.points, scene.normals, 0.01f};
+    start_.model = {{scene.points, scene.normals, scene.spacing_m}, scene.links};
+    start_.links = {&poses_, 0};
     start_.T_world_robot = scene.T_camera_sheet;
     start_.T_world_robot.translation += numbers.in_box(0.006);
     start_.covariance = Matrix6::Identity() * 1e-4;
@@ -61,6 +74,8 @@ class RobotKernel final : public inputs::NodeKernel<FollowRobot> {
         scene.depth};
     shown_.time = Time{1'000'000'000};
     shown_.number = 1;
+    const bool moved = worst ? number / k_views / k_behinds % 2 == 0 : numbers.one_in(2);
+    shown_.links = {&poses_, moved ? 1u : 0u};
     limits_ = limits;
     if (!worst && limits.reference_steps > 0) {
       limits_.reference_steps = 1 + numbers.below(limits.reference_steps);
@@ -81,6 +96,7 @@ class RobotKernel final : public inputs::NodeKernel<FollowRobot> {
 
  private:
   std::vector<SheetScene> scenes_;
+  LinkPoses poses_;  // of links that all lie in the base: what they are costs nothing
   ShownDepth shown_;
   RobotProgress progress_;
   Limits limits_;

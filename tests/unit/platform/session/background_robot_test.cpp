@@ -1,6 +1,8 @@
 // What a background group hears and says of the robot that it follows.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "platform/rt/allocation_counter.hpp"
 #include "platform/session/background_group.hpp"
 #include "tests/unit/platform/session/box_on_a_slide.hpp"
@@ -54,6 +56,8 @@ TEST(HeardJointsOfARobot, PoseItsModelInPlaceOfTheCells) {
     if (heard != nullptr) group.hear(*heard);
     group.reach(at_ms(750));
     EXPECT_EQ(group.counts().joints_used, heard != nullptr ? 1 : 0);
+    EXPECT_LE(group.counts().longest_steps,
+              k_background_steps_max + std::max(k_map_item_steps_max, k_follow_item_steps_max));
     return group.counts().robot.followed;
   };
   EXPECT_EQ(followed(nullptr), 0);
@@ -104,20 +108,22 @@ class HeardJointsOfASlide : public testing::Test {
     follow_a_box(folder_.path(), 0, cell_);
     return on_a_slide(cell_.mapping->model);
   }
-  [[nodiscard]] PosedCloud posed_at(double position) const {
+  [[nodiscard]] LinkPoses poses_at(double position) const {
     const std::vector<double> positions = {position};
-    return posed_cloud(model_, positions, "a test");
+    return link_poses(model_, positions, "a test");
   }
   [[nodiscard]] bool stands_at(double position) const {
-    const std::span<const Vector3f> points = robot_.cloud().points;
-    return std::vector(points.begin(), points.end()) == posed_at(position).points;
+    const LinkPoses &poses = *robot_.links().poses, expected = poses_at(position);
+    EXPECT_EQ(poses.count, expected.count);
+    const Pose &carriage = poses.T_root_link[1], &there = expected.T_root_link[1];
+    return carriage.translation == there.translation && carriage.rotation.isApprox(there.rotation);
   }
 
   const TemporaryFolder folder_;
   Cell cell_ = short_cell(1);
   graph::TripleBuffer<HeardJoints> heard_;
   const RobotCloud model_ = box_on_a_slide();
-  HeardRobot robot_{model_, posed_at(0.02), milliseconds(1000)};
+  HeardRobot robot_{model_, poses_at(0.02), milliseconds(1000)};
 };
 
 TEST_F(HeardJointsOfASlide, ArePassedOverAndCountedWhereOneIsMissing) {
@@ -127,11 +133,13 @@ TEST_F(HeardJointsOfASlide, ArePassedOverAndCountedWhereOneIsMissing) {
   say(heard_, {"gripper"}, {7});
   robot_.update(heard_);
   EXPECT_TRUE(stands_at(0.02));
+  EXPECT_EQ(robot_.links().number, 0u) << "posed anew by nothing";
   ASSERT_NE(robot_.lacking(), nullptr);
   EXPECT_EQ(*robot_.lacking(), "slide");
   say(heard_, {"slide"}, {0.3});
   robot_.update(heard_);
   EXPECT_TRUE(stands_at(0.3));
+  EXPECT_EQ(robot_.links().number, 1u);
   EXPECT_EQ(robot_.used(), 1);
   EXPECT_EQ(robot_.passed_over(), 1);
 }

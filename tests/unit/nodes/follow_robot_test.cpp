@@ -1,0 +1,178 @@
+// A robot whose links move: its model is posed in the slices of the picture that shows them.
+#include "nodes/follow_robot.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/heap_count.hpp"
+#include "tests/unit/kernels/registration/box_model.hpp"
+
+namespace glint {
+namespace {
+
+using test::k_truth;
+using test::Model;
+using test::SampledModel;
+
+constexpr int k_all = 1 << 28;  // steps in which a picture is done at once
+constexpr double k_slide_m = 0.3;
+
+// The arm of boxes, every other point of it on a slide; where the picture has it, the slide stands
+// at k_slide_m, and where the node is given it, at 0.
+class FollowRobotTest : public testing::Test {
+ protected:
+  FollowRobotTest() {
+    std::vector<std::int32_t> face(depth_.size());
+    std::vector<ProjectedCorner> corners(64);
+    EXPECT_EQ(
+        render_depth({model_.corners, model_.faces}, k_truth, camera_, {depth_, face, corners}),
+        Reason::none);
+    for (float& z : depth_) z = z == 0 ? 1.9f : z;
+    for (std::size_t i = 0; i < sampled_.points.size(); ++i) {
+      links_.push_back(static_cast<std::uint16_t>(i % 2));
+      if (i % 2 == 1) sampled_.points[i].x() -= static_cast<float>(k_slide_m);
+    }
+    given_.count = shown_.count = 2;
+    shown_.T_root_link[1].translation.x() = k_slide_m;
+  }
+
+  // Ready, its slices of so many steps, its model posed by the poses of this number.
+  [[nodiscard]] FollowRobot node(int steps, ShownDepth::Links links) const {
+    FollowRobot node;
+    node.model = {sampled_.cloud(), links_};
+    node.links = links;
+    node.T_world_robot = k_truth;
+    node.T_world_robot.translation.x() += 0.003;
+    node.covariance = Matrix6::Identity() * 1e-4;
+    node.pixels_max = static_cast<int>(depth_.size());
+    node.limits.reference_steps = steps;
+    EXPECT_EQ(node.prepare(), Reason::none);
+    return node;
+  }
+  [[nodiscard]] ShownDepth picture(int number, ShownDepth::Links links) const {
+    ShownDepth out;
+    out.scene = {camera_, depth_};
+    out.links = links;
+    out.time = Time{} + milliseconds(100) * number;
+    out.number = static_cast<std::uint64_t>(number);
+    return out;
+  }
+  // All slices of a picture: their steps, each within what the node declares.
+  static int run(FollowRobot& node, const ShownDepth& shown, RobotProgress& progress) {
+    int steps = 0;
+    do {
+      node(shown, progress);
+      EXPECT_TRUE(graph::within(node.counts(), FollowRobot::worst(node.limits)));
+      EXPECT_EQ(node.counts()[1], progress.steps);
+      steps += progress.steps;
+    } while (!progress.free);
+    return steps;
+  }
+  [[nodiscard]] int posing_steps() const {
+    return static_cast<int>(links_.size()) * k_posed_item_steps_max;  // another link each time
+  }
+
+  const Model model_;
+  SampledModel sampled_{model_, 0.006f};
+  std::vector<std::uint16_t> links_;
+  const Pinhole camera_{160, 120, 150, 150, 80, 60};
+  std::vector<float> depth_ = std::vector<float>(160 * 120);
+  LinkPoses given_, shown_;
+};
+
+class FollowRobotInSlices : public FollowRobotTest, public testing::WithParamInterface<int> {};
+
+// What it says of a picture is what a node says that was posed right before it came.
+TEST_P(FollowRobotInSlices, IsPosedBeforeItIsLookedFor) {
+  FollowRobot posed = node(k_all, {&shown_, 1}), node = this->node(GetParam(), {&given_, 0});
+  RobotProgress expected, progress;
+  run(posed, picture(1, {&shown_, 1}), expected);
+  ASSERT_EQ(expected.followed, 1);
+  run(node, picture(1, {&shown_, 1}), progress);
+  EXPECT_EQ(progress.followed, 1) << name_of(progress.last);
+  EXPECT_EQ(progress.frame.T_world_robot.translation, expected.frame.T_world_robot.translation);
+  EXPECT_EQ(progress.frame.T_world_robot.rotation.coeffs(),
+            expected.frame.T_world_robot.rotation.coeffs());
+  EXPECT_EQ(progress.frame.rms_m, expected.frame.rms_m);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfAnySize, FollowRobotInSlices, testing::Values(1, 999, 50'000, k_all));
+
+TEST_F(FollowRobotTest, HoldsThePictureAndSaysNothingOfItWhileItIsPosed) {
+  constexpr int k_slice = 1'000;
+  FollowRobot node = this->node(k_slice, {&given_, 0});
+  const ShownDepth shown = picture(1, {&shown_, 1});
+  RobotProgress progress;
+  for (int posed = 0; posed + k_slice < posing_steps(); posed += progress.steps) {
+    node(shown, progress);
+    ASSERT_FALSE(progress.free);
+    ASSERT_LT(progress.steps, k_slice + k_posed_item_steps_max);
+  }
+  EXPECT_EQ(progress.followed + progress.unsure + progress.jumps, 0);
+  run(node, shown, progress);
+  EXPECT_EQ(progress.followed, 1);
+}
+
+TEST_F(FollowRobotTest, IsLookedForByTheStepsThatPosingLeavesASlice) {
+  FollowRobot node = this->node(posing_steps() + 1'000, {&given_, 0});
+  RobotProgress progress;
+  node(picture(1, {&shown_, 1}), progress);
+  EXPECT_FALSE(progress.free);
+  EXPECT_GE(progress.steps, posing_steps() + 1'000);
+  EXPECT_TRUE(graph::within(node.counts(), FollowRobot::worst(node.limits)));
+}
+
+TEST_F(FollowRobotTest, IsPosedOnceByPosesOfOneNumber) {
+  FollowRobot posed = node(k_all, {&shown_, 1}), node = this->node(k_all, {&given_, 0});
+  RobotProgress progress;
+  const auto more = [&](int number, ShownDepth::Links links) {
+    return run(node, picture(number, links), progress) -
+           run(posed, picture(number, {&shown_, 1}), progress);
+  };
+  EXPECT_EQ(more(1, {&shown_, 1}), posing_steps());
+  EXPECT_EQ(more(2, {&shown_, 1}), 0);
+  EXPECT_EQ(more(3, {nullptr, 1}), 0) << "it stands by them";
+  EXPECT_EQ(more(4, {&shown_, 2}), posing_steps());
+  EXPECT_EQ(progress.followed, 4);
+}
+
+TEST_F(FollowRobotTest, IsNotLookedForByPosesThatAreNotThereOrLackALink) {
+  FollowRobot node = this->node(k_all, {&given_, 0});
+  RobotProgress progress;
+  EXPECT_EQ(run(node, picture(1, {nullptr, 1}), progress), 0);
+  EXPECT_EQ(progress.unsure, 0);
+  LinkPoses one = shown_;
+  one.count = 1;
+  EXPECT_LE(run(node, picture(2, {&one, 1}), progress), k_posed_item_steps_max);
+  EXPECT_EQ(progress.unsure, 1);
+  // One point stands elsewhere now: nothing counts as posed.
+  EXPECT_EQ(run(node, picture(3, {nullptr, 0}), progress), 0);
+  EXPECT_GT(run(node, picture(4, {&shown_, 1}), progress), posing_steps());
+  EXPECT_EQ(progress.followed, 1);
+  EXPECT_EQ(progress.unsure, 1);
+}
+
+TEST_F(FollowRobotTest, IsNotReadyWithoutPosesOfAllItsLinks) {
+  LinkPoses one = given_;
+  one.count = 1;
+  FollowRobot node = this->node(k_all, {&given_, 0});
+  node.links = {&one, 0};
+  EXPECT_EQ(node.prepare(), Reason::out_of_range);
+  node.links = {};
+  EXPECT_EQ(node.prepare(), Reason::not_prepared);
+}
+
+TEST_F(FollowRobotTest, IsPosedWithoutTheHeap) {
+  if (!AllocationCounter::available()) GTEST_SKIP() << "allocations are not counted here";
+  FollowRobot node = this->node(5'000, {&given_, 0});
+  const ShownDepth shown = picture(1, {&shown_, 1});
+  RobotProgress progress;
+  const HeapCount heap;
+  do {
+    node(shown, progress);
+  } while (!progress.free);
+  EXPECT_EQ(heap.count(), 0u);
+  EXPECT_EQ(progress.followed, 1);
+}
+
+}  // namespace
+}  // namespace glint
