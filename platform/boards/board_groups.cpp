@@ -64,6 +64,7 @@ BoardGroups::BoardGroups(const Cell& cell, Sinks& sinks, const Clock& now,
       cell, *plan_by_rule(cell).background, nullptr, std::move(scene),
       RobotSinks{&robot_, recorder != nullptr ? &recorder->slice_lane() : nullptr,
                  &sinks.robot_notes(), sinks.dds()});
+  if (sinks.inputs() != nullptr) background_->hear(sinks.inputs()->joints());
 }
 
 void BoardGroups::process(const ArrivedFrame& arrived) noexcept {

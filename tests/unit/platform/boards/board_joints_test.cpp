@@ -1,0 +1,69 @@
+// A board's groups, and this test as the driver of the robot that they follow.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "platform/boards/board_groups.hpp"
+#include "platform/boards/board_json.hpp"
+#include "platform/rt/clock.hpp"
+#include "tests/unit/platform/dds/isolated_network.hpp"
+#include "tests/unit/platform/dds/robot_speaker.hpp"
+#include "tests/unit/platform/robot/files.hpp"
+#include "tests/unit/platform/session/box_on_a_slide.hpp"
+
+namespace glint {
+namespace {
+
+Time at_ms(std::int64_t number) { return Time{} + milliseconds(number); }
+
+class HeardJointsOfABoard : public DdsTest {
+ protected:
+  HeardJointsOfABoard() {
+    cell_.record.file.clear();
+    cell_.files = {"", ""};
+    cell_.realtime = true;
+    follow_a_box_on_a_slide(files_.folder(), cell_);
+    cell_.mapping->joints_lost_after = milliseconds(600'000);  // however slow the machine
+  }
+
+  const test::Files files_;
+  Cell cell_ = default_cell();
+};
+
+TEST_F(HeardJointsOfABoard, LetItFollowWhatItCannotFollowWithoutThem) {
+  const Time epoch = monotonic_now();
+  const std::int64_t unix_offset_ns = unix_offset().nanoseconds + epoch.nanoseconds;
+  Sinks sinks(cell_, {files_.folder(), false, {}}, unix_offset_ns);
+  ASSERT_NE(sinks.inputs(), nullptr);
+  BoardGroups groups(
+      cell_, sinks, [epoch] { return Time{} + (monotonic_now() - epoch); }, unix_offset_ns, 1, {},
+      read_background_scene(cell_, nullptr));
+  ASSERT_NE(groups.background(), nullptr);
+  BackgroundGroup& background = *groups.background();
+  background.reach(at_ms(550));
+  EXPECT_EQ(background.counts().robot.followed, 0);
+  EXPECT_EQ(background.counts().joints_used, 0);
+
+  RobotSpeaker driver({"gripper", "slide"}, {9, k_slide_shown_m});
+  // The first is there where the second was counted.
+  for (int i = 0; i < 1000 && sinks.inputs()->counts().joints < 2; ++i) {
+    driver.say_joints();
+    sleep_until(monotonic_now() + milliseconds(10));
+  }
+  ASSERT_GE(sinks.inputs()->counts().joints, 2u);
+  background.reach(at_ms(1150));
+  BoardResult result;
+  groups.report(result);
+  ASSERT_TRUE(result.background);
+  EXPECT_GE(result.background->robot.followed, 4) << name_of(result.background->robot.last);
+  EXPECT_LE(result.background->longest_steps,
+            k_background_steps_max + std::max(k_map_item_steps_max, k_follow_item_steps_max));
+  const auto robot = as_json(result).at("background").at("references");
+  EXPECT_GE(robot.at("joint_states_used"), 1);
+  EXPECT_EQ(robot.at("pictures_without_joints"), 0);
+  sinks.close(result.sinks);
+  EXPECT_GE(result.sinks.heard.joints, 2u);
+}
+
+}  // namespace
+}  // namespace glint
