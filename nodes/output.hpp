@@ -1,7 +1,7 @@
 // The tick group: from what is known of every tool to what leaves, at a steady rate.
 //
-//   Now, Latest<Estimates>, Latest<RobotFrame> ─► PredictTools ─► PoseSamples ─► PackCan ─►
-//   CanFrames
+//   Now, Latest<Estimates>, Latest<RobotFrame>, Latest<PenButtons> ─► PredictTools ─► PoseSamples
+//   ─► PackCan ─► CanFrames
 #pragma once
 
 #include "graph/graph.hpp"
@@ -10,7 +10,8 @@
 
 namespace glint {
 
-using Output = graph::Graph<graph::Inputs<Now, graph::Latest<Estimates>, graph::Latest<RobotFrame>>,
+using Output = graph::Graph<graph::Inputs<Now, graph::Latest<Estimates>, graph::Latest<RobotFrame>,
+                                          graph::Latest<PenButtons>>,
                             graph::Outputs<PoseSamples, CanFrames>, PredictTools, PackCan>;
 static_assert(graph::valid<Output>);
 

@@ -7,12 +7,13 @@ namespace {
 
 using graph::OverrunPolicy;
 
-// A sample without a pose: what is known of the tick and of the robot stays.
+// A sample without a pose: what is known of the tick, the buttons and the robot stays.
 PoseSample without_pose(const PoseSample& sample, TrackState state) {
   PoseSample bare;
   bare.tick = sample.tick;
   bare.tick_number = sample.tick_number;
   bare.tool = sample.tool;
+  bare.buttons = sample.buttons;
   bare.measurement = sample.measurement;
   bare.frame_sequence = sample.frame_sequence;
   bare.registration = sample.registration;
@@ -71,8 +72,8 @@ bool substitute(OverrunPolicy policy, const OverrunFrame& frame, const Estimates
   return true;
 }
 
-bool substitute(OverrunPolicy policy, const Now& now, Duration lost_after,
-                const PoseSamples& in_time, PoseSamples& out) noexcept {
+bool substitute(OverrunPolicy policy, const OverrunTick& tick, const PoseSamples& in_time,
+                PoseSamples& out) noexcept {
   if (policy == OverrunPolicy::skip_output) return false;
   const Reason reason = reason_of(policy);
   out.count = in_time.count;
@@ -80,16 +81,17 @@ bool substitute(OverrunPolicy policy, const Now& now, Duration lost_after,
     const auto i = static_cast<std::size_t>(t);
     PoseSample& sample = out.items[i];
     sample = in_time.items[i];
-    const Duration lead = now.tick - sample.tick;
-    sample.tick = now.tick;
-    sample.tick_number = now.number;
+    const Duration lead = tick.now.tick - sample.tick;
+    sample.tick = tick.now.tick;
+    sample.tick_number = tick.now.number;
+    sample.buttons = tick.buttons.of_tool(sample.tool);
     if (policy == OverrunPolicy::stop_safe) {
       sample.reason = reason;
       sample = without_pose(sample, TrackState::lost);
       continue;
     }
     if (!sample.has_pose()) continue;
-    if (sample.age() > lost_after) {
+    if (sample.age() > tick.lost_after) {
       sample.reason = Reason::too_old;
       sample = without_pose(sample, TrackState::lost);
       continue;

@@ -26,6 +26,13 @@ struct OverrunFrame {
   Duration lost_after;
 };
 
+// The tick that was not in time, and which buttons were held as it was released.
+struct OverrunTick {
+  Now now;
+  Duration lost_after;
+  PenButtons buttons;
+};
+
 // Frame group. False: nothing is published and the tick group goes on from older estimates.
 //   hold_last  each tool stands still where it was last, no longer called measured
 //   predict    each tool goes on at its last velocity, no longer called measured
@@ -37,7 +44,9 @@ struct OverrunFrame {
 //   hold_last  the samples of the last tick that was in time, older by now and predicted
 //   predict    the same, moved on to this tick by their velocities
 //   stop_safe  each tool is lost at this tick
-[[nodiscard]] bool substitute(graph::OverrunPolicy policy, const Now& now, Duration lost_after,
+// Whatever leaves says the buttons of this tick, also without a pose: they were known in time, and
+// a button that was let go must not stay held because a pose was late.
+[[nodiscard]] bool substitute(graph::OverrunPolicy policy, const OverrunTick& tick,
                               const PoseSamples& in_time, PoseSamples& out) noexcept;
 
 }  // namespace glint

@@ -37,6 +37,7 @@ double axis_sigma(const Matrix6& covariance, int first) {
 
 void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& estimates,
                               const graph::Latest<RobotFrame>& robot,
+                              const graph::Latest<PenButtons>& buttons,
                               PoseSamples& samples) noexcept {
   const Estimates& known = estimates.value();
   samples.count = std::min(known.tool_count, limits.tools);
@@ -48,6 +49,7 @@ void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& es
     sample.tick = now.tick;
     sample.tick_number = now.number;
     sample.tool = static_cast<std::uint8_t>(t);
+    sample.buttons = buttons.value().of_tool(t);
     sample.reason = track.reason;
     sample.registration = robot.value().state;
     sample.registration_rms_m = robot.value().rms_m;

@@ -3,6 +3,8 @@
 // What:     the motion's mean equations integrated from the newest estimate to the actuation time
 //           (kernels/motion/integrate_motion.hpp), their covariance in closed form
 //           (predict_motion.hpp); then world -> robot; then from the markers' middle to the tip.
+//           The pen's buttons stand in its samples, with or without a pose: who holds one goes on
+//           holding it where the camera does not see.
 // States:   measured while the newest accepted pose is at most 1.5 nominal frame gaps old,
 //           predicted until lost_after, then lost: a contract of the output, so no tuning.
 // Cost:     one pass over the tools; those with a pose cost, the others hardly.
@@ -41,7 +43,7 @@ struct PredictTools {
   // The only place that allocates. Reason: not_prepared where SUNDIALS refuses.
   [[nodiscard]] Reason prepare() noexcept { return integrator_.prepare(settings.motion); }
   void operator()(const Now& now, const graph::Latest<Estimates>& estimates,
-                  const graph::Latest<RobotFrame>& robot,
+                  const graph::Latest<RobotFrame>& robot, const graph::Latest<PenButtons>& buttons,
                   PoseSamples& samples) noexcept GLINT_NONBLOCKING;
 
  private:

@@ -191,6 +191,22 @@ struct RobotFrame {
   bool in_reference = false;  // T_world_robot leads to the reference body's frame, not the world's
 };
 
+// Which of the pen's buttons are held, in the bits of PoseSample::buttons.
+//
+// The formats have three bits and leave their order open: it is that of the buttons themselves
+// (platform/record/button_event.hpp) and of the CAN frame that may bring them. The fourth, finish,
+// ends a path in the program that draws it and is nobody else's matter. No button names a tool:
+// they are the first one's, which topics call the pen and a path is drawn with unless told
+// otherwise.
+struct PenButtons {
+  std::uint8_t held = 0;
+
+  // As that tool's samples say it.
+  [[nodiscard]] constexpr std::uint8_t of_tool(int tool) const {
+    return tool == 0 ? held : std::uint8_t{0};
+  }
+};
+
 struct PoseSamples {
   std::array<PoseSample, k_tools_max> items;
   int count = 0;

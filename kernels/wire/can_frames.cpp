@@ -15,7 +15,6 @@ constexpr std::int64_t k_position_max = 0xFFFF;  // 17 bits and sign
 constexpr std::int64_t k_word_max = 0x7FFF;      // 16 bits and sign
 constexpr std::int64_t k_long_max = 0x7FFFFFFF;
 constexpr double k_one_rotation = 0x1p30;
-constexpr unsigned k_buttons_mask = 7;
 
 std::uint64_t as_bits(std::int64_t value) { return static_cast<std::uint64_t>(value); }
 

@@ -14,6 +14,9 @@ enum class TrackState : std::uint8_t { none = 0, predicted = 1, measured = 2, lo
 enum class RegistrationState : std::uint8_t { none = 0, given = 1, accepted = 2, refused = 3 };
 enum class ReferenceFrame : std::uint8_t { camera = 0, world = 1, robot = 2 };
 
+// Of the pen's buttons those that leave: bit 0 draw, 1 delete_last, 2 undo.
+inline constexpr unsigned k_buttons_mask = 7;
+
 struct PoseSample {
   Time tick;         // nominal release of the tick
   Time measurement;  // mid-exposure of the frame the pose rests on
@@ -21,7 +24,7 @@ struct PoseSample {
   std::uint32_t frame_sequence = 0;
   std::uint8_t tool = 0;
   std::uint8_t marker_mask = 0;  // bit i: the tool's marker i was used
-  std::uint8_t buttons = 0;
+  std::uint8_t buttons = 0;      // held, see k_buttons_mask
   TrackState state = TrackState::none;
   RegistrationState registration = RegistrationState::none;
   ReferenceFrame frame = ReferenceFrame::camera;

@@ -51,7 +51,7 @@ BoardGroups::BoardGroups(const Cell& cell, Sinks& sinks, const Clock& now,
                                            cell.overrun.watch, bounds.tick_ns)),
       frame_(cell, roster_.published(), now, frame_runner_,
              sinks.recorder() != nullptr ? &sinks.recorder()->frame_lane() : nullptr),
-      tick_(cell, frame_.estimates(), robot_, now,
+      tick_(cell, frame_.estimates(), robot_, sinks.held_buttons(), now,
             {sinks.can(), sinks.dds(), nullptr,
              sinks.recorder() != nullptr ? &sinks.recorder()->tick_lane() : nullptr},
             unix_offset_ns, frames, tick_runner_, frame_.overrun_notes()) {

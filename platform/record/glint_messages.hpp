@@ -29,6 +29,7 @@ void write_message(CdrWriter& to, const ChoiceRecord& choice, Duration unix_offs
 void write_message(CdrWriter& to, const DroppedInput& input, Duration unix_offset);
 void write_message(CdrWriter& to, const ButtonEvent& event, Duration unix_offset);
 void write_message(CdrWriter& to, const RobotFrameRecord& frame, Duration unix_offset);
+void write_message(CdrWriter& to, const PenButtonsRecord& buttons, Duration unix_offset);
 void write_output_message(CdrWriter& to, const PoseSample& sample,
                           std::span<const std::uint8_t> record, Duration unix_offset);
 
@@ -52,6 +53,8 @@ struct ImageRows {
 [[nodiscard]] std::optional<DroppedInput> read_dropped(MessageBytes bytes);
 // Nothing, too, for a state that is not in the list.
 [[nodiscard]] std::optional<RobotFrameRecord> read_robot_frame(MessageBytes bytes);
+// Nothing, too, for bits that no button has.
+[[nodiscard]] std::optional<PenButtonsRecord> read_pen_buttons(MessageBytes bytes);
 // Nothing, too, for a button that is not in the list.
 [[nodiscard]] std::optional<ButtonEvent> read_button(MessageBytes bytes);
 

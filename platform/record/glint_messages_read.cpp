@@ -249,6 +249,17 @@ std::optional<RobotFrameRecord> read_robot_frame(MessageBytes bytes) {
   return frame;
 }
 
+std::optional<PenButtonsRecord> read_pen_buttons(MessageBytes bytes) {
+  CdrReader from(bytes);
+  skip_header(from);
+  PenButtonsRecord buttons;
+  buttons.version = from.get<std::uint64_t>();
+  buttons.time.nanoseconds = from.get<std::int64_t>();
+  buttons.held = from.get<std::uint8_t>();
+  if (from.failed() || buttons.held > k_buttons_mask) return std::nullopt;
+  return buttons;
+}
+
 std::optional<ButtonEvent> read_button(MessageBytes bytes) {
   CdrReader from(bytes);
   skip_header(from);

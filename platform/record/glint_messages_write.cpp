@@ -117,6 +117,14 @@ void write_message(CdrWriter& to, const RobotFrameRecord& frame, Duration unix_o
   put_pose(to, frame.T_world_robot);
 }
 
+void write_message(CdrWriter& to, const PenButtonsRecord& buttons, Duration unix_offset) {
+  to.begin();
+  put_header(to, buttons.time + unix_offset, "");
+  to.put(buttons.version);
+  to.put(buttons.time.nanoseconds);
+  to.put(buttons.held);
+}
+
 void write_message(CdrWriter& to, const ButtonEvent& event, Duration unix_offset) {
   to.begin();
   put_header(to, event.time + unix_offset, "");

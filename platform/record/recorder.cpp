@@ -21,7 +21,8 @@ enum Kind : std::uint32_t {
   k_output,
   k_dropped,
   k_button,
-  k_robot_frame_record
+  k_robot_frame_record,
+  k_pen_buttons_record
 };
 
 struct OutputOffer {
@@ -46,6 +47,8 @@ template <>
 constexpr Kind k_kind_of<ButtonEvent> = k_button;
 template <>
 constexpr Kind k_kind_of<RobotFrameRecord> = k_robot_frame_record;
+template <>
+constexpr Kind k_kind_of<PenButtonsRecord> = k_pen_buttons_record;
 
 // Short against the seconds that the rings hold, long against a wake-up's cost.
 constexpr auto k_look_again = std::chrono::microseconds(500);
@@ -112,6 +115,9 @@ bool RecorderLane::offer_dropped(const DroppedInput& input) noexcept {
 }
 bool RecorderLane::offer_robot_frame(const RobotFrameRecord& frame) noexcept {
   return !keeps_inputs(level_) || offer(frame);
+}
+bool RecorderLane::offer_pen_buttons(const PenButtonsRecord& buttons) noexcept {
+  return !keeps_inputs(level_) || offer(buttons);
 }
 bool RecorderLane::offer_button(const ButtonEvent& event) noexcept { return offer(event); }
 
@@ -206,6 +212,9 @@ void Recorder::write_item(const OfferSlot& offer) {
       break;
     case k_robot_frame_record:
       writer_.write_robot_frame(item_in<RobotFrameRecord>(offer));
+      break;
+    case k_pen_buttons_record:
+      writer_.write_pen_buttons(item_in<PenButtonsRecord>(offer));
       break;
     case k_button:
       writer_.write_button(item_in<ButtonEvent>(offer));

@@ -46,6 +46,7 @@ class RecorderLane {
   bool offer_output(const PoseSample& sample, std::span<const std::uint8_t> record) noexcept;
   bool offer_dropped(const DroppedInput& input) noexcept;
   bool offer_robot_frame(const RobotFrameRecord& frame) noexcept;
+  bool offer_pen_buttons(const PenButtonsRecord& buttons) noexcept;
   bool offer_button(const ButtonEvent& event) noexcept;  // at every level
 
  private:

@@ -18,6 +18,7 @@
 #include "kernels/units.hpp"
 #include "platform/record/button_event.hpp"
 #include "platform/record/choice_record.hpp"
+#include "platform/record/pen_buttons_record.hpp"
 #include "platform/record/robot_frame_record.hpp"
 #include "platform/sensors/frame_buffer.hpp"
 
@@ -81,8 +82,9 @@ struct OutputMessage {
   std::vector<std::uint8_t> record;
 };
 
-using RecordedMessage = std::variant<FrameMessage, HeadPose, MarkerFrame, ChoiceRecord,
-                                     OutputMessage, DroppedInput, ButtonEvent, RobotFrameRecord>;
+using RecordedMessage =
+    std::variant<FrameMessage, HeadPose, MarkerFrame, ChoiceRecord, OutputMessage, DroppedInput,
+                 ButtonEvent, RobotFrameRecord, PenButtonsRecord>;
 
 // How a recording ended.
 struct RecordingOutcome {

@@ -81,6 +81,7 @@ std::optional<RecordedMessage> RecordingReader::Body::decode(const McapMessage& 
   if (topic == k_output_topic) return checked(read_output(bytes), message);
   if (topic == k_dropped_topic) return checked(read_dropped(bytes), message);
   if (topic == k_robot_frame_topic) return checked(read_robot_frame(bytes), message);
+  if (topic == k_pen_buttons_topic) return checked(read_pen_buttons(bytes), message);
   if (topic == k_button_topic) return checked(read_button(bytes), message);
   return std::nullopt;
 }

@@ -72,7 +72,8 @@ struct RecordingWriter::Body {
   CdrWriter cdr;
   std::uint32_t sequence = 0;
   std::uint16_t frame = 0, reflectivity = 0, depth = 0, head_pose = 0, markers = 0, choice = 0,
-                dropped = 0, button = 0, robot_frame = 0, output = 0, transform = 0;
+                dropped = 0, button = 0, robot_frame = 0, pen_buttons = 0, output = 0,
+                transform = 0;
   std::vector<ToolChannels> tools;
   Sha256 output_hash;
   McapTexts closing;
@@ -100,6 +101,7 @@ RecordingWriter::Body::Body(const std::string& file, const RecordingInfo& info,
   }
   output = channel(k_output_topic, "glint_msgs/msg/Output");
   robot_frame = channel(k_robot_frame_topic, "glint_msgs/msg/RobotFrame");
+  pen_buttons = channel(k_pen_buttons_topic, "glint_msgs/msg/PenButtons");
   button = channel(k_button_topic, "glint_msgs/msg/Button");
   transform = channel(k_transform_topic, "tf2_msgs/msg/TFMessage");
   for (std::size_t i = 0; i < tool_names.size(); ++i) (void)tool(i);
@@ -205,6 +207,12 @@ void RecordingWriter::write_robot_frame(const RobotFrameRecord& frame) {
   if (!keeps_inputs(body_->level)) return;
   write_message(body_->cdr, frame, body_->unix_offset);
   body_->write(body_->robot_frame, frame.time);
+}
+
+void RecordingWriter::write_pen_buttons(const PenButtonsRecord& buttons) {
+  if (!keeps_inputs(body_->level)) return;
+  write_message(body_->cdr, buttons, body_->unix_offset);
+  body_->write(body_->pen_buttons, buttons.time);
 }
 
 void RecordingWriter::write_button(const ButtonEvent& event) {

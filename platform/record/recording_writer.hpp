@@ -40,6 +40,7 @@ class RecordingWriter {
   void write_output(const PoseSample& sample, std::span<const std::uint8_t> record);
   void write_dropped(const DroppedInput& input);
   void write_robot_frame(const RobotFrameRecord& frame);
+  void write_pen_buttons(const PenButtonsRecord& buttons);
   void write_button(const ButtonEvent& event);  // at every level: a path is made of these
 
   // Offers that never arrived here: the recording is then marked incomplete.

@@ -93,6 +93,10 @@ constexpr std::array k_definitions{
                "std_msgs/Header header\nuint64 version  # as a tick's choice names it\n"
                "int64 time_ns\nuint8 state\nbool in_reference\nfloat64 rms_m\n"
                "geometry_msgs/Pose pose  # of the robot in the world, or in the reference body\n"},
+    Definition{"glint_msgs/PenButtons",
+               "uint8 DRAW=1\nuint8 DELETE_LAST=2\nuint8 UNDO=4\n"
+               "std_msgs/Header header\nuint64 version  # as a tick's choice names it\n"
+               "int64 time_ns\nuint8 held  # a sum of these\n"},
     Definition{"glint_msgs/Button",
                "uint8 DRAW=0\nuint8 DELETE_LAST=1\nuint8 UNDO=2\nuint8 FINISH=3\n"
                "std_msgs/Header header\nint64 time_ns\nuint8 button\nbool pressed\n"},

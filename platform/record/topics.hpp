@@ -17,6 +17,7 @@ inline constexpr std::string_view k_output_topic = "/glint/output";
 inline constexpr std::string_view k_dropped_topic = "/glint/dropped";
 inline constexpr std::string_view k_button_topic = "/glint/button";
 inline constexpr std::string_view k_robot_frame_topic = "/glint/robot_frame";
+inline constexpr std::string_view k_pen_buttons_topic = "/glint/pen_buttons";
 inline constexpr std::string_view k_transform_topic = "/tf";
 
 // Letters, digits and '_' of the name; "toolN" where nothing of it is left or there is none.

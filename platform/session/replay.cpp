@@ -54,12 +54,14 @@ class Replayer {
 
   void on(const HeadPose& head) { head_ = head; }
   void on(const DroppedInput&) {}  // said beside the frame, which is there as well
-  void on(const ButtonEvent&) {}   // a path is made of it, no pose
+  void on(const ButtonEvent&) {}   // a path is made of it; ticks read what was held by then
   // It stands in front of every tick that read it.
   void on(const RobotFrameRecord& frame) {
     robot_frames_[frame.version] = {frame.state, frame.T_world_robot, frame.rms_m,
                                     frame.in_reference};
   }
+  // Likewise.
+  void on(const PenButtonsRecord& buttons) { pen_buttons_[buttons.version] = {buttons.held}; }
 
   void on(const FrameMessage& frame) {
     const Frame view = frame.view();
@@ -176,6 +178,15 @@ class Replayer {
       }
       output_->latest<RobotFrame>().set(*robot, choice.versions[1], 0);
     }
+    // Older recordings name no version of the buttons: 0, none was ever held.
+    if (choice.versions[2] != output_->latest<PenButtons>().version()) {
+      const auto known = pen_buttons_.find(choice.versions[2]);
+      if (known == pen_buttons_.end()) {
+        ++result_.versions_missing;
+        return;
+      }
+      output_->latest<PenButtons>().set(known->second, choice.versions[2], 0);
+    }
     // Ticks that were skipped have numbers, too.
     const auto number =
         static_cast<std::uint32_t>(choice.nominal.nanoseconds / tick_period_.nanoseconds);
@@ -209,8 +220,9 @@ class Replayer {
     }
     ++result_.overruns;
     run_until(*output_, choice.overrun, choice.overrun.after_node);
-    const Now& now = output_->input<Now>();
-    if (!substitute(choice.overrun.policy, now, lost_after_, *samples_in_time_, *substitute_)) {
+    const OverrunTick tick{output_->input<Now>(), lost_after_,
+                           output_->latest<PenButtons>().value()};
+    if (!substitute(choice.overrun.policy, tick, *samples_in_time_, *substitute_)) {
       substitute_->count = 0;
     }
     return *substitute_;
@@ -238,6 +250,7 @@ class Replayer {
   std::unique_ptr<PoseSamples> substitute_ = std::make_unique<PoseSamples>();
   RobotFrame robot_;
   std::map<std::uint64_t, RobotFrame> robot_frames_;
+  std::map<std::uint64_t, PenButtons> pen_buttons_;
   HeadPose head_;
   std::unique_ptr<Tracker> tracker_ = std::make_unique<Tracker>();
   std::unique_ptr<MarkerTracker> marker_tracker_ = std::make_unique<MarkerTracker>();

@@ -69,7 +69,7 @@ SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, st
       frame_(cell, roster_.published(), now, frame_runner_,
              sinks.recorder() != nullptr ? &sinks.recorder()->frame_lane() : nullptr,
              method_of(cell)),
-      tick_(cell, frame_.estimates(), robot_, now,
+      tick_(cell, frame_.estimates(), robot_, sinks.held_buttons(), now,
             {sinks.can(), sinks.dds(), sinks.files(),
              sinks.recorder() != nullptr ? &sinks.recorder()->tick_lane() : nullptr},
             unix_offset_ns, frames, tick_runner_, frame_.overrun_notes()) {

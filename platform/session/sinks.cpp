@@ -130,7 +130,9 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
 
 void Sinks::offer_button(const ButtonEvent& event) {
   const std::lock_guard lock(one_button_);
-  if (recorder_ != nullptr) (void)recorder_->input_lane().offer_button(event);
+  RecorderLane* const lane = recorder_ != nullptr ? &recorder_->input_lane() : nullptr;
+  if (lane != nullptr) (void)lane->offer_button(event);
+  held_buttons_.take(event, lane);
 }
 
 void Sinks::close(SinkOutcome& result) {

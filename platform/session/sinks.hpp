@@ -16,6 +16,7 @@
 #include "platform/rt/followed_robot.hpp"
 #include "platform/rt/overrun_counters.hpp"
 #include "platform/session/file_sink.hpp"
+#include "platform/session/held_buttons.hpp"
 #include "platform/session/sink_outcome.hpp"
 #include "platform/session/tool_requests.hpp"
 
@@ -34,9 +35,14 @@ class Sinks {
   [[nodiscard]] Recorder* recorder() noexcept { return recorder_.get(); }
   [[nodiscard]] FileSink* files() noexcept { return files_.get(); }
 
-  // A button went down or up: into the recording. From any thread that may wait for another, thus
-  // neither the frame's nor the tick's.
+  // A button went down or up: into the recording, and to the ticks from the next one on. From any
+  // thread that may wait for another, thus neither the frame's nor the tick's.
   void offer_button(const ButtonEvent& event);
+
+  // Which buttons are held: for the tick group, its only reader.
+  [[nodiscard]] graph::TripleBuffer<PenButtons>& held_buttons() noexcept {
+    return held_buttons_.published();
+  }
 
   // What is asked for over DDS.
   [[nodiscard]] ToolRequests& tool_requests() noexcept { return tool_requests_; }
@@ -56,7 +62,8 @@ class Sinks {
   OverrunCounters overruns_;
   FollowedRobotNotes robot_notes_;
   ToolRequests tool_requests_;
-  std::mutex one_button_;               // the lane of inputs is for one thread at a time
+  std::mutex one_button_;  // the lane of inputs and what is held are for one thread at a time
+  HeldButtons held_buttons_;
   std::unique_ptr<Recorder> recorder_;  // outlives those whose threads offer to it
   std::unique_ptr<FileSink> files_;
   std::unique_ptr<CanSink> can_;

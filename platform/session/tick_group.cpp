@@ -11,7 +11,8 @@
 namespace glint {
 
 TickGroup::TickGroup(const Cell& cell, graph::TripleBuffer<Estimates>& estimates,
-                     graph::TripleBuffer<RobotFrame>& robot, Clock now, TickSinks sinks,
+                     graph::TripleBuffer<RobotFrame>& robot,
+                     graph::TripleBuffer<PenButtons>& buttons, Clock now, TickSinks sinks,
                      std::int64_t unix_offset_ns, std::size_t latency_entries,
                      GroupRunner<Output>& runner, OverrunNotes& frame_notes)
     : group_(*output_, k_tick_group),
@@ -28,6 +29,7 @@ TickGroup::TickGroup(const Cell& cell, graph::TripleBuffer<Estimates>& estimates
   configure(cell, *output_);
   output_->latest<Estimates>().bind(estimates);
   output_->latest<RobotFrame>().bind(robot);
+  output_->latest<PenButtons>().bind(buttons);
 }
 
 void TickGroup::tick(std::uint32_t number, Time nominal, Time woken) noexcept {
@@ -63,7 +65,8 @@ void TickGroup::answer(const Now& now) noexcept {
   samples_ = substitute_.get();
   frames_ = substitute_frames_.get();
   substitute_frames_->count = 0;
-  skipped_ = !substitute(overrun_.policy, now, lost_after_, *in_time_, *substitute_);
+  const OverrunTick tick{now, lost_after_, output_->latest<PenButtons>().value()};
+  skipped_ = !substitute(overrun_.policy, tick, *in_time_, *substitute_);
   if (skipped_) {
     substitute_->count = 0;
     return;

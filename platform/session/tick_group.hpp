@@ -30,9 +30,9 @@ struct TickSinks {
 class TickGroup {
  public:
   TickGroup(const Cell& cell, graph::TripleBuffer<Estimates>& estimates,
-            graph::TripleBuffer<RobotFrame>& robot, Clock now, TickSinks sinks,
-            std::int64_t unix_offset_ns, std::size_t latency_entries, GroupRunner<Output>& runner,
-            OverrunNotes& frame_notes);
+            graph::TripleBuffer<RobotFrame>& robot, graph::TripleBuffer<PenButtons>& buttons,
+            Clock now, TickSinks sinks, std::int64_t unix_offset_ns, std::size_t latency_entries,
+            GroupRunner<Output>& runner, OverrunNotes& frame_notes);
 
   // Tick `number` at its nominal time; `woken` is when it really began. Of a tick that was not in
   // time, what the policy says leaves.

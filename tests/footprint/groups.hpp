@@ -32,6 +32,7 @@ class Groups {
     tick_->template node<PackCan>().settings = configured.node<PackCan>().settings;
     tick_->template latest<Estimates>().bind(estimates_);
     tick_->template latest<RobotFrame>().bind(robot_);
+    tick_->template latest<PenButtons>().bind(buttons_);
     publish_tools(0);
     robot_.write_slot() = declared_robot_frame(cell);
     robot_.publish(1, 0);
@@ -52,6 +53,8 @@ class Groups {
     run(*tracker_);
     estimates_.write_slot() = tracker_->template output<Estimates>();
     estimates_.publish(number + 1, exposed.nanoseconds);
+    buttons_.write_slot().held = static_cast<std::uint8_t>(number & k_buttons_mask);
+    buttons_.publish(number + 1, exposed.nanoseconds);
     for (int tick = 0; tick < k_ticks_a_frame; ++tick) {
       const Time nominal{exposed.nanoseconds + tick * k_period_ns / k_ticks_a_frame};
       tick_->template input<Now>() = {nominal, ++ticks_, 0};
@@ -90,6 +93,7 @@ class Groups {
   graph::TripleBuffer<ToolSet> tools_;
   graph::TripleBuffer<Estimates> estimates_;
   graph::TripleBuffer<RobotFrame> robot_;
+  graph::TripleBuffer<PenButtons> buttons_;
   std::uint32_t ticks_ = 0;
 };
 

@@ -68,7 +68,8 @@ struct TouchOnePage {
 };
 template <class Mutant>
 using Mutated =
-    graph::Graph<graph::Inputs<Now, graph::Latest<Estimates>, graph::Latest<RobotFrame>>,
+    graph::Graph<graph::Inputs<Now, graph::Latest<Estimates>, graph::Latest<RobotFrame>,
+                               graph::Latest<PenButtons>>,
                  graph::Outputs<PoseSamples, CanFrames, Extra>, PredictTools, PackCan, Mutant>;
 
 class Cycles : public testing::Test {

@@ -27,7 +27,8 @@ struct AllocateOnce {
   }
 };
 using OutputAndMutant =
-    graph::Graph<graph::Inputs<Now, graph::Latest<Estimates>, graph::Latest<RobotFrame>>,
+    graph::Graph<graph::Inputs<Now, graph::Latest<Estimates>, graph::Latest<RobotFrame>,
+                               graph::Latest<PenButtons>>,
                  graph::Outputs<PoseSamples, CanFrames, Extra>, PredictTools, PackCan,
                  AllocateOnce>;
 

@@ -47,15 +47,17 @@ class PredictToolsKernel final : public NodeKernel<PredictTools> {
     robot.state = all || !numbers.one_in(4) ? RegistrationState::given : RegistrationState::none;
     robot.T_world_robot = {numbers.rotation(), numbers.in_box(2)};
     robot_.set(robot, 1, 0);
+    buttons_.set({static_cast<std::uint8_t>(numbers.below(k_buttons_mask + 1))}, 1, 0);
     rewind();
   }
-  void run() noexcept override { node_(now_, estimates_, robot_, samples_); }
+  void run() noexcept override { node_(now_, estimates_, robot_, buttons_, samples_); }
 
  private:
   Now now_;
   Estimates known_;
   graph::Latest<Estimates> estimates_;
   graph::Latest<RobotFrame> robot_;
+  graph::Latest<PenButtons> buttons_;
   PoseSamples samples_;
 };
 
@@ -98,6 +100,7 @@ class PackCanKernel final : public NodeKernel<PackCan> {
     sample.state = all || !numbers.one_in(8) ? TrackState::measured : TrackState::lost;
     sample.registration = RegistrationState::given;
     sample.reason = Reason::none;
+    sample.buttons = PenButtons{k_buttons_mask}.of_tool(t);
     if (!sample.has_pose()) return;
     sample.pose = any_view(numbers);
     sample.velocity_m_s = numbers.in_box(2);

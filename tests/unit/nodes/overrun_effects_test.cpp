@@ -48,7 +48,7 @@ PoseSample sample_of(const Estimates& estimates, std::int64_t tick_ms) {
   auto samples = std::make_unique<PoseSamples>();
   PredictTools predict;
   EXPECT_EQ(predict.prepare(), Reason::none);
-  predict(Now{Time{} + milliseconds(tick_ms), 5, 0}, latest, robot, *samples);
+  predict(Now{Time{} + milliseconds(tick_ms), 5, 0}, latest, robot, {}, *samples);
   return samples->items[0];
 }
 
@@ -90,7 +90,7 @@ TEST(FrameOverrun, DeclaresEveryToolLostWhenItStops) {
   EXPECT_EQ(out->tracks[1].reason, Reason::overrun_stopped);
 }
 
-// What left at tick 1000 ms, from a measurement 10 ms older, at 2 m/s along y.
+// What left at tick 1000 ms, from a measurement 10 ms older, at 2 m/s along y; draw was held.
 std::unique_ptr<PoseSamples> left() {
   auto samples = std::make_unique<PoseSamples>();
   samples->count = 1;
@@ -100,22 +100,23 @@ std::unique_ptr<PoseSamples> left() {
   sample.measurement = Time{} + milliseconds(990);
   sample.state = TrackState::measured;
   sample.reason = Reason::none;
+  sample.buttons = 1;
   sample.velocity_m_s.y() = 2;
   sample.angular_velocity_rad_s.z() = 1;
   return samples;
 }
 
-PoseSample after(OverrunPolicy policy, std::int64_t tick_ms) {
+PoseSample after(OverrunPolicy policy, std::int64_t tick_ms, PenButtons buttons = {}) {
   auto out = std::make_unique<PoseSamples>();
   const Now now{Time{} + milliseconds(tick_ms), static_cast<std::uint32_t>(tick_ms / 4), 0};
-  EXPECT_TRUE(substitute(policy, now, k_lost_after, *left(), *out));
+  EXPECT_TRUE(substitute(policy, {now, k_lost_after, buttons}, *left(), *out));
   EXPECT_EQ(out->count, 1);
   return out->items[0];
 }
 
 TEST(TickOverrun, LetsNothingLeaveWhenItSkips) {
   PoseSamples out;
-  EXPECT_FALSE(substitute(OverrunPolicy::skip_output, Now{}, k_lost_after, *left(), out));
+  EXPECT_FALSE(substitute(OverrunPolicy::skip_output, {Now{}, k_lost_after, {}}, *left(), out));
 }
 
 TEST(TickOverrun, SendsTheLastSamplesAgainOlder) {
@@ -146,6 +147,25 @@ TEST(TickOverrun, LosesAToolThatIsHeldForTooLong) {
   const PoseSample sample = after(OverrunPolicy::hold_last, 1244);
   EXPECT_EQ(sample.state, TrackState::lost);
   EXPECT_EQ(sample.reason, Reason::too_old);
+}
+
+TEST(TickOverrun, SaysTheButtonsThatAreHeldByThen) {
+  for (const OverrunPolicy policy :
+       {OverrunPolicy::hold_last, OverrunPolicy::predict, OverrunPolicy::stop_safe}) {
+    EXPECT_EQ(after(policy, 1008, {6}).buttons, 6);
+    EXPECT_EQ(after(policy, 1008, {0}).buttons, 0) << "draw was let go";
+    EXPECT_EQ(after(policy, 1244, {6}).state, TrackState::lost);
+    EXPECT_EQ(after(policy, 1244, {6}).buttons, 6);
+  }
+}
+
+TEST(TickOverrun, SaysNoButtonsOfAnyToolButTheFirst) {
+  const auto in_time = left();
+  in_time->items[0].tool = 1;
+  auto out = std::make_unique<PoseSamples>();
+  const OverrunTick tick{{in_time->items[0].tick, 250, 0}, k_lost_after, {7}};
+  EXPECT_TRUE(substitute(OverrunPolicy::hold_last, tick, *in_time, *out));
+  EXPECT_EQ(out->items[0].buttons, 0);
 }
 
 }  // namespace

@@ -32,13 +32,16 @@ class PredictTools : public testing::Test {
     estimates.set(*estimates_, 1, 0);
     graph::Latest<RobotFrame> robot;
     robot.set(robot_, 1, 0);
-    node_(Now{Time{} + milliseconds(tick_ms), 7, 0}, estimates, robot, *samples_);
+    graph::Latest<PenButtons> buttons;
+    buttons.set(buttons_, 1, 0);
+    node_(Now{Time{} + milliseconds(tick_ms), 7, 0}, estimates, robot, buttons, *samples_);
     return samples_->items[0];
   }
 
   std::unique_ptr<Estimates> estimates_ = std::make_unique<Estimates>();
   std::unique_ptr<PoseSamples> samples_ = std::make_unique<PoseSamples>();
   RobotFrame robot_{RegistrationState::given, {}, 0};
+  PenButtons buttons_;
   glint::PredictTools node_;
 };
 
@@ -60,6 +63,30 @@ TEST_F(PredictTools, IsPredictedUpToLostAfterAndThenLostWithoutAPose) {
   EXPECT_EQ(lost.state, TrackState::lost);
   EXPECT_EQ(lost.reason, Reason::too_old);
   EXPECT_TRUE(lost.pose.translation.isZero());
+}
+
+TEST_F(PredictTools, SaysThePensButtonsWhetherItIsSeenLostOrYetToBeSeen) {
+  EXPECT_EQ(at(1010).buttons, 0);
+  buttons_.held = 5;
+  EXPECT_EQ(at(1010).state, TrackState::measured);
+  EXPECT_EQ(at(1010).buttons, 5);
+  EXPECT_EQ(at(1251).reason, Reason::too_old);
+  EXPECT_EQ(at(1251).buttons, 5);
+  estimates_->tracks[0] = Track{};
+  EXPECT_EQ(at(1010).state, TrackState::none);
+  EXPECT_EQ(at(1010).buttons, 5);
+  estimates_->tracks[0].reason = Reason::too_old;
+  EXPECT_EQ(at(1010).state, TrackState::lost);
+  EXPECT_EQ(at(1010).buttons, 5);
+}
+
+TEST_F(PredictTools, SaysNoButtonsOfAnyToolButTheFirst) {
+  estimates_->tool_count = 2;
+  estimates_->tracks[1] = estimates_->tracks[0];
+  buttons_.held = 7;
+  EXPECT_EQ(at(1010).buttons, 7);
+  EXPECT_EQ(samples_->items[1].state, TrackState::measured);
+  EXPECT_EQ(samples_->items[1].buttons, 0);
 }
 
 TEST_F(PredictTools, GivesTheTipInTheRobotsFrame) {

@@ -70,12 +70,13 @@ TEST_P(OverrunStatus, SaysOnceWhatLeftInPlaceOfATickThatWasNotInTime) {
   estimates.write_slot() = seen_pen();
   estimates.publish(1, 0);
   graph::TripleBuffer<RobotFrame> robot;
+  graph::TripleBuffer<PenButtons> buttons;
   OverrunNotes notes;
   Time now;
   TickSinks sinks;
   sinks.dds = &sink;
   const auto group = std::make_unique<TickGroup>(
-      cell, estimates, robot, [&now] { return now; }, sinks, 0, 1, runner, notes);
+      cell, estimates, robot, buttons, [&now] { return now; }, sinks, 0, 1, runner, notes);
   for (std::uint32_t tick = k_first; tick <= k_last; ++tick) {
     now = Time{} + k_period * tick;
     group->tick(tick, now, now);

@@ -163,6 +163,15 @@ void add_button(Sample& sample, const ButtonEvent& event) {
                  {"pressed", event.pressed}});
 }
 
+void add_pen_buttons(Sample& sample, const PenButtonsRecord& buttons) {
+  sample.writer.write_pen_buttons(buttons);
+  sample.expect("/glint/pen_buttons", buttons.time,
+                {{"header", sample.header(buttons.time, "")},
+                 {"version", std::to_string(buttons.version)},
+                 {"time_ns", number(buttons.time.nanoseconds)},
+                 {"held", buttons.held}});
+}
+
 void add_robot_frame(Sample& sample, const RobotFrameRecord& frame) {
   sample.writer.write_robot_frame(frame);
   sample.expect("/glint/robot_frame", frame.time,
@@ -234,6 +243,7 @@ void make(const std::string& folder, RecordingLevel level) {
     add_output(sample, output);
     add_button(sample, {output.tick, Button::undo, i % 2 == 0});
     if (level == RecordingLevel::outputs) continue;
+    add_pen_buttons(sample, {i + 1, output.tick, static_cast<std::uint8_t>(i % 2 == 0 ? 4 : 0)});
     add_robot_frame(sample, {i + 2, output.tick, RegistrationState::accepted,
                              sample_head_pose(4).T_world_camera, 0.004, i % 2 == 0});
   }

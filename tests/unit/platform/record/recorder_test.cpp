@@ -147,6 +147,7 @@ TEST(Recorder, OffersWithoutTouchingTheHeap) {
     recorder.tick_lane().offer_output(sample, record);
     recorder.input_lane().offer_dropped({});
     recorder.input_lane().offer_button({{1}, Button::draw, true});
+    recorder.input_lane().offer_pen_buttons({1, {1}, 1});
   }
   EXPECT_EQ(counter.count(), 0u);
   const std::vector<int> seen(3);

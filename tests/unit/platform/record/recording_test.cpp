@@ -249,6 +249,37 @@ TEST(Recording, KeepsTheRobotsFramesToTheBitWhereTheyAreDecidedFrom) {
   }
 }
 
+TEST(Recording, KeepsWhichButtonsAreHeldWhereTicksAreDecidedFromThem) {
+  const PenButtonsRecord pressed{7, {12'345}, 5}, let_go{(std::uint64_t{1} << 40) + 3, {99'999}, 0};
+  for (const RecordingLevel level : {RecordingLevel::full, RecordingLevel::roi,
+                                     RecordingLevel::blobs, RecordingLevel::outputs}) {
+    const TemporaryFolder folder;
+    {
+      RecordingWriter writer(folder.file("run.mcap"), sample_info(level));
+      writer.write_pen_buttons(pressed);
+      writer.write_pen_buttons(let_go);
+    }
+    RecordingReader reader(folder.file("run.mcap"));
+    const auto messages = all_messages(reader);
+    if (level == RecordingLevel::outputs) {
+      EXPECT_TRUE(messages.empty());
+      continue;
+    }
+    ASSERT_EQ(messages.size(), 2U);
+    EXPECT_EQ(std::get<PenButtonsRecord>(messages[0]), pressed);
+    EXPECT_EQ(std::get<PenButtonsRecord>(messages[1]), let_go);
+  }
+}
+
+TEST(Recording, RefusesHeldButtonsThatAreNotWholeOrThatThePenHasNot) {
+  CdrWriter writer;
+  write_message(writer, PenButtonsRecord{1, {2}, 7}, {});
+  EXPECT_TRUE(read_pen_buttons(writer.bytes()).has_value());
+  EXPECT_FALSE(read_pen_buttons(writer.bytes().first(writer.bytes().size() - 1)).has_value());
+  write_message(writer, PenButtonsRecord{1, {2}, 8}, {});
+  EXPECT_FALSE(read_pen_buttons(writer.bytes()).has_value());
+}
+
 TEST(Recording, RefusesARobotsFrameThatIsNotWholeOrOfNoState) {
   CdrWriter writer;
   RobotFrameRecord frame;

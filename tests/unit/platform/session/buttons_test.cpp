@@ -1,14 +1,19 @@
-// Buttons into a run's recording, whoever says them.
+// Buttons into a run's recording and into what leaves at its ticks, whoever says them.
 #include <gtest/gtest.h>
 
 #include <array>
 #include <latch>
+#include <memory>
 #include <thread>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "platform/cells/cell.hpp"
 #include "platform/record/recording_reader.hpp"
 #include "platform/session/sinks.hpp"
+#include "platform/session/tick_group.hpp"
+#include "tests/unit/platform/session/buttons_on_the_bus.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
 
 namespace glint {
@@ -20,13 +25,10 @@ Cell cell_that_records() {
   return cell;
 }
 
-TEST(ButtonsOfARun, AreAllRecordedThoughSeveralThreadsSayThem) {
-  constexpr int k_events = 50000;
-  const TemporaryFolder folder;
-  SinkOutcome outcome;
-  Cell cell = cell_that_records();
-  cell.realtime = false;  // a full queue is waited for
-  Sinks sinks(cell, {folder.path(), false, {}}, 0);
+constexpr int k_events = 50001;  // of each of three threads: at the end its button is held
+
+// Each thread says another button, down and up in turn.
+void say_by_three_threads(Sinks& sinks) {
   std::array<std::thread, 3> threads;
   std::latch together(3);
   for (std::size_t t = 0; t < threads.size(); ++t) {
@@ -38,6 +40,15 @@ TEST(ButtonsOfARun, AreAllRecordedThoughSeveralThreadsSayThem) {
     });
   }
   for (std::thread& thread : threads) thread.join();
+}
+
+TEST(ButtonsOfARun, AreAllRecordedThoughSeveralThreadsSayThem) {
+  const TemporaryFolder folder;
+  SinkOutcome outcome;
+  Cell cell = cell_that_records();
+  cell.realtime = false;  // a full queue is waited for
+  Sinks sinks(cell, {folder.path(), false, {}}, 0);
+  say_by_three_threads(sinks);
   sinks.close(outcome);
   EXPECT_TRUE(outcome.recording.complete());
   RecordingReader reader(outcome.recording_file);
@@ -51,6 +62,109 @@ TEST(ButtonsOfARun, AreAllRecordedThoughSeveralThreadsSayThem) {
     ++i;
   }
   EXPECT_EQ(next, (std::array<int, k_button_count>{k_events, k_events, k_events, 0}));
+}
+
+// Each change of what is held stands right behind the event that made it, and is that change.
+TEST(ButtonsOfARun, AreHeldAsTheirEventsSayThoughSeveralThreadsSayThem) {
+  const TemporaryFolder folder;
+  SinkOutcome outcome;
+  Cell cell = cell_that_records();
+  cell.realtime = false;
+  Sinks sinks(cell, {folder.path(), false, {}}, 0);
+  say_by_three_threads(sinks);
+  ASSERT_TRUE(sinks.held_buttons().sample());
+  EXPECT_EQ(sinks.held_buttons().value().held, 7);
+  EXPECT_EQ(sinks.held_buttons().version(), 3u * k_events);
+  sinks.close(outcome);
+  ASSERT_TRUE(outcome.recording.complete());
+  RecordingReader reader(outcome.recording_file);
+  PenButtonsRecord expected;
+  int changes = 0;
+  while (const auto message = reader.next()) {
+    if (const auto* const event = std::get_if<ButtonEvent>(&*message)) {
+      const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(event->button));
+      expected = {expected.version + 1, event->time,
+                  static_cast<std::uint8_t>(expected.held ^ bit)};
+    } else if (const auto* const held = std::get_if<PenButtonsRecord>(&*message)) {
+      ++changes;
+      ASSERT_EQ(*held, expected) << "change " << changes;
+    }
+  }
+  EXPECT_EQ(changes, 3 * k_events);
+}
+
+TEST(ButtonsOfARun, AreHeldFromTheirPressToTheirReleaseAndChangeNothingWhenSaidAgain) {
+  const TemporaryFolder folder;
+  Sinks sinks(cell_that_records(), {folder.path(), false, {}}, 0);
+  graph::TripleBuffer<PenButtons>& held = sinks.held_buttons();
+  std::int64_t time = 0;
+  // What is held then, or -1 where nothing changed.
+  const auto after = [&](Button button, bool pressed) {
+    sinks.offer_button({{++time}, button, pressed});
+    if (!held.sample()) return -1;
+    EXPECT_EQ(held.time_ns(), time);
+    return int{held.value().held};
+  };
+  EXPECT_EQ(held.version(), 0u);
+  EXPECT_EQ(held.value().held, 0);
+  EXPECT_EQ(after(Button::undo, false), -1) << "it was not held";
+  EXPECT_EQ(after(Button::draw, true), 1);
+  EXPECT_EQ(held.version(), 1u);
+  EXPECT_EQ(after(Button::draw, true), -1);
+  EXPECT_EQ(after(Button::delete_last, true), 3);
+  EXPECT_EQ(after(Button::undo, true), 7);
+  EXPECT_EQ(after(Button::finish, true), -1) << "three bits";
+  EXPECT_EQ(after(Button::draw, false), 6);
+  EXPECT_EQ(after(Button::finish, false), -1);
+  EXPECT_EQ(after(Button::undo, false), 2);
+  EXPECT_EQ(after(Button::delete_last, false), 0);
+  EXPECT_EQ(held.version(), 6u);
+  SinkOutcome outcome;
+  sinks.close(outcome);
+}
+
+TEST(ButtonsOfARun, LeaveInTheirBitsOfEveryTickWithoutAPoseToo) {
+  for (const bool fd : {false, true}) {
+    const TemporaryFolder folder;
+    Cell cell = cell_that_records();
+    cell.realtime = false;
+    cell.can.fd = fd;
+    Sinks sinks(cell, {folder.path(), false, {}}, 0);
+    graph::TripleBuffer<Estimates> estimates;
+    estimates.write_slot().tool_count = 1;  // never seen
+    estimates.publish(1, 0);
+    graph::TripleBuffer<RobotFrame> robot;
+    RunnerSettings<Output> settings;
+    settings.live = false;
+    GroupRunner<Output> runner(settings);
+    OverrunNotes notes;
+    TickSinks listening;
+    listening.can = sinks.can();
+    Time now;
+    const auto group = std::make_unique<TickGroup>(
+        cell, estimates, robot, sinks.held_buttons(), [&now] { return now; }, listening, 0, 1,
+        runner, notes);
+    std::uint32_t number = 0;
+    const auto tick = [&] {
+      now = Time{} + milliseconds(4) * number;
+      group->tick(number++, now, now);
+    };
+    tick();
+    for (const auto& [button, pressed] :
+         {std::pair{Button::draw, true}, std::pair{Button::undo, true},
+          std::pair{Button::draw, false}, std::pair{Button::delete_last, true},
+          std::pair{Button::undo, false}}) {
+      sinks.offer_button({now, button, pressed});
+      tick();
+    }
+    for (const bool pressed : {true, false}) sinks.offer_button({now, Button::draw, pressed});
+    tick();
+    SinkOutcome outcome;
+    sinks.close(outcome);
+    EXPECT_EQ(buttons_on_the_bus(folder.path() + "/can.log", fd),
+              (std::vector<int>{0, 1, 5, 4, 6, 2, 2}))
+        << (fd ? "CAN FD" : "classic");
+  }
 }
 
 TEST(ButtonsOfARun, AreSaidNotToBeHeardWhereNoBusCanBringThem) {

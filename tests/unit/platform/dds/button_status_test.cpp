@@ -1,0 +1,73 @@
+// From a button's topic through a tick to the status that every DDS reader sees.
+#include <memory>
+#include <vector>
+
+#include "platform/session/sinks.hpp"
+#include "platform/session/tick_group.hpp"
+#include "tests/unit/platform/dds/isolated_network.hpp"
+#include "tests/unit/platform/dds/peer.hpp"
+#include "tests/unit/platform/dds/samples.hpp"
+#include "tests/unit/platform/record/recording_samples.hpp"
+
+namespace glint {
+namespace {
+
+using ButtonStatus = DdsTest;
+
+TEST_F(ButtonStatus, SaysWhatIsHeldFromTheNextTickOn) {
+  const TemporaryFolder folder;
+  const Cell cell = default_cell();
+  SinkOptions options;
+  options.out = folder.file("");
+  options.with_reader = false;
+  Sinks sinks(cell, options, k_board_start.nanoseconds);
+  Peer peer(test_settings());
+  const dds_entity_t reader = peer.reader(status_type(), topics_of("glint", "pen").status,
+                                          Reliability::reliable, Durability::volatile_data, 100);
+  const dds_entity_t button = peer.writer(bool_type(), "rt/glint/button_undo",
+                                          Reliability::reliable, Durability::volatile_data, 64);
+  ASSERT_TRUE(peer.meets(*sinks.dds()));
+  ASSERT_TRUE(comes_true([&] {
+    dds_publication_matched_status_t status{};
+    dds_get_publication_matched_status(button, &status);
+    return status.current_count > 0;
+  }));
+
+  graph::TripleBuffer<Estimates> estimates;
+  estimates.write_slot().tool_count = 1;  // never seen: who holds a button holds it all the same
+  estimates.publish(1, 0);
+  graph::TripleBuffer<RobotFrame> robot;
+  RunnerSettings<Output> settings;
+  settings.live = false;
+  GroupRunner<Output> runner(settings);
+  OverrunNotes notes;
+  TickSinks listening;
+  listening.dds = sinks.dds();
+  Time now;
+  const auto group = std::make_unique<TickGroup>(
+      cell, estimates, robot, sinks.held_buttons(), [&now] { return now; }, listening, 0, 1, runner,
+      notes);
+  std::uint32_t number = 0;
+  const auto tick = [&] {
+    now = Time{} + k_period * ++number;
+    group->tick(number, now, now);
+  };
+  tick();
+  for (const bool down : {true, false}) {
+    const BoolMessage message{down};
+    dds_write(button, &message);
+    ASSERT_TRUE(comes_true([&] { return sinks.held_buttons().sample(); }));
+    tick();
+    tick();
+  }
+  std::vector<int> said;
+  EXPECT_EQ(take<StatusMessage>(
+                reader, 5, [&](const StatusMessage& message) { said.push_back(message.buttons); }),
+            5u);
+  EXPECT_EQ(said, (std::vector<int>{0, 4, 4, 0, 0}));
+  SinkOutcome outcome;
+  sinks.close(outcome);
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,144 @@
+// Buttons pressed while a run goes on: what left of them comes out of its recording again.
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <span>
+
+#include "platform/session/replay.hpp"
+#include "tests/unit/platform/session/buttons_on_the_bus.hpp"
+#include "tests/unit/platform/session/overrun_log.hpp"
+#include "tests/unit/platform/session/run_with_buttons.hpp"
+
+namespace glint {
+namespace {
+
+// Draw is held over undo; delete_last is clicked between two ticks, which no tick sees; finish has
+// no bit. Undo goes up where a tick is late.
+constexpr std::uint32_t k_late = 175;
+std::vector<ButtonEvent> pressed_on_the_way() {
+  const auto at = [](std::int64_t ms) { return Time{} + milliseconds(ms); };
+  return {{at(302), Button::draw, true},         {at(501), Button::delete_last, true},
+          {at(502), Button::delete_last, false}, {at(600), Button::undo, true},
+          {at(650), Button::finish, true},       {at(700), Button::undo, false},
+          {at(801), Button::draw, false}};
+}
+int held_at(std::uint32_t tick) {
+  const std::int64_t ms = 4 * std::int64_t{tick};
+  return (ms >= 302 && ms < 801 ? 1 : 0) + (ms >= 600 && ms < 700 ? 4 : 0);
+}
+
+Cell pressed_cell(const char* level) {
+  Cell cell = short_cell(1.0, level);
+  cell.overrun.tick = graph::OverrunPolicy::hold_last;
+  return cell;
+}
+
+SessionResult pressed_run(const Cell& cell, const std::string& folder) {
+  SessionOptions options;
+  options.out = folder;
+  options.injections = {{"", 1, true, k_late, cell.deadlines.tick + Duration{1}}};
+  return run_with_buttons(cell, pressed_on_the_way(), options);
+}
+
+std::string text_of(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class ButtonsReplay : public testing::TestWithParam<const char*> {};
+
+TEST_P(ButtonsReplay, GivesTheBytesOfARunInWhichTheyWerePressed) {
+  const TemporaryFolder folder;
+  const SessionResult run = pressed_run(pressed_cell(GetParam()), folder.path());
+  ASSERT_TRUE(run.recording.complete());
+  ASSERT_EQ(run.tick_overruns.missed, 1u);
+  for (const int workers : {1, 2}) {
+    ReplayOptions options;
+    options.workers = workers;
+    const ReplayResult result = replay(run.recording_file, options);
+    EXPECT_TRUE(result.agrees()) << result.mismatches << " differ, first " << result.first_mismatch;
+    EXPECT_EQ(result.output_sha256, run.output_sha256);
+  }
+
+  OverrunLog log;
+  Duration unix_offset;
+  read_recording(run.recording_file, log, unix_offset);
+  ASSERT_EQ(log.outputs.at(k_late).reason, Reason::overrun_held);
+  const std::vector<int> on_the_bus = buttons_on_the_bus(folder.path() + "/can.log", false);
+  ASSERT_EQ(on_the_bus.size(), log.outputs.size());
+  auto on_this_tick = on_the_bus.begin();
+  for (const auto& [tick, sample] : log.outputs) {
+    EXPECT_EQ(sample.buttons, held_at(tick)) << "tick " << tick;
+    EXPECT_EQ(*on_this_tick++, held_at(tick)) << "tick " << tick;
+  }
+}
+
+TEST_P(ButtonsReplay, SendsTheSameCanFramesWhateverIsRecorded) {
+  const TemporaryFolder one, other;
+  const SessionResult run = pressed_run(pressed_cell(GetParam()), one.path());
+  Cell unrecorded = pressed_cell("outputs");
+  unrecorded.record.file.clear();
+  EXPECT_EQ(pressed_run(unrecorded, other.path()).output_sha256, run.output_sha256);
+  EXPECT_EQ(text_of(one.path() + "/can.log"), text_of(other.path() + "/can.log"));
+}
+
+INSTANTIATE_TEST_SUITE_P(AtEveryLevel, ButtonsReplay,
+                         testing::Values("full", "roi", "blobs", "outputs"),
+                         [](const auto& level) { return std::string(level.param); });
+
+// A recording at level blobs again, of each message what `keep` leaves of it.
+void copy_recording(const std::string& from, const std::string& to,
+                    const std::function<bool(RecordedMessage&)>& keep) {
+  RecordingReader reader(from);
+  RecordingInfo info;
+  info.level = reader.level();
+  info.nominal_tick = reader.nominal_tick();
+  info.unix_offset = reader.unix_offset();
+  for (const std::string& name : reader.attachment_names()) {
+    info.attachments.push_back(reader.attachment(name));
+  }
+  RecordingWriter writer(to, info);
+  while (auto message = reader.next()) {
+    if (!keep(*message)) continue;
+    if (const auto* head = std::get_if<HeadPose>(&*message)) writer.write_head_pose(*head);
+    if (const auto* frame = std::get_if<MarkerFrame>(&*message)) writer.write_markers(*frame);
+    if (const auto* choice = std::get_if<ChoiceRecord>(&*message)) writer.write_choice(*choice);
+    if (const auto* output = std::get_if<OutputMessage>(&*message)) {
+      const std::span<const std::uint8_t, k_output_record_bytes> record(output->record);
+      writer.write_output(decode(record).value, record);
+    }
+  }
+}
+
+TEST(ButtonsReplay, HoldsNoneWhereAnOlderRecordingSaysNothingOfThem) {
+  const TemporaryFolder folder;
+  const SessionResult run = short_run(short_cell(0.5, "blobs"), folder.path());
+  const std::string older = folder.path() + "/older.mcap";
+  copy_recording(run.recording_file, older, [](RecordedMessage& message) {
+    if (auto* const choice = std::get_if<ChoiceRecord>(&message);
+        choice != nullptr && choice->group == k_tick_group) {
+      EXPECT_EQ(choice->version_count, 3);
+      choice->version_count = 2;
+    }
+    return true;
+  });
+  const ReplayResult result = replay(older, {});
+  EXPECT_TRUE(result.agrees()) << result.mismatches << " differ, first " << result.first_mismatch;
+  EXPECT_EQ(result.output_sha256, run.output_sha256);
+}
+
+TEST(ButtonsReplay, MissesAVersionThatTicksReadAndTheRecordingLacks) {
+  const TemporaryFolder folder;
+  const SessionResult run = pressed_run(pressed_cell("blobs"), folder.path());
+  const std::string without = folder.path() + "/without.mcap";
+  copy_recording(run.recording_file, without, [](RecordedMessage& message) {
+    const auto* const buttons = std::get_if<PenButtonsRecord>(&message);
+    return buttons == nullptr;
+  });
+  const ReplayResult result = replay(without, {});
+  EXPECT_FALSE(result.agrees());
+  EXPECT_EQ(result.versions_missing, run.ticks - 76) << "from the first press on";
+}
+
+}  // namespace
+}  // namespace glint
