@@ -1,10 +1,12 @@
-// A board's groups notice an overrun ahead where they were given bounds, as a desktop's do.
+// A board's groups do as a desktop's: they notice an overrun ahead where they were given bounds,
+// and say which buttons are held.
 #include "platform/boards/board_groups.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
+#include <string>
 
 namespace glint {
 namespace {
@@ -30,9 +32,11 @@ class BoardGroupsTest : public testing::Test {
   }
   ~BoardGroupsTest() override { std::filesystem::remove_all(folder_); }
 
-  // Some frames, then some ticks, each released when it is due.
-  [[nodiscard]] BoardResult run_with(const BoardBounds& bounds) const {
+  // Some frames, then some ticks, each released when it is due; the pen's button goes down first,
+  // if at all.
+  [[nodiscard]] BoardResult run_with(const BoardBounds& bounds, bool pressed = false) const {
     Sinks sinks(cell_, {folder_.string(), false, {}}, 0);
+    if (pressed) sinks.offer_button({Time{}, Button::draw, true});
     Time now;
     BoardGroups groups(
         cell_, sinks, [&now] { return now; }, 0, k_frames, bounds);
@@ -75,6 +79,12 @@ TEST_F(BoardGroupsTest, GoOnWhereWhatRemainsFitsOrNoBoundIsKnown) {
     EXPECT_EQ(result.frames, k_frames);
     EXPECT_EQ(result.frame_overruns.total() + result.tick_overruns.total(), 0u);
   }
+}
+
+TEST_F(BoardGroupsTest, SayWhetherAButtonIsHeld) {
+  const std::string held = run_with({}, true).output_sha256;
+  EXPECT_EQ(held, run_with({}, true).output_sha256);
+  EXPECT_NE(held, run_with({}).output_sha256);
 }
 
 }  // namespace
