@@ -1,0 +1,38 @@
+// What several messages of a recording have in common, as they are read.
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/geometry.hpp"
+#include "platform/record/cdr.hpp"
+
+namespace glint {
+
+// A std_msgs/Header, for other programs: the run's own clock stands behind it where it counts.
+inline void skip_header(CdrReader& from) {
+  (void)from.get<std::int32_t>();
+  (void)from.get<std::uint32_t>();
+  (void)from.get_text();
+}
+
+template <class Stamped>
+void get_stamps(CdrReader& from, Stamped& frame) {
+  frame.mid_exposure.nanoseconds = from.get<std::int64_t>();
+  frame.arrival.nanoseconds = from.get<std::int64_t>();
+  frame.sequence = from.get<std::uint32_t>();
+}
+
+[[nodiscard]] inline Vector3 get_vector(CdrReader& from) {
+  Vector3 vector;
+  for (int axis = 0; axis < 3; ++axis) vector[axis] = from.get<double>();
+  return vector;
+}
+
+[[nodiscard]] inline Pose get_pose(CdrReader& from) {
+  Pose pose;
+  pose.translation = get_vector(from);
+  for (int i = 0; i < 4; ++i) pose.rotation.coeffs()[i] = from.get<double>();  // x, y, z, w
+  return pose;
+}
+
+}  // namespace glint
