@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "kernels/motion/motion_state.hpp"
 #include "platform/calibrate/correlation.hpp"
 #include "platform/calibrate/robust.hpp"
 #include "platform/calibrate/say.hpp"
@@ -36,8 +37,6 @@ std::optional<Pose> at(std::span<const StampedPose> reference, Time time, double
 struct Sample {
   Pose measured, truth;
 };
-
-using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 // What has to be done to the measured pose: shift, then turn, along the frame's axes.
 Vector6 error_of(const Sample& sample, CorrectionFrame frame) {
