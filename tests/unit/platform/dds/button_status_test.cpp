@@ -1,13 +1,12 @@
 // From a button's topic through a tick to the status that every DDS reader sees.
-#include <memory>
 #include <vector>
 
 #include "platform/session/sinks.hpp"
-#include "platform/session/tick_group.hpp"
 #include "tests/unit/platform/dds/isolated_network.hpp"
 #include "tests/unit/platform/dds/peer.hpp"
 #include "tests/unit/platform/dds/samples.hpp"
 #include "tests/unit/platform/record/recording_samples.hpp"
+#include "tests/unit/platform/session/unseen_pen.hpp"
 
 namespace glint {
 namespace {
@@ -27,38 +26,18 @@ TEST_F(ButtonStatus, SaysWhatIsHeldFromTheNextTickOn) {
   const dds_entity_t button = peer.writer(bool_type(), "rt/glint/button_undo",
                                           Reliability::reliable, Durability::volatile_data, 64);
   ASSERT_TRUE(peer.meets(*sinks.dds()));
-  ASSERT_TRUE(comes_true([&] {
-    dds_publication_matched_status_t status{};
-    dds_get_publication_matched_status(button, &status);
-    return status.current_count > 0;
-  }));
+  ASSERT_TRUE(comes_true([&] { return has_reader(button); }));
 
-  graph::TripleBuffer<Estimates> estimates;
-  estimates.write_slot().tool_count = 1;  // never seen: who holds a button holds it all the same
-  estimates.publish(1, 0);
-  graph::TripleBuffer<RobotFrame> robot;
-  RunnerSettings<Output> settings;
-  settings.live = false;
-  GroupRunner<Output> runner(settings);
-  OverrunNotes notes;
   TickSinks listening;
   listening.dds = sinks.dds();
-  Time now;
-  const auto group = std::make_unique<TickGroup>(
-      cell, estimates, robot, sinks.held_buttons(), [&now] { return now; }, listening, 0, 1, runner,
-      notes);
-  std::uint32_t number = 0;
-  const auto tick = [&] {
-    now = Time{} + k_period * ++number;
-    group->tick(number, now, now);
-  };
-  tick();
+  UnseenPen pen(cell, sinks, listening);
+  pen.tick();
   for (const bool down : {true, false}) {
     const BoolMessage message{down};
     dds_write(button, &message);
     ASSERT_TRUE(comes_true([&] { return sinks.held_buttons().sample(); }));
-    tick();
-    tick();
+    pen.tick();
+    pen.tick();
   }
   std::vector<int> said;
   EXPECT_EQ(take<StatusMessage>(

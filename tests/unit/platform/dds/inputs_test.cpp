@@ -21,11 +21,7 @@ namespace {
 using Inputs = DdsTest;
 
 bool found(dds_entity_t writer) {
-  return comes_true([&] {
-    dds_publication_matched_status_t status{};
-    dds_get_publication_matched_status(writer, &status);
-    return status.current_count > 0;
-  });
+  return comes_true([&] { return has_reader(writer); });
 }
 
 // Both ends, in domains of their own.

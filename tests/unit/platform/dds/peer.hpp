@@ -37,6 +37,12 @@ template <class Done>
   return status.current_count > 0;
 }
 
+[[nodiscard]] inline bool has_reader(dds_entity_t writer) {
+  dds_publication_matched_status_t status{};
+  dds_get_publication_matched_status(writer, &status);
+  return status.current_count > 0;
+}
+
 class Peer {
  public:
   explicit Peer(const DdsSettings& settings) : settings_(settings) {

@@ -32,11 +32,7 @@ TEST_F(RecordedButton, StandsInARunsRecordingAtItsTime) {
     Peer peer(test_settings());
     const dds_entity_t button = peer.writer(bool_type(), "rt/glint/button", Reliability::reliable,
                                             Durability::volatile_data, 64);
-    ASSERT_TRUE(comes_true([&] {
-      dds_publication_matched_status_t status{};
-      dds_get_publication_matched_status(button, &status);
-      return status.current_count > 0;
-    }));
+    ASSERT_TRUE(comes_true([&] { return has_reader(button); }));
     before = Time{dds_time()} - k_board_start;
     for (const bool down : {true, false}) {
       const BoolMessage message{down};
@@ -71,11 +67,7 @@ TEST_F(RecordedButton, AToolNamedOverDdsReachesARunsRoster) {
   Peer peer(test_settings());
   const dds_entity_t remove = peer.writer(text_type(), "rt/glint/tool_remove",
                                           Reliability::reliable, Durability::volatile_data, 64);
-  ASSERT_TRUE(comes_true([&] {
-    dds_publication_matched_status_t status{};
-    dds_get_publication_matched_status(remove, &status);
-    return status.current_count > 0;
-  }));
+  ASSERT_TRUE(comes_true([&] { return has_reader(remove); }));
   std::string name = cell.tools.items[0].name.data();
   const TextMessage message{name.data()};
   dds_write(remove, &message);

@@ -23,12 +23,7 @@ class RobotSpeaker {
                           Durability::volatile_data, 10);
   }
   // Whom it speaks to knows its joints and its guess.
-  [[nodiscard]] bool is_known() const {
-    dds_publication_matched_status_t joints{}, guess{};
-    dds_get_publication_matched_status(joint_states_, &joints);
-    dds_get_publication_matched_status(guess_, &guess);
-    return joints.current_count > 0 && guess.current_count > 0;
-  }
+  [[nodiscard]] bool is_known() const { return has_reader(joint_states_) && has_reader(guess_); }
   void say_description(std::string urdf) {
     const TextMessage message{urdf.data()};
     dds_write(description_, &message);

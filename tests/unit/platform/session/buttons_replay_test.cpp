@@ -8,6 +8,7 @@
 #include "tests/unit/platform/session/buttons_on_the_bus.hpp"
 #include "tests/unit/platform/session/overrun_log.hpp"
 #include "tests/unit/platform/session/run_with_buttons.hpp"
+#include "tests/unit/platform/session/same_bytes.hpp"
 
 namespace glint {
 namespace {
@@ -52,13 +53,7 @@ TEST_P(ButtonsReplay, GivesTheBytesOfARunInWhichTheyWerePressed) {
   const SessionResult run = pressed_run(pressed_cell(GetParam()), folder.path());
   ASSERT_TRUE(run.recording.complete());
   ASSERT_EQ(run.tick_overruns.missed, 1u);
-  for (const int workers : {1, 2}) {
-    ReplayOptions options;
-    options.workers = workers;
-    const ReplayResult result = replay(run.recording_file, options);
-    EXPECT_TRUE(result.agrees()) << result.mismatches << " differ, first " << result.first_mismatch;
-    EXPECT_EQ(result.output_sha256, run.output_sha256);
-  }
+  for (const int workers : {1, 2}) expect_same_bytes(run.recording_file, run, workers);
 
   OverrunLog log;
   Duration unix_offset;
@@ -122,9 +117,7 @@ TEST(ButtonsReplay, HoldsNoneWhereAnOlderRecordingSaysNothingOfThem) {
     }
     return true;
   });
-  const ReplayResult result = replay(older, {});
-  EXPECT_TRUE(result.agrees()) << result.mismatches << " differ, first " << result.first_mismatch;
-  EXPECT_EQ(result.output_sha256, run.output_sha256);
+  expect_same_bytes(older, run);
 }
 
 TEST(ButtonsReplay, MissesAVersionThatTicksReadAndTheRecordingLacks) {

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <latch>
-#include <memory>
 #include <thread>
 #include <utility>
 #include <variant>
@@ -12,9 +11,9 @@
 #include "platform/cells/cell.hpp"
 #include "platform/record/recording_reader.hpp"
 #include "platform/session/sinks.hpp"
-#include "platform/session/tick_group.hpp"
 #include "tests/unit/platform/session/buttons_on_the_bus.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
+#include "tests/unit/platform/session/unseen_pen.hpp"
 
 namespace glint {
 namespace {
@@ -130,35 +129,19 @@ TEST(ButtonsOfARun, LeaveInTheirBitsOfEveryTickWithoutAPoseToo) {
     cell.realtime = false;
     cell.can.fd = fd;
     Sinks sinks(cell, {folder.path(), false, {}}, 0);
-    graph::TripleBuffer<Estimates> estimates;
-    estimates.write_slot().tool_count = 1;  // never seen
-    estimates.publish(1, 0);
-    graph::TripleBuffer<RobotFrame> robot;
-    RunnerSettings<Output> settings;
-    settings.live = false;
-    GroupRunner<Output> runner(settings);
-    OverrunNotes notes;
     TickSinks listening;
     listening.can = sinks.can();
-    Time now;
-    const auto group = std::make_unique<TickGroup>(
-        cell, estimates, robot, sinks.held_buttons(), [&now] { return now; }, listening, 0, 1,
-        runner, notes);
-    std::uint32_t number = 0;
-    const auto tick = [&] {
-      now = Time{} + milliseconds(4) * number;
-      group->tick(number++, now, now);
-    };
-    tick();
+    UnseenPen pen(cell, sinks, listening);
+    pen.tick();
     for (const auto& [button, pressed] :
          {std::pair{Button::draw, true}, std::pair{Button::undo, true},
           std::pair{Button::draw, false}, std::pair{Button::delete_last, true},
           std::pair{Button::undo, false}}) {
-      sinks.offer_button({now, button, pressed});
-      tick();
+      sinks.offer_button({pen.now(), button, pressed});
+      pen.tick();
     }
-    for (const bool pressed : {true, false}) sinks.offer_button({now, Button::draw, pressed});
-    tick();
+    for (const bool pressed : {true, false}) sinks.offer_button({pen.now(), Button::draw, pressed});
+    pen.tick();
     SinkOutcome outcome;
     sinks.close(outcome);
     EXPECT_EQ(buttons_on_the_bus(folder.path() + "/can.log", fd),

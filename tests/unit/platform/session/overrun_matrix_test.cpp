@@ -9,6 +9,7 @@
 
 #include "platform/session/replay.hpp"
 #include "tests/unit/platform/session/overrun_log.hpp"
+#include "tests/unit/platform/session/same_bytes.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
 
 namespace glint {
@@ -203,11 +204,7 @@ void OverrunMatrix::expect_what_frames_published(const OverrunLog& log) const {
 
 void OverrunMatrix::expect_replays_alike(const SessionResult& run) {
   for (const int workers : {1, 2}) {
-    ReplayOptions options;
-    options.workers = workers;
-    const ReplayResult result = replay(run.recording_file, options);
-    EXPECT_TRUE(result.agrees()) << result.mismatches << " differ, first " << result.first_mismatch;
-    EXPECT_EQ(result.output_sha256, run.output_sha256);
+    const ReplayResult result = expect_same_bytes(run.recording_file, run, workers);
     EXPECT_EQ(result.overruns, Tracker::node_count + Output::node_count);
   }
 }

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "platform/cells/tool_writer.hpp"
+#include "tests/unit/platform/session/same_bytes.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
 
 namespace glint {
@@ -16,11 +17,7 @@ TEST_P(Replay, DecidesAlikeWithOneWorkerAndWithTwo) {
   ASSERT_TRUE(run.recording.complete());
   ASSERT_GT(run.accuracy.poses, 50);
   for (const int workers : {1, 2}) {
-    ReplayOptions options;
-    options.workers = workers;
-    const ReplayResult result = replay(run.recording_file, options);
-    EXPECT_TRUE(result.agrees()) << result.mismatches << " differ, first " << result.first_mismatch;
-    EXPECT_EQ(result.output_sha256, run.output_sha256);
+    const ReplayResult result = expect_same_bytes(run.recording_file, run, workers);
     EXPECT_EQ(result.records, run.ticks - 3);  // none before the first frame names its tools
   }
 }
@@ -36,16 +33,9 @@ TEST_P(Replay, TakesAToolsOwnDepthBiasOff) {
   std::ofstream(cell_file) << "tools = [\"own.toml\"]\n[camera.depth_bias]\noffset_mm = 3\n"
                               "range_mm = [200, 1200]\n[record]\nlevel = \""
                            << GetParam() << "\"\n";
-  Cell cell = load_cell(cell_file);
-  cell.realtime = false;
-  cell.workers = 1;
-  cell.simulator.duration_s = 1.0;
-  cell.dds.on = false;
-  const SessionResult run = short_run(cell, folder.path());
+  const SessionResult run = short_run(shortened(load_cell(cell_file), 1.0), folder.path());
   ASSERT_GT(run.accuracy.poses, 30);
-  const ReplayResult result = replay(run.recording_file, {});
-  EXPECT_TRUE(result.agrees()) << result.mismatches << " differ, first " << result.first_mismatch;
-  EXPECT_EQ(result.output_sha256, run.output_sha256);
+  expect_same_bytes(run.recording_file, run);
 }
 
 INSTANTIATE_TEST_SUITE_P(AtEveryLevel, Replay, testing::Values("full", "roi", "blobs", "outputs"),
@@ -81,18 +71,12 @@ TEST(Replay, NeedsNoFileThatTheCellNamed) {
                          "k1_k2_p1_p2_k3_k4_k5_k6 = [-0.05, 0.01, 0, 0, 0, 0, 0, 0]\n"
                          "field_tangent = 1.4\n";
   std::ofstream(cell_file) << "[camera]\nfile = \"lens.toml\"\n";
-  Cell cell = load_cell(cell_file);
+  const Cell cell = shortened(load_cell(cell_file), 1.0);
   ASSERT_EQ(cell.camera.model.fx, 260.0);
-  cell.realtime = false;
-  cell.workers = 1;
-  cell.simulator.duration_s = 1.0;
-  cell.dds.on = false;
   const SessionResult run = short_run(cell, folder.path());
   ASSERT_GT(run.accuracy.poses, 30);
   std::filesystem::remove(lens);
-  const ReplayResult result = replay(run.recording_file, {});
-  EXPECT_TRUE(result.agrees()) << result.mismatches << " differ";
-  EXPECT_EQ(result.output_sha256, run.output_sha256);
+  expect_same_bytes(run.recording_file, run);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Tools that come and go while a session runs, and in its replay.
-#include "platform/session/replay.hpp"
 #include "platform/session/tool_roster.hpp"
+#include "tests/unit/platform/session/same_bytes.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
 
 namespace glint {
@@ -36,13 +36,7 @@ TEST_P(ToolsThatChange, AreNotTrackedWhileTheyAreAway) {
 TEST_P(ToolsThatChange, AreTheSameInAReplay) {
   TemporaryFolder folder;
   const SessionResult run = short_run(pen_goes_and_comes(GetParam()), folder.path());
-  for (const int workers : {1, 2}) {
-    ReplayOptions options;
-    options.workers = workers;
-    const ReplayResult result = replay(run.recording_file, options);
-    EXPECT_TRUE(result.agrees()) << result.mismatches << " differ, first " << result.first_mismatch;
-    EXPECT_EQ(result.output_sha256, run.output_sha256);
-  }
+  for (const int workers : {1, 2}) expect_same_bytes(run.recording_file, run, workers);
 }
 
 INSTANTIATE_TEST_SUITE_P(AtEveryLevel, ToolsThatChange, testing::Values("full", "roi", "blobs"),

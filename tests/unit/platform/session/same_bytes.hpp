@@ -1,0 +1,26 @@
+// A recording replayed beside the run that made it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "platform/session/replay.hpp"
+#include "platform/session/session.hpp"
+
+namespace glint {
+
+// Fails the test where the replay decides or says anything else than the run; gives what more it
+// found.
+inline ReplayResult expect_same_bytes(const std::string& recording, const SessionResult& run,
+                                      int workers = 1) {
+  ReplayOptions options;
+  options.workers = workers;
+  ReplayResult result = replay(recording, options);
+  EXPECT_TRUE(result.agrees()) << result.mismatches << " differ, first " << result.first_mismatch
+                               << ", " << workers << " workers";
+  EXPECT_EQ(result.output_sha256, run.output_sha256);
+  return result;
+}
+
+}  // namespace glint
