@@ -1,0 +1,13 @@
+# Compiling through ccache, so that a fresh clone of the same commit compiles nothing again. Paths
+# inside the tree are made relative before they are hashed, debug information holds none of them,
+# and no preset depends on the folder that it is built in.
+find_program(GLINT_CCACHE ccache)
+if(GLINT_CCACHE)
+  set(launcher ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=true
+    CCACHE_SLOPPINESS=pch_defines,time_macros ${GLINT_CCACHE})
+  set(CMAKE_C_COMPILER_LAUNCHER ${launcher})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${launcher})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")  # a time stamp would make each header differ
+    add_compile_options("SHELL:-Xclang -fno-pch-timestamp")
+  endif()
+endif()
