@@ -3,7 +3,7 @@ add_executable(bench_cloud alignment_glint.cpp alignment_race.cpp cloud_agreemen
   cloud_benchmark.cpp cloud_glint.cpp)
 target_link_libraries(bench_cloud PRIVATE glint_registration glint_sensors ${CMAKE_DL_LIBS})
 target_compile_definitions(bench_cloud PRIVATE ${bench_flags}
-  GLINT_BENCH_DATA="${GLINT_TEST_DATA}" GLINT_BENCH_PCL="libbench_cloud_pcl.so")
+  GLINT_BENCH_PCL="libbench_cloud_pcl.so")
 
 find_path(GLINT_PCL_INCLUDE pcl/pcl_base.h PATH_SUFFIXES pcl-1.13)
 set(pcl_found ${GLINT_PCL_INCLUDE})

@@ -143,8 +143,7 @@ bool compare(Side& glint, Side& pcl) {
 int run(int rounds) {
   const char* const data = std::getenv("GLINT_TEST_DATA");
   const std::filesystem::path folder =
-      std::filesystem::path(data != nullptr ? data : GLINT_BENCH_DATA) / "robot_scans" /
-      "xarm7_realsense";
+      std::filesystem::path(data != nullptr ? data : "") / "robot_scans" / "xarm7_realsense";
   if (!std::filesystem::is_directory(folder)) {
     std::fprintf(stderr,
                  "bench_cloud: %s is not there; expected GLINT_TEST_DATA to name a folder "

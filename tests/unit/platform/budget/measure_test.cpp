@@ -1,4 +1,4 @@
-// Measures a kernel of known work through the real programs: GLINT_TOY_MEASURE is glint_measure
+// Measures a kernel of known work through the real programs: glint_measure_toy is glint_measure
 // with that kernel in place of Glint's own.
 #include <gtest/gtest.h>
 
@@ -9,16 +9,17 @@
 #include "platform/budget/measure/measure_result.hpp"
 #include "platform/budget/measure/measured_limits.hpp"
 #include "platform/input_error.hpp"
+#include "tests/unit/beside_test.hpp"
 
 namespace glint {
 namespace {
 
 MeasureRequest toy_request() {
   MeasureRequest request;
-  request.program = GLINT_TOY_MEASURE;
+  request.program = beside_test("glint_measure_toy");
   request.emulator = "qemu-x86_64";
   request.cpu_model = "qemu64";
-  request.plugin = GLINT_PLUGIN;
+  request.plugin = beside_test("glint_count_instructions.so");
   request.inputs = 400;
   return request;
 }

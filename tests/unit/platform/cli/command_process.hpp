@@ -16,13 +16,15 @@
 #include <thread>
 #include <vector>
 
+#include "tests/unit/beside_test.hpp"
+
 namespace glint {
 
 class CommandProcess {
  public:
-  // GLINT_PROGRAM with these arguments; what it writes to both outputs goes to `log`.
+  // glint with these arguments; what it writes to both outputs goes to `log`.
   CommandProcess(std::vector<std::string> arguments, std::string log) : log_(std::move(log)) {
-    arguments.insert(arguments.begin(), GLINT_PROGRAM);
+    arguments.insert(arguments.begin(), beside_test("glint"));
     std::vector<char*> words;
     for (std::string& argument : arguments) words.push_back(argument.data());
     words.push_back(nullptr);

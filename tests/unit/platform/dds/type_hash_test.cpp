@@ -14,6 +14,7 @@
 #include "platform/dds/messages.hpp"
 #include "platform/dds/topic_types.hpp"
 #include "platform/record/sha256.hpp"
+#include "tests/unit/beside_test.hpp"
 
 namespace glint {
 namespace {
@@ -64,7 +65,7 @@ Definitions ros_definitions() {
        "std_msgs/Header header\ndiagnostic_msgs/DiagnosticStatus[] status"},
   };
   std::ostringstream text;
-  text << std::ifstream(GLINT_TRACK_STATUS_MSG).rdbuf();
+  text << std::ifstream(beside_test("TrackStatus.msg")).rdbuf();
   types["glint_msgs/TrackStatus"] = text.str();
   return types;
 }
