@@ -36,7 +36,7 @@ Rois clipped(const Rois& rois, const Limits& limits, int width, int top, int bot
 }
 
 // Calls scan(pixels of the row, y, x0, x1) for each stretch of a row that lies in an ROI, until it
-// gives false; gives the number of ROIs times rows.
+// returns false; returns the number of ROIs times rows.
 template <class Pixel, class Scan>
 int for_each_stretch(const ImageView<Pixel>& image, const Rois& rois, const Limits& limits,
                      RowBand band, Scan scan) {
@@ -93,29 +93,6 @@ ThresholdWork scan_fast(const ImageView<Pixel>& image, const Rois& rois, const L
   return work;
 }
 
-template <class Pixel>
-void scan_reference(const ImageView<Pixel>& image, const Rois& rois, const Limits& limits,
-                    std::uint16_t threshold, RowBand band, Runs& out) {
-  const int most = std::clamp(limits.runs_per_band, 0, k_runs_per_band_max);
-  for_each_stretch(image, rois, limits, band, [&](const Pixel* row, int y, int x0, int x1) {
-    for (int x = x0; x < x1; ++x) {
-      if (row[x] <= threshold) continue;
-      Run* last = out.count > 0 ? &out.items[static_cast<std::size_t>(out.count - 1)] : nullptr;
-      if (last != nullptr && last->y == y && last->x1 == x) {
-        ++last->x1;
-      } else if (out.count < most) {
-        out.items[static_cast<std::size_t>(out.count++)] = {static_cast<std::uint16_t>(y),
-                                                            static_cast<std::uint16_t>(x),
-                                                            static_cast<std::uint16_t>(x + 1)};
-      } else {
-        out.reason = Reason::runs_full;
-        return false;
-      }
-    }
-    return true;
-  });
-}
-
 }  // namespace
 
 ThresholdWork threshold_runs(const Frame& frame, const Rois& rois, std::uint16_t threshold,
@@ -132,18 +109,6 @@ ThresholdWork threshold_runs(const Frame& frame, const Rois& rois, std::uint16_t
   writer.finish();
   work.runs = out.count;
   return work;
-}
-
-void threshold_runs_reference(const Frame& frame, const Rois& rois, std::uint16_t threshold,
-                              RowBand band, Runs& out, const Limits& limits) noexcept {
-  out.count = 0;
-  out.reason = Reason::none;
-  if (!usable(frame, band, limits)) return;
-  if (!frame.reflectivity_16.empty()) {
-    scan_reference(frame.reflectivity_16, rois, limits, threshold, band, out);
-  } else if (!frame.reflectivity_8.empty()) {
-    scan_reference(frame.reflectivity_8, rois, limits, threshold, band, out);
-  }
 }
 
 }  // namespace glint

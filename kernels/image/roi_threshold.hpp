@@ -41,7 +41,7 @@ ThresholdWork threshold_runs(const Frame& frame, const Rois& rois, std::uint16_t
                              RowBand band, Runs& out,
                              const Limits& limits = {}) noexcept GLINT_NONBLOCKING;
 
-// The same, pixel by pixel: what the faster one is compared with.
+// The same, pixel by pixel, in code of its own: the tests compare the faster one with it.
 void threshold_runs_reference(const Frame& frame, const Rois& rois, std::uint16_t threshold,
                               RowBand band, Runs& out, const Limits& limits = {}) noexcept;
 

@@ -204,6 +204,32 @@ TEST(Blobs, FlagsTheBorderAndSaturation) {
   EXPECT_EQ(blobs.items[2].flags, k_blob_touches_edge);
 }
 
+// The blob and its variance along the axis that the border cuts, border by border.
+TEST(Blobs, TouchEachOfTheFourBordersOnlyInItsOutermostPixel) {
+  constexpr int k_width = 21, k_height = 15, k_side = 3;
+  const auto blob_at = [&](int x0, int y0) {
+    Picture p(k_width, k_height);
+    for (int i = 0; i < k_side * k_side; ++i) p(x0 + i % k_side, y0 + i / k_side) = 9000;
+    Finder find;
+    const Blobs& blobs = find(p);
+    EXPECT_EQ(blobs.count, 1);
+    return blobs.items[0];
+  };
+  constexpr int k_last_x = k_width - k_side, k_last_y = k_height - k_side;
+  const Blob inside = blob_at(8, 6);
+  EXPECT_EQ(inside.flags, 0);
+  for (const auto& [x, y] : {std::pair{1, 6}, {k_last_x - 1, 6}, {8, 1}, {8, k_last_y - 1}}) {
+    EXPECT_EQ(blob_at(x, y).flags, 0) << x << ' ' << y;
+  }
+  for (const auto& [x, y] : {std::pair{0, 6}, {k_last_x, 6}, {8, 0}, {8, k_last_y}}) {
+    const Blob cut = blob_at(x, y);
+    EXPECT_EQ(cut.flags, k_blob_touches_edge) << x << ' ' << y;
+    const std::size_t across = y == 6 ? 0 : 1;
+    EXPECT_GT(cut.variance_px2[across], 3 * inside.variance_px2[across]) << x << ' ' << y;
+    EXPECT_GT(cut.variance_px2[across], 3 * cut.variance_px2[1 - across]) << x << ' ' << y;
+  }
+}
+
 TEST(Blobs, ComeByRowsThenFromLeft) {
   Finder find;
   // The second component's first run is left of the first one's, but its box begins further right.

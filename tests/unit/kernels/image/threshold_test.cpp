@@ -62,6 +62,15 @@ TEST(Threshold, JoinsRunsAcrossTheBorderOfTwoRois) {
   EXPECT_EQ(runs_of(p.frame(), rois, 0), (List{{0, 1, 6}, {0, 7, 8}}));
 }
 
+TEST(Threshold, ReadsEachRoisRowsAndColumnsHalfOpen) {
+  const Picture p = picture_of({"######", "######", "######", "######", "######"});
+  Rois rois;
+  rois.items[0] = {1, 1, 3, 3};
+  rois.items[1] = {4, 2, 5, 4};
+  rois.count = 2;
+  EXPECT_EQ(runs_of(p.frame(), rois, 0), (List{{1, 1, 3}, {2, 1, 3}, {2, 4, 5}, {3, 4, 5}}));
+}
+
 TEST(Threshold, CountsOverlappingRoisOnce) {
   const Picture p = picture_of({"########", "########"});
   Rois rois;
