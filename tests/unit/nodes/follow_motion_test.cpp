@@ -34,11 +34,12 @@ class FollowMotion : public testing::Test {
   FollowedTools tried(bool found = true, const Vector3& aside = Vector3::Zero()) {
     FrameVerdict verdict;
     verdict.reason = refused_ ? Reason::frame_late : Reason::none;
+    verdict.resynchronised = restarted_;
     verdict.stamp.mid_exposure = Time{} + milliseconds(22) * number_;
     FittedTool& tool = (*fitted_)[0].tools[0];
     tool.reason = found ? Reason::none : Reason::no_labeling;
     const UncertainPose seen =
-        test::measured_pose(T_camera_tool_, {}, k_shift_sigma, k_turn_sigma, random_);
+        test::measured_pose(T_camera_tool_, {}, shift_sigma_m_, turn_sigma_rad_, random_);
     tool.T_camera_tool = {seen.pose.rotation, seen.pose.translation + aside};
     tool.covariance = seen.covariance;
     FollowedTools out;
@@ -53,8 +54,9 @@ class FollowMotion : public testing::Test {
   graph::Latest<ToolSet> tools_;
   Anchor anchor_;
   Pose T_camera_tool_;
-  bool refused_ = false;
+  bool refused_ = false, restarted_ = false;
   int number_ = 1;
+  double shift_sigma_m_ = k_shift_sigma, turn_sigma_rad_ = k_turn_sigma;
   std::unique_ptr<graph::Parts<FittedTools, k_tool_slices>> fitted_ =
       std::make_unique<graph::Parts<FittedTools, k_tool_slices>>();
   SeenFew few_;
@@ -229,6 +231,59 @@ TEST_F(FollowMotion, LetsAPoseByOneMarkerStandOnlyWhileItIsSure) {
   }
   EXPECT_LT(standing, 30) << "what turns about the marker shows nowhere";
   EXPECT_NE(tool().few_mask, 0) << "it is followed all the same";
+}
+
+TEST_F(FollowMotion, LetsAPoseStandOnlyWithinBothLimits) {
+  struct Case {
+    double position_m, rotation_rad;
+    bool stands;
+  };
+  for (const Case& c : {Case{0.0045, 0.060, true}, Case{0.0055, 0.060, false},
+                        Case{0.0045, 0.070, false}, Case{0.0055, 0.070, false}}) {
+    *last_ = {};
+    shift_sigma_m_ = c.position_m;
+    turn_sigma_rad_ = c.rotation_rad;
+    anchor_.now.head.T_world_camera.rotation.setIdentity();
+    T_camera_tool_.rotation.setIdentity();
+    set_->items[0].markers_m.fill(Vector3::Zero());  // the middle is the origin: no lever arm
+    tools_.set(*set_, 1, 0);
+    frame();
+    EXPECT_EQ(tool().reason, Reason::none);
+    EXPECT_EQ(tool().stands, c.stands) << c.position_m << ' ' << c.rotation_rad;
+  }
+}
+
+TEST_F(FollowMotion, LetsNoPoseOfAFrameStandInTheNext) {
+  for (int i = 0; i < 9; ++i) frame();
+  ASSERT_TRUE(tool().stands);
+  frame(false);
+  EXPECT_FALSE(tool().stands) << "nothing was found";
+  frame();
+  ASSERT_TRUE(tool().stands);
+  refused_ = true;
+  frame();
+  EXPECT_FALSE(tool().stands) << "the frame was refused";
+}
+
+// The stamps begin anew, earlier than the newest that was followed, or a little later.
+TEST_F(FollowMotion, BeginsAnewWhereTheClockRestarts) {
+  for (const int restarted_at : {1, 70}) {
+    *last_ = {};
+    number_ = 1;
+    for (int i = 0; i < 60; ++i) frame();
+    ASSERT_TRUE(tool().motion.rests());
+    number_ = restarted_at;
+    restarted_ = true;
+    T_camera_tool_.translation.x() += 0.1;
+    frame();
+    restarted_ = false;
+    EXPECT_EQ(tool().reason, Reason::none) << restarted_at;
+    EXPECT_EQ(tool().estimate.time, Time{} + milliseconds(22) * restarted_at);
+    const Vector3 middle =
+        anchor_.now.head.T_world_camera * T_camera_tool_ * set_->items[0].middle_m();
+    EXPECT_LT((tool().estimate.pose.translation - middle).norm(), 0.005) << "not drawn to the old";
+    EXPECT_TRUE(tool().estimate.velocity_m_s.isZero());
+  }
 }
 
 TEST_F(FollowMotion, TakesNoMarkerForAToolThatItDoesNotKnow) {

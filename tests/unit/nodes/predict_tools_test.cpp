@@ -96,6 +96,30 @@ TEST_F(PredictTools, GivesTheTipInTheRobotsFrame) {
   EXPECT_TRUE(sample.pose.translation.isApprox(Vector3(0.1 - 1, -2, 0.5 - 3)));
 }
 
+// The robot's x axis is the world's y, its y axis the world's -x.
+TEST_F(PredictTools, TurnsPoseSpeedsAndCovarianceIntoTheRobotsFrame) {
+  Track& track = estimates_->tracks[0];
+  track.motion.velocity_m_s = Vector3(0.1, 0.2, 0.3);
+  track.motion.angular_velocity_rad_s = Vector3(1, 2, -3);
+  track.motion.covariance.diagonal().setConstant(1e-12);
+  track.head_covariance.diagonal() << 1e-6, 4e-6, 9e-6, 1e-10, 4e-10, 9e-10;
+  robot_.T_world_robot.rotation = Quaternion(std::sqrt(0.5), 0, 0, std::sqrt(0.5));
+  const PoseSample sample = at(1000);
+  EXPECT_EQ(sample.frame, ReferenceFrame::robot);
+  EXPECT_LT((sample.pose.translation - Vector3(0, -0.1, 0.5)).norm(), 1e-12);
+  EXPECT_LT((sample.pose.rotation * Vector3::UnitX() + Vector3::UnitY()).norm(), 1e-12);
+  EXPECT_LT((sample.angular_velocity_rad_s - Vector3(2, -1, -3)).norm(), 1e-12);
+  // The tip's own: the middle's and what the turn adds, (1, 2, -3) x (0.1, 0, 0) in the world.
+  const Vector3 in_world = Vector3(0.1, 0.2, 0.3) + Vector3(0, -0.3, -0.2);
+  const Vector3 in_robot(in_world.y(), -in_world.x(), in_world.z());
+  EXPECT_LT((sample.velocity_m_s - in_robot).norm(), 1e-12);
+  EXPECT_NEAR(sample.covariance(3, 3), 4e-10, 1e-11);
+  EXPECT_NEAR(sample.covariance(4, 4), 1e-10, 1e-11);
+  EXPECT_NEAR(sample.covariance(5, 5), 9e-10, 1e-11);
+  EXPECT_NEAR(sample.covariance(0, 0), 4e-6 + 0.01 * 9e-10, 1e-9);
+  EXPECT_NEAR(sample.covariance(1, 1), 1e-6, 1e-9);
+}
+
 TEST_F(PredictTools, StaysInTheWorldAndSaysSoWithoutARobotFrame) {
   robot_.state = RegistrationState::none;
   const PoseSample sample = at(1010);
@@ -124,6 +148,7 @@ TEST_F(PredictTools, MovesOnByTheEquationsOfMotionWithGrowingUncertainty) {
   EXPECT_NEAR(far.pose.translation.y(), 0.1 * std::sin(turn), 1e-7);
   const Vector3 tip_velocity(1 - 0.2 * std::sin(turn), 0.2 * std::cos(turn), 0);
   EXPECT_TRUE(far.velocity_m_s.isApprox(tip_velocity, 1e-6));
+  EXPECT_TRUE(far.angular_velocity_rad_s.isApprox(Vector3(0, 0, 2), 1e-9));
   // The tip turns with the tool: 0.1 m of arm and 1e-3 rad make another 1e-4 m on two axes.
   EXPECT_NEAR(near.sigma_position_m, std::sqrt(1e-6 + 2.0 / 3 * 1e-8), 1e-9);
   const UncertainPose middle =

@@ -42,6 +42,7 @@ class PredictTracks : public testing::Test {
     graph::Latest<ToolSet> tools;
     tools.set(*tools_, 1, 0);
     FrameVerdict verdict;
+    verdict.resynchronised = restarted_;
     verdict.stamp.mid_exposure = Time{} + milliseconds(1000 + gap_ms);
     node_(verdict, head_, tools, graph::Previous<Anchor>(anchor_),
           graph::Previous<Estimates>(*last_), *predictions_);
@@ -49,6 +50,7 @@ class PredictTracks : public testing::Test {
   }
 
   std::unique_ptr<ToolSet> tools_ = std::make_unique<ToolSet>();
+  bool restarted_ = false;
   HeadPose head_;
   Anchor anchor_;
   std::unique_ptr<Estimates> last_ = std::make_unique<Estimates>();
@@ -65,6 +67,13 @@ TEST_F(PredictTracks, GoesOnWithTheMotionThatTheFilterFollowed) {
   EXPECT_NEAR(middle.z(), 0.5, 1e-9);
   const Vector3 across = found.T_camera_tool.rotation * Vector3::UnitX();
   EXPECT_NEAR(across.y(), 0.040, 1e-3) << "turned about the markers' middle";
+}
+
+TEST_F(PredictTracks, PredictsNothingFromBeforeTheClockRestarted) {
+  ASSERT_TRUE(predict().has_prior);
+  restarted_ = true;
+  EXPECT_FALSE(predict().has_prior);
+  EXPECT_EQ(predictions_->marker_count, 0);
 }
 
 TEST_F(PredictTracks, ReachesAsFarAsTheCovarianceSaysBetweenAFloorAndACeiling) {

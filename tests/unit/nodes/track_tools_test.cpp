@@ -22,6 +22,7 @@ class TrackToolsInTime : public testing::Test {
     tools.set(*set_, 1, 0);
     FrameVerdict verdict;
     verdict.reason = refused_ ? Reason::frame_late : Reason::none;
+    verdict.resynchronised = restarted_;
     verdict.stamp.mid_exposure = followed().estimate.time = Time{} + milliseconds(22) * ++number_;
     verdict.stamp.sequence = static_cast<std::uint32_t>(number_);
     *last_ = *out_;
@@ -41,7 +42,7 @@ class TrackToolsInTime : public testing::Test {
     followed().stands = stands;
     return frame();
   }
-  bool refused_ = false;
+  bool refused_ = false, restarted_ = false;
   int number_ = 0;
   std::unique_ptr<ToolSet> set_ = std::make_unique<ToolSet>();
   std::unique_ptr<graph::Parts<FittedTools, k_tool_slices>> fitted_ =
@@ -104,6 +105,19 @@ TEST_F(TrackToolsInTime, LosesAToolThatIsExchangedOrTakenAway) {
   EXPECT_FALSE(track->alive);
   EXPECT_EQ(track->reason, Reason::tool_changed);
   EXPECT_EQ(found().reason, Reason::tool_changed) << "an empty slot finds nothing";
+}
+
+TEST_F(TrackToolsInTime, LosesEveryToolWhereTheClockRestarts) {
+  for (int i = 0; i < 9; ++i) (void)found();
+  ASSERT_TRUE(out_->tracks[0].has_previous);
+  number_ = 0;
+  restarted_ = true;
+  EXPECT_FALSE(found().has_previous) << "the one before has another clock's time";
+  number_ = 0;
+  followed().reason = Reason::no_labeling;
+  const Track& track = frame();
+  EXPECT_FALSE(track.alive);
+  EXPECT_EQ(track.identity, 5U);
 }
 
 TEST_F(TrackToolsInTime, SaysOfASlotThatWasNeverFilledThatThereWasNoFrameYet) {

@@ -196,6 +196,43 @@ TEST(GroupResponse, CountsWakeUpsInterruptsWritesAndSlices) {
   EXPECT_EQ(group_responses(model, plan)[1].blocking_ns, 70'000);
 }
 
+// The first worker wakes at the release and then wakes the others.
+TEST(GroupResponse, CountsOneWakeUpOnOneCoreAndTwoOnSeveral) {
+  for (const int cores : {1, 2}) {
+    TaskModel model;
+    model.cores = cores;
+    model.groups.push_back(staged_group({{"Half", 2, 100}}));
+    model.groups[0].min_gap_ns = model.groups[0].deadline_ns = 10'000;
+    model.system.wake_up_ns = 7;
+    const auto found = group_responses(model, synthesize(model));
+    ASSERT_EQ(found[0].times.cores_used, cores);
+    EXPECT_EQ(found[0].response_ns, cores == 1 ? 200 + 7 : 100 + 2 * 7);
+  }
+}
+
+// The urgent group may wake late and its next activation in time: both fall into one window.
+TEST(GroupResponse, CountsAnUrgentGroupsJitterAndWakeUpAmongItsReleases) {
+  TaskModel model;
+  model.groups.push_back(staged_group({{"Slow", 1, 83}}));
+  model.groups[0].min_gap_ns = model.groups[0].deadline_ns = 10'000;
+  model.groups.push_back(staged_group({{"Urgent", 1, 10}}));
+  model.groups[1].min_gap_ns = model.groups[1].deadline_ns = 100;
+  const Plan plan = synthesize(model);
+  ASSERT_GT(plan.groups[1].priority, plan.groups[0].priority);
+  const auto response = [&](std::int64_t jitter_ns, std::int64_t wake_up_ns) {
+    model.groups[1].jitter_ns = jitter_ns;
+    model.system.wake_up_ns = wake_up_ns;
+    return group_responses(model, plan)[0].response_ns;
+  };
+  // Own work and wake-up, and one or two releases of the urgent group within that and its lateness.
+  EXPECT_EQ(response(0, 0), 83 + 10);
+  EXPECT_EQ(response(0, 3), 86 + 10);
+  EXPECT_EQ(response(0, 4), 87 + 2 * 10) << "97 + 4 are more than its gap";
+  EXPECT_EQ(response(7, 0), 83 + 10);
+  EXPECT_EQ(response(8, 0), 83 + 2 * 10);
+  EXPECT_EQ(response(2, 3), 86 + 2 * 10);
+}
+
 TEST(Synthesis, GivesTheTickTheHigherPriorityOnlyWhereItNeedsIt) {
   TaskModel model = small_model(1);
   model.groups[0].deadline_ns = 1'000'000;  // now the frame is the more urgent one

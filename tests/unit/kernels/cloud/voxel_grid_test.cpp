@@ -114,6 +114,34 @@ TEST(VoxelGrid, SaysHowManyMeasurementsAPointIsTheMeanOf) {
   EXPECT_EQ(out.points.weight[1], 1.0f);
 }
 
+// Voxels whose keys fall on one slot, found by what looking for each costs beside the first alone.
+TEST(VoxelGrid, LooksAtAsManySlotsAsDeclaredAndDropsWhatHasNoneThere) {
+  TestGrid test(2 * k_voxel_probes_max, 1.0f);
+  const auto cost_of = [&](const Point& point) {
+    const std::int64_t before = test.grid.probes();
+    test.add(TestCloud(std::vector<Point>{point}));
+    return test.grid.probes() - before;
+  };
+  std::vector<Point> same_slot{{0, 0, 0}};
+  for (float x = 1; same_slot.size() < k_voxel_probes_max + 2; ++x) {
+    test.grid.clear();
+    test.add(TestCloud(std::vector<Point>{same_slot[0]}));
+    if (cost_of({x, 0, 0}) == 2) same_slot.push_back({x, 0, 0});
+  }
+  test.grid.clear();
+  for (int i = 0; i < k_voxel_probes_max; ++i) {
+    EXPECT_EQ(cost_of(same_slot[static_cast<std::size_t>(i)]), i + 1);
+    EXPECT_EQ(test.grid.count(), i + 1);
+  }
+  EXPECT_EQ(test.grid.dropped(), 0);
+  for (std::size_t i = k_voxel_probes_max; i < same_slot.size(); ++i) {
+    EXPECT_EQ(cost_of(same_slot[i]), k_voxel_probes_max);
+  }
+  EXPECT_EQ(test.grid.count(), k_voxel_probes_max);
+  EXPECT_EQ(test.grid.dropped(), 2);
+  EXPECT_EQ(test.grid.reason(), Reason::cloud_full) << "although there are voxels left";
+}
+
 TEST(VoxelGrid, ForgetsAllWhenCleared) {
   TestGrid test(300), fresh(300);
   test.add(TestCloud(random_points(300, 0.1f, 3)));
