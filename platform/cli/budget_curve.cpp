@@ -53,6 +53,7 @@ int draw_curve(const CurveCommand& command) {
   request.inputs = command.frames;
   Progress progress("measuring");
   const Observations seen = measure(request, [&](int done, int all) { progress.show(done, all); });
+  progress.clear();
   const std::vector<CurveRow> rows = cost_curve(seen, board);
   const std::string unit = counts ? "instructions" : "ns";
   std::printf("%s a frame, ROI on, 512x512; bound by board %s\n\n", unit.c_str(),

@@ -86,6 +86,7 @@ int run_motion(const MotionArguments& arguments) {
   Progress progress("calibrate motion");
   settings.progress = [&](int evaluations) { progress.show(evaluations, 0, "likelihoods"); };
   const MotionCalibration found = calibrate_motion(recordings, settings, what);
+  progress.clear();
 
   const Figures figures = figures_for(what, arguments, found);
   std::vector<double> misses_mm;

@@ -29,6 +29,7 @@ int run_published(ExperimentKind kind, const ExperimentArguments& arguments) {
   options.progress = [&](int done, int all) { progress.show(done, all); };
   const ExperimentResult result =
       kind == ExperimentKind::still ? run_static(options) : run_dynamic(options);
+  progress.clear();
   std::fputs(experiment_table(result).c_str(), stdout);
   if (!arguments.json.empty()) write_text(arguments.json, experiment_json(result));
   make_folder(arguments.out);
@@ -45,6 +46,7 @@ int run_cases(const CaseExperiment& experiment, const ExperimentArguments& argum
                       [&](int done, int all) { progress.show(done, all); }};
   make_folder(options.out);
   const CaseList list = experiment.run(options);
+  progress.clear();
   std::fputs(case_table(list).c_str(), stdout);
   if (!arguments.json.empty()) write_text(arguments.json, case_json(list, options));
   for (const std::string& file : list.plots) std::printf("written  %s\n", file.c_str());

@@ -110,6 +110,7 @@ int make_map(const MapArguments& arguments) {
     chain.add_frame(frame.picture(), sequence.camera, frame.T_world_camera, frame.left_out);
     progress.show(++done, static_cast<int>(sequence.frames.size()));
   }
+  progress.clear();
   chain.finish();
   if (chain.map().count == 0) {
     throw InputError(arguments.data + ": nothing is left of " +

@@ -28,6 +28,7 @@ int replay_recording(const ReplayArguments& arguments) {
   options.tolerance = arguments.tolerance;
   options.progress = [&](double seconds) { progress.show(seconds, 0); };
   const ReplayResult result = replay(arguments.recording, options);
+  progress.clear();
   std::printf("level            %s\nframes           %lld\nticks            %lld\n",
               result.level.c_str(), static_cast<long long>(result.frames),
               static_cast<long long>(result.ticks));

@@ -89,6 +89,7 @@ int simulate(const SimulateArguments& arguments) {
     }
     progress.show(i, simulator.frame_count());
   }
+  progress.clear();
   std::vector<std::string> files;
   for (PoseFile* file : {&head_truth, &head, &pen_truth, &pen_reference}) {
     files.push_back(file->close());

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <utility>
@@ -19,8 +20,12 @@ long long now_ms() {
 
 Progress::Progress(std::string what) : what_(std::move(what)), on_terminal_(isatty(2) == 1) {}
 
-Progress::~Progress() {
+Progress::~Progress() { clear(); }
+
+void Progress::clear() {
   if (shown_) std::fprintf(stderr, "\r\033[K");
+  std::fflush(stderr);
+  shown_ = false;
 }
 
 void Progress::show(double done, double all, const std::string& note) {
@@ -28,8 +33,8 @@ void Progress::show(double done, double all, const std::string& note) {
   last_shown_ms_ = now_ms();
   shown_ = true;
   if (all > 0) {
-    std::fprintf(stderr, "\r\033[K%s %3.0f %%  %s", what_.c_str(), 100.0 * done / all,
-                 note.c_str());
+    std::fprintf(stderr, "\r\033[K%s %3.0f %%  %s", what_.c_str(),
+                 100.0 * std::clamp(done / all, 0.0, 1.0), note.c_str());
   } else {
     std::fprintf(stderr, "\r\033[K%s %.1f s  %s", what_.c_str(), done, note.c_str());
   }

@@ -12,8 +12,10 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // At most ten times a second; `done` of `all` (all 0: unknown).
+  // At most ten times a second; `done` of `all` (all 0: unknown), never more than all of it.
   void show(double done, double all, const std::string& note = {});
+  // Takes the line away: before anything else is printed.
+  void clear();
 
  private:
   std::string what_;
