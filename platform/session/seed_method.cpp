@@ -8,6 +8,7 @@ FollowedTool followed_from(const Track& before, const StampedPose& now, Referenc
                            const Vector3& middle, Duration velocity_gap_max) {
   FollowedTool followed;
   followed.reason = Reason::none;
+  followed.stands = true;  // the publication doubts no pose
   followed.base = base;
   followed.noise = {0, 0};
   followed.estimate.time = now.time;
