@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 
@@ -18,7 +19,11 @@ template <class Body>
     return code;
   };
   try {
-    return body();
+    const int code = body();
+    // A table that went to a full disk was not printed.
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+    std::fprintf(stderr, "%s: standard output: not all of it could be written\n", program);
+    return std::max(code, 1);
   } catch (const CLI::ParseError& error) {
     // Help asked for is success; anything else is bad use, whatever CLI11 numbers it.
     return app.exit(error) == 0 ? 0 : 2;

@@ -53,7 +53,8 @@ BoardGroups::BoardGroups(const Cell& cell, Sinks& sinks, const Clock& now,
              sinks.recorder() != nullptr ? &sinks.recorder()->frame_lane() : nullptr),
       tick_(cell, frame_.estimates(), robot_, sinks.held_buttons(), now,
             {sinks.can(), sinks.dds(), nullptr,
-             sinks.recorder() != nullptr ? &sinks.recorder()->tick_lane() : nullptr},
+             sinks.recorder() != nullptr ? &sinks.recorder()->tick_lane() : nullptr,
+             sinks.recorder(), &sinks.losses()},
             unix_offset_ns, frames, tick_runner_, frame_.overrun_notes()) {
   frame_.tell_transforms_to(sinks.dds());
   robot_.write_slot() = declared_robot_frame(cell);
@@ -107,13 +108,15 @@ void BoardGroups::tick(std::uint32_t number, Time nominal, Time woken) noexcept 
   add_decisions(tick_runner_, states_);
 }
 
-void BoardGroups::report(BoardResult& result) const {
+void BoardGroups::report(BoardResult& result) {
   result.frames = frames_;
   result.frames_tracked = tracked_;
   result.frame_overruns = frame_runner_.overruns();
   result.tick_overruns = tick_runner_.overruns();
-  result.latencies = tick_.latencies().entries();
-  result.latencies_left_out = tick_.latencies().beyond();
+  const SentTicks& sent = tick_.sent();
+  result.sent = sent.left();
+  result.latencies = sent.latencies().entries();
+  result.latencies_left_out = sent.latencies().beyond();
   if (background_ != nullptr) result.background = background_->counts();
   result.can_frames = tick_.can_frames();
   result.output_sha256 = tick_.output_sha256();

@@ -28,7 +28,7 @@ class BoardGroups {
   [[nodiscard]] BackgroundGroup* background() noexcept { return background_.get(); }
 
   // When all threads have ended.
-  void report(BoardResult& result) const;
+  void report(BoardResult& result);
 
  private:
   ToolRoster roster_;

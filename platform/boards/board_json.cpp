@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "platform/session/background_json.hpp"
+#include "platform/session/losses.hpp"
 
 namespace glint {
 namespace {
@@ -34,9 +35,30 @@ std::int64_t smallest(const std::vector<std::int64_t>& values) {
 }
 
 Json recording_of(const SinkOutcome& sinks) {
-  return {{"file", sinks.recording_file},         {"complete", sinks.recording.complete()},
-          {"dropped", sinks.recording.dropped},   {"reason", sinks.recording.reason},
-          {"messages", sinks.recording.messages}, {"bytes", sinks.recording.bytes}};
+  return {{"file", sinks.recording_file},       {"complete", sinks.recording.complete()},
+          {"dropped", sinks.recording.dropped}, {"lost", sinks.recording.lost},
+          {"reason", sinks.recording.reason},   {"messages", sinks.recording.messages},
+          {"bytes", sinks.recording.bytes}};
+}
+
+// Of the first tool, as the decoded CAN log shows it.
+Json output_of(const TicksLeft& left) {
+  const ToolTicks& tool = left.tools[0];
+  return {{"ticks_left", left.ticks},
+          {"measured", tool.measured},
+          {"predicted", tool.predicted},
+          {"lost", tool.lost},
+          {"none_yet", tool.none},
+          {"longest_gap_ms", left.longest_gap.seconds() * 1e3},
+          {"longest_without_measurement_ms", tool.longest_without_measurement.seconds() * 1e3}};
+}
+
+Json losses_of(const BoardResult& result) {
+  Json losses = Json::array();
+  for (const Loss& loss : losses_of(result.sinks)) {
+    losses.push_back({{"kind", loss.kind}, {"count", loss.count}, {"text", loss.text}});
+  }
+  return losses;
 }
 
 }  // namespace
@@ -57,6 +79,8 @@ Json as_json(const BoardResult& result) {
       {"computing_us", as_json(figures_of(result.latencies, &FrameToCan::computing))},
       {"sampling_us", as_json(figures_of(result.latencies, &FrameToCan::sampling))},
       {"sending_us", as_json(figures_of(result.latencies, &FrameToCan::sending))},
+      {"output", output_of(result.sent)},
+      {"losses", losses_of(result)},
       {"latencies_left_out", result.latencies_left_out},
       {"frame_wake_up_us", spread_us(result.frame_wake_up_ns)},
       {"tick_wake_up_us", spread_us(result.tick_wake_up_ns)},
@@ -69,7 +93,11 @@ Json as_json(const BoardResult& result) {
        {{"buttons", result.sinks.can_heard.heard},
         {"refused", result.sinks.can_heard.refused},
         {"why_not", result.sinks.can_not_heard}}},
-      {"dds", {{"offered", result.sinks.dds.offered}, {"written", result.sinks.dds.written}}},
+      {"dds",
+       {{"offered", result.sinks.dds.offered},
+        {"written", result.sinks.dds.written},
+        {"ring_dropped", result.sinks.dds.ring_dropped},
+        {"others_lost", result.sinks.dds.others_lost}}},
       {"heap_counted", result.heap_counted},
       {"heap_allocations", result.heap_allocations},
       {"page_faults", result.page_faults},

@@ -12,6 +12,7 @@
 #include "platform/session/background_group.hpp"
 #include "platform/session/group_runner.hpp"
 #include "platform/session/latency.hpp"
+#include "platform/session/sent_ticks.hpp"
 #include "platform/session/sink_outcome.hpp"
 
 namespace glint {
@@ -37,6 +38,7 @@ struct BoardResult {
   std::int64_t ticks = 0, ticks_late = 0, ticks_skipped = 0;
   OverrunCounts frame_overruns, tick_overruns;
   std::vector<FrameToCan> latencies;
+  TicksLeft sent;  // the ticks that left over CAN
   std::int64_t latencies_left_out = 0;
   std::vector<std::int64_t> frame_wake_up_ns, tick_wake_up_ns;
   std::uint64_t heap_allocations = 0;  // of all groups after their start

@@ -81,8 +81,7 @@ void writes(CanSink& can, const SystemShareOptions& options, std::vector<std::in
     for (int i = 0; i < options.can_frames_a_burst; ++i) {
       frame.data[0] = static_cast<std::uint8_t>(i);
       const Time before = monotonic_now();
-      can.send(frame, before);
-      took_ns.push_back((monotonic_now() - before).nanoseconds);
+      if (can.send(frame, before)) took_ns.push_back((monotonic_now() - before).nanoseconds);
     }
   }
 }

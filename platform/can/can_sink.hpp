@@ -13,19 +13,25 @@
 namespace glint {
 
 struct CanSinkCounts {
-  std::uint64_t sent = 0;     // taken by the kernel, or handed to the log
+  std::uint64_t sent = 0;     // taken by the kernel, or written to the log
   std::uint64_t dropped = 0;  // the queue was full: the bus or the disk is too slow
   std::uint64_t failed = 0;   // refused by the bus or the disk (down, disk full, no CAN FD)
+  int error = 0;              // errno of the first that failed
   [[nodiscard]] bool all_sent() const { return dropped == 0 && failed == 0; }
+  [[nodiscard]] std::uint64_t lost() const { return dropped + failed; }
 };
+
+// At most so many frames that send() accepted are not yet counted as sent or failed.
+inline constexpr std::size_t k_can_in_flight_max = 16384 + 256;
 
 class CanSink {
  public:
   virtual ~CanSink() = default;
 
   // From one thread. `time` is when the frame is sent, by the board's monotonic clock; a log writes
-  // it down, a bus has its own. What goes wrong is counted.
-  virtual void send(const CanFrame& frame, Time time) noexcept = 0;
+  // it down, a bus has its own. What goes wrong is counted. False: the frame is lost. Of the frames
+  // accepted the first counts().sent have left: a log that has failed once writes no more.
+  virtual bool send(const CanFrame& frame, Time time) noexcept = 0;
 
   // Returns when everything sent so far has left this process. May block: not for the hot path.
   virtual void flush() noexcept = 0;

@@ -65,6 +65,7 @@ void LineFile::write_out() noexcept {
 // Part of the gathered lines may be on the disk: keep the whole ones.
 void LineFile::give_up(std::string_view unwritten) noexcept {
   failed_ = true;
+  error_ = errno;
   const std::string_view all = gathered_;
   const std::string_view written = all.substr(0, all.size() - unwritten.size());
   const auto last_end = written.rfind('\n');

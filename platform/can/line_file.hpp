@@ -26,6 +26,8 @@ class LineFile {
   void write_out() noexcept;
   // Lines that did not reach the disk.
   [[nodiscard]] std::uint64_t lines_lost() const noexcept { return lines_lost_; }
+  // errno of the write that failed; 0: none did.
+  [[nodiscard]] int error() const noexcept { return error_; }
 
  private:
   void give_up(std::string_view unwritten) noexcept;
@@ -34,6 +36,7 @@ class LineFile {
   std::filesystem::path written_as_;
   int descriptor_ = -1;
   bool failed_ = false;
+  int error_ = 0;
   std::int64_t bytes_ = 0;  // on disk, whole lines only
   std::uint64_t lines_lost_ = 0;
   std::string gathered_;

@@ -14,6 +14,9 @@ namespace {
 // How long the writer sleeps when there is nothing to write. Waking it from `send` instead would
 // cost the sender a system call.
 constexpr std::chrono::milliseconds k_nap{2};
+// After so many frames their fate is known.
+constexpr std::uint64_t k_batch = 256;
+static_assert(FrameRing::k_capacity + k_batch <= k_can_in_flight_max);
 
 class LogSink : public CanSink {
  public:
@@ -25,24 +28,24 @@ class LogSink : public CanSink {
     writer_.join();
   }
 
-  void send(const CanFrame& frame, Time time) noexcept override {
+  bool send(const CanFrame& frame, Time time) noexcept override {
     while (!ring_.push({frame, time})) {
       if (options_.when_full == WhenFull::drop) {
         dropped_.fetch_add(1, std::memory_order_relaxed);
-        return;
+        return false;
       }
       std::this_thread::sleep_for(k_nap);
     }
+    return true;
   }
 
   void flush() noexcept override {
     const std::uint64_t target = ring_.pushed();
-    while (settled_.load() < target) std::this_thread::sleep_for(k_nap);
+    while (sent_.load() + failed_.load() < target) std::this_thread::sleep_for(k_nap);
   }
 
   [[nodiscard]] CanSinkCounts counts() const noexcept override {
-    const std::uint64_t failed = failed_.load();
-    return {ring_.pushed() - failed, dropped_.load(), failed};
+    return {sent_.load(), dropped_.load(), failed_.load(), error_.load()};
   }
 
  private:
@@ -56,24 +59,30 @@ class LogSink : public CanSink {
   }
 
   void drain() noexcept {
-    std::uint64_t taken = 0;
     CandumpLine buffer;
     while (const auto item = ring_.pop()) {
       const auto line =
           format_candump(item->frame, item->time.nanoseconds + options_.unix_offset_ns,
                          options_.log_interface, buffer);
-      ++taken;
       file_.add(line);
+      if (++taken_ % k_batch == 0) settle();
     }
+    settle();
+  }
+
+  void settle() noexcept {
     file_.write_out();
+    error_.store(file_.error());
     failed_.store(file_.lines_lost());
-    settled_.store(settled_.load() + taken);
+    sent_.store(taken_ - file_.lines_lost());
   }
 
   CanSinkOptions options_;
   FrameRing ring_;
   LineFile file_;
-  std::atomic<std::uint64_t> dropped_{0}, failed_{0}, settled_{0};
+  std::uint64_t taken_ = 0;  // out of the ring; the writer's own
+  std::atomic<std::uint64_t> dropped_{0}, failed_{0}, sent_{0};
+  std::atomic<int> error_{0};
   std::atomic<bool> stop_{false};
   std::thread writer_;  // last: it uses all of the above
 };

@@ -18,7 +18,7 @@ class SocketCanSink : public CanSink {
   SocketCanSink(const std::string& interface, const CanSinkOptions& options)
       : socket_(open_socketcan(interface, options.format)) {}
 
-  void send(const CanFrame& frame, Time) noexcept override {
+  bool send(const CanFrame& frame, Time) noexcept override {
     canfd_frame raw{};
     raw.can_id = frame.identifier | (frame.extended ? CAN_EFF_FLAG : 0U);
     raw.len = frame.length;
@@ -26,23 +26,23 @@ class SocketCanSink : public CanSink {
     std::copy(frame.data.begin(), frame.data.end(), raw.data);
     const std::size_t size = frame.fd ? CANFD_MTU : CAN_MTU;
     const ssize_t written = ::write(socket_.get(), &raw, size);
-    if (written == static_cast<ssize_t>(size))
-      sent_.fetch_add(1, std::memory_order_relaxed);
-    else if (written < 0 && (errno == EAGAIN || errno == ENOBUFS))
-      dropped_.fetch_add(1, std::memory_order_relaxed);
-    else
-      failed_.fetch_add(1, std::memory_order_relaxed);
+    const bool taken = written == static_cast<ssize_t>(size);
+    const bool full = written < 0 && (errno == EAGAIN || errno == ENOBUFS);
+    if (!taken && !full && error_ == 0) error_ = errno;
+    (taken ? sent_ : full ? dropped_ : failed_).fetch_add(1, std::memory_order_relaxed);
+    return taken;
   }
 
   void flush() noexcept override {}  // a write hands the frame to the kernel at once
 
   [[nodiscard]] CanSinkCounts counts() const noexcept override {
-    return {sent_.load(), dropped_.load(), failed_.load()};
+    return {sent_.load(), dropped_.load(), failed_.load(), error_.load()};
   }
 
  private:
   Descriptor socket_;
   std::atomic<std::uint64_t> sent_{0}, dropped_{0}, failed_{0};
+  std::atomic<int> error_{0};
 };
 
 }  // namespace

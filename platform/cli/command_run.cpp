@@ -3,7 +3,10 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -15,6 +18,7 @@
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/planned_run.hpp"
 #include "platform/cli/progress.hpp"
+#include "platform/cli/run_output.hpp"
 #include "platform/cli/run_report.hpp"
 #include "platform/input_error.hpp"
 #include "platform/programming/key_buttons.hpp"
@@ -39,6 +43,7 @@ struct RunArguments {
   std::vector<std::string> inject;
   bool trace = false;
   bool keys = false;
+  double source_frame_ms = 0;
 };
 
 Cell cell_of(const RunArguments& arguments) {
@@ -68,6 +73,33 @@ void listen_to_keys(const RunArguments& arguments, const Cell& cell,
   std::fflush(stdout);
 }
 
+// A file that cannot be written, on a full disk, costs that file and nothing else.
+bool written(const std::function<void()>& write, SessionResult& result) {
+  try {
+    write();
+  } catch (const InputError& error) {
+    result.not_written.push_back(error.what());
+    return false;
+  }
+  return true;
+}
+
+// The figures first, the plots last.
+int report(const Cell& cell, const SessionOptions& options, const std::string& json_file,
+           SessionResult& result) {
+  const auto write_summary = [&] { write_json(json_file, summary_of(cell, options.plan, result)); };
+  (void)written(write_summary, result);
+  print_table(summary_of(cell, options.plan, result), result);
+  const std::size_t printed = result.files.size();
+  const bool plotted = written([&] { draw_plots(options.out, result); }, result);
+  print_files(result, printed);
+  if (!plotted) (void)written(write_summary, result);
+  const std::vector<std::string> failures = failures_of(result);
+  std::fflush(stdout);
+  for (const std::string& line : failures) std::fprintf(stderr, "glint: %s\n", line.c_str());
+  return failures.empty() ? 0 : 1;
+}
+
 int run(const RunArguments& arguments) {
   const Cell cell = cell_of(arguments);
   SessionOptions options;
@@ -82,16 +114,22 @@ int run(const RunArguments& arguments) {
   listen_to_keys(arguments, cell, terminal);
   if (terminal) options.keys = terminal->descriptor();
   make_folder(arguments.out);
+  make_folder_of(arguments.json);
+  ReservedRoom room(arguments.json);
   Progress progress("tracking");
   options.out = arguments.out;
   options.progress = [&](double done_s, double all_s) { progress.show(done_s, all_s); };
+  options.rendering = [&](int rendered, int wanted) {
+    progress.show(
+        0, 1,
+        "renders ahead: " + std::to_string(rendered) + " of " + std::to_string(wanted) + " frames");
+  };
   options.stop = &g_stop;
+  options.source_frame_time = {static_cast<std::int64_t>(arguments.source_frame_ms * 1e6)};
   SessionResult result = run_session(cell, options);
-  draw_plots(arguments.out, result);
-  const nlohmann::ordered_json summary = summary_of(cell, options.plan, result);
-  print_table(summary, result);
-  write_json(arguments.json, summary);
-  return sums_hold(result) ? 0 : 1;
+  progress.clear();
+  room.release();
+  return report(cell, options, arguments.json, result);
 }
 
 }  // namespace
@@ -126,6 +164,10 @@ void add_run(CLI::App& app, int& exit_code) {
       ->add_option("--inject", arguments->inject,
                    "a delay: node=FindBlobs,delay_us=200,frame=512 or node=..,tick=N; several")
       ->allow_extra_args(false);
+  command
+      ->add_option("--source-frame-ms", arguments->source_frame_ms,
+                   "time the source needs for each frame from when it is due, ms; default: 0")
+      ->check(CLI::Range(0.0, 10'000.0));
   command->add_flag("--trace", arguments->trace, "when every node ran: trace.spans in --out");
   command->add_flag("--no-dds", arguments->no_dds, "send nothing over DDS");
   command->add_flag("--keys", arguments->keys,

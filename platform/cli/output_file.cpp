@@ -1,5 +1,8 @@
 #include "platform/cli/output_file.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -30,6 +33,20 @@ void write_text(const std::string& path, const std::string& text) {
   std::error_code error;
   std::filesystem::rename(partial, path, error);
   if (error) throw InputError(path + ": " + error.message() + "; expected a place for a file");
+}
+
+ReservedRoom::ReservedRoom(const std::string& path) {
+  constexpr off_t k_bytes = off_t{64} << 10;  // a summary with its notices has about 10 kB
+  if (path.empty()) return;
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  descriptor_ =
+      ::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
+  if (descriptor_ >= 0 && ::fallocate(descriptor_, 0, 0, k_bytes) != 0) release();
+}
+
+void ReservedRoom::release() noexcept {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  descriptor_ = -1;
 }
 
 void write_json(const std::string& path, const nlohmann::ordered_json& figures) {

@@ -16,4 +16,19 @@ void write_json(const std::string& path, const nlohmann::ordered_json& figures);
 void make_folder_of(const std::string& path);
 void make_folder(const std::string& path);
 
+// Room on the disk for a file that is written last: what fills the disk in between leaves it free.
+class ReservedRoom {
+ public:
+  // Beside `path`; an empty path, or a file system that cannot do this, reserves nothing.
+  explicit ReservedRoom(const std::string& path);
+  ~ReservedRoom() { release(); }
+  ReservedRoom(const ReservedRoom&) = delete;
+  ReservedRoom& operator=(const ReservedRoom&) = delete;
+
+  void release() noexcept;
+
+ private:
+  int descriptor_ = -1;
+};
+
 }  // namespace glint

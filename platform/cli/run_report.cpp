@@ -1,6 +1,8 @@
 #include "platform/cli/run_report.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -9,6 +11,7 @@
 #include "kernels/angles.hpp"
 #include "platform/cells/correction_text.hpp"
 #include "platform/cli/output_file.hpp"
+#include "platform/cli/run_output.hpp"
 #include "platform/report/plots.hpp"
 #include "platform/session/background_json.hpp"
 
@@ -33,6 +36,11 @@ std::string fixed(double value, int digits, const char* unit) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*f %s", digits, value, unit);
   return text;
+}
+
+// Null where there is no pose: a figure of nothing is none.
+ordered_json of_poses(const Accuracy& accuracy, double figure) {
+  return accuracy.poses > 0 ? ordered_json(figure) : ordered_json(nullptr);
 }
 
 bool best_effort(const SessionResult& result) {
@@ -82,6 +90,7 @@ ordered_json budget_of(const RunPlan& plan, const SessionResult& result) {
 }
 
 void latency_row(const char* name, const ordered_json& item) {
+  if (item.at("n") == 0) return row(name, "-");
   char text[128];
   std::snprintf(text, sizeof text, "p50 %.0f  p99 %.0f  p99.9 %.0f  max %.0f us",
                 item.at("p50").get<double>(), item.at("p99").get<double>(),
@@ -97,87 +106,95 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
   frame_to_can["computing"] = as_json(figures_of(result.latencies, &FrameToCan::computing));
   frame_to_can["sampling"] = as_json(figures_of(result.latencies, &FrameToCan::sampling));
   frame_to_can["sending"] = as_json(figures_of(result.latencies, &FrameToCan::sending));
-  ordered_json summary{{"cell", cell.file},
-                       {"camera", cell.camera.name},
-                       {"duration_s", result.duration_s},
-                       {"realtime", cell.realtime},
-                       {"workers", cell.workers},
-                       {"frames", result.frames},
-                       {"frames_refused", accuracy.refused},
-                       {"frames_late_rendered", result.late_renders},
-                       {"frames_trackable", accuracy.trackable},
-                       {"tracked_fraction", accuracy.tracked_fraction()},
-                       {"poses", accuracy.poses},
-                       {"poses_gross", accuracy.gross},
-                       {"tip_rms_mm", accuracy.tip_rms_m * 1e3},
-                       {"tip_max_mm", accuracy.tip_max_m * 1e3},
-                       {"angle_rms_deg", accuracy.angle_rms_rad * k_degrees_per_radian},
-                       {"ticks", result.ticks},
-                       {"ticks_late", result.ticks_late},
-                       {"ticks_skipped", result.ticks_skipped},
-                       {"worker_overruns", result.worker_overruns},
-                       {"frame_to_can_us", frame_to_can},
-                       {"frame_to_can_kind", cell.realtime ? "observed" : "nominal"},
-                       {"heap_allocations_after_start", result.heap_allocations_after_start},
-                       {"heap_allocations_counted", result.heap_counted},
-                       {"can_frames", result.can_frames},
-                       {"can_sent", result.can.sent},
-                       {"can_dropped", result.can.dropped},
-                       {"can_failed", result.can.failed},
-                       {"can_bus_load", result.can_bus_load},
-                       {"key_events", result.key_events},
-                       {"can_heard",
-                        {{"buttons", result.can_heard.heard},
-                         {"refused", result.can_heard.refused},
-                         {"why_not", result.can_not_heard}}},
-                       {"dds_offered", result.dds.offered},
-                       {"dds_written", result.dds.written},
-                       {"ring_dropped", result.dds.ring_dropped},
-                       {"dds_received", result.dds_reader.received},
-                       {"dds_missed", result.dds_reader.missed},
-                       {"dds_poses_written", result.dds.poses_written},
-                       {"dds_poses_received", result.dds_reader.poses_received},
-                       {"dds_heard",
-                        {{"joint_states", result.heard.joints},
-                         {"robot_descriptions", result.heard.descriptions},
-                         {"initial_poses", result.heard.guesses},
-                         {"buttons", result.heard.buttons},
-                         {"tools", result.heard.tools},
-                         {"refused", result.heard.refused}}},
-                       {"recording", result.recording_file},
-                       {"recording_complete", result.recording.complete()},
-                       {"recording_ended_early", result.recording.ended_early},
-                       {"recording_reason", result.recording.reason},
-                       {"recording_bytes", result.recording.bytes},
-                       {"output_sha256", result.output_sha256},
-                       {"notices", cell.notices},
-                       {"corrected", correction_text(cell.correction)},
-                       {"best_effort", best_effort(result)},
-                       {"refused", result.refused},
-                       {"budget", budget_of(plan, result)}};
+  ordered_json summary{
+      {"cell", cell.file},
+      {"camera", cell.camera.name},
+      {"duration_s", result.duration_s},
+      {"realtime", cell.realtime},
+      {"workers", cell.workers},
+      {"frames", result.frames},
+      {"frames_refused", accuracy.refused},
+      {"frames_late_rendered", result.late_renders},
+      {"ticks_source_late", result.ticks_source_late},
+      {"output", output_of(cell, result)},
+      {"frames_trackable", accuracy.trackable},
+      {"tracked_fraction", accuracy.tracked_fraction()},
+      {"poses", accuracy.poses},
+      {"poses_gross", accuracy.gross},
+      {"tip_rms_mm", of_poses(accuracy, accuracy.tip_rms_m * 1e3)},
+      {"tip_max_mm", of_poses(accuracy, accuracy.tip_max_m * 1e3)},
+      {"angle_rms_deg", of_poses(accuracy, accuracy.angle_rms_rad * k_degrees_per_radian)},
+      {"ticks", result.ticks},
+      {"ticks_late", result.ticks_late},
+      {"ticks_skipped", result.ticks_skipped},
+      {"worker_overruns", result.worker_overruns},
+      {"frame_to_can_us", frame_to_can},
+      {"frame_to_can_kind", cell.realtime ? "observed" : "nominal"},
+      {"heap_allocations_after_start", result.heap_allocations_after_start},
+      {"heap_allocations_counted", result.heap_counted},
+      {"can_frames", result.can_frames},
+      {"can_sent", result.can.sent},
+      {"can_dropped", result.can.dropped},
+      {"can_failed", result.can.failed},
+      {"can_bus_load", result.can_bus_load},
+      {"key_events", result.key_events},
+      {"can_heard",
+       {{"buttons", result.can_heard.heard},
+        {"refused", result.can_heard.refused},
+        {"why_not", result.can_not_heard}}},
+      {"dds_offered", result.dds.offered},
+      {"dds_written", result.dds.written},
+      {"ring_dropped", result.dds.ring_dropped},
+      {"dds_others_lost", result.dds.others_lost},
+      {"dds_received", result.dds_reader.received},
+      {"dds_missed", result.dds_reader.missed},
+      {"dds_poses_written", result.dds.poses_written},
+      {"dds_poses_received", result.dds_reader.poses_received},
+      {"dds_heard",
+       {{"joint_states", result.heard.joints},
+        {"robot_descriptions", result.heard.descriptions},
+        {"initial_poses", result.heard.guesses},
+        {"buttons", result.heard.buttons},
+        {"tools", result.heard.tools},
+        {"refused", result.heard.refused}}},
+      {"recording", result.recording_file},
+      {"recording_complete", result.recording.complete()},
+      {"recording_ended_early", result.recording.ended_early},
+      {"recording_reason", result.recording.reason},
+      {"recording_bytes", result.recording.bytes},
+      {"recording_dropped", result.recording.dropped},
+      {"recording_lost", result.recording.lost},
+      {"files_lost", result.files_lost},
+      {"losses", losses_json(result)},
+      {"failures", failures_of(result)},
+      {"output_sha256", result.output_sha256},
+      {"notices", cell.notices},
+      {"corrected", correction_text(cell.correction)},
+      {"best_effort", best_effort(result)},
+      {"refused", result.refused},
+      {"budget", budget_of(plan, result)}};
   if (result.background) summary["background"] = as_json(*result.background);
   return summary;
 }
 
-bool sums_hold(const SessionResult& result) {
-  const bool dds = result.dds.offered == result.dds.written + result.dds.ring_dropped;
-  const bool reader = !result.dds_was_read ||
-                      result.dds_reader.received + result.dds_reader.missed == result.dds.written;
-  return dds && reader;
-}
-
 void print_table(const ordered_json& summary, const SessionResult& result) {
   const Accuracy& accuracy = result.accuracy;
-  std::printf("\n%s, %.0f s%s\n", summary.at("camera").get<std::string>().c_str(),
+  std::printf("\n%s, %.1f s%s\n", summary.at("camera").get<std::string>().c_str(),
               result.duration_s,
               best_effort(result) ? "  (best effort: see what this machine spoils)" : "");
+  for (const auto& [name, value] : output_rows(summary, result)) row(name.c_str(), value);
   row("frames",
       std::to_string(result.frames) + " (" + std::to_string(accuracy.refused) + " refused)");
-  row("tracked", fixed(100 * accuracy.tracked_fraction(), 2, "%") + " of " +
-                     std::to_string(accuracy.trackable) + " trackable");
-  row("tip error, rms", fixed(accuracy.tip_rms_m * 1e3, 2, "mm") + "  (largest " +
-                            fixed(accuracy.tip_max_m * 1e3, 1, "mm)"));
-  row("angle error, rms", fixed(accuracy.angle_rms_rad * k_degrees_per_radian, 2, "deg"));
+  row("tracked", (accuracy.trackable > 0 ? fixed(100 * accuracy.tracked_fraction(), 2, "%") : "-") +
+                     " of " + std::to_string(accuracy.trackable) + " trackable");
+  if (accuracy.poses > 0) {
+    row("gross poses", std::to_string(accuracy.gross) + " of " + std::to_string(accuracy.poses));
+    row("tip error, rms", fixed(accuracy.tip_rms_m * 1e3, 2, "mm") + "  (largest " +
+                              fixed(accuracy.tip_max_m * 1e3, 1, "mm)"));
+    row("angle error, rms", fixed(accuracy.angle_rms_rad * k_degrees_per_radian, 2, "deg"));
+  } else {
+    for (const char* name : {"gross poses", "tip error, rms", "angle error, rms"}) row(name, "-");
+  }
   const ordered_json& latency = summary.at("frame_to_can_us");
   const std::string kind = summary.at("frame_to_can_kind").get<std::string>();
   latency_row(("frame to CAN (" + kind + ")").c_str(), latency);
@@ -231,7 +248,9 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
                                           ? std::to_string(result.heap_allocations_after_start)
                                           : "not counted (only in a live run)");
   row("page faults after start", std::to_string(result.page_faults_after_start));
-  row("CAN frames", std::to_string(result.can_frames) + " (bus load " +
+  row("CAN frames", std::to_string(result.can.sent) + " sent, " +
+                        std::to_string(result.can.failed) + " refused, " +
+                        std::to_string(result.can.dropped) + " dropped (bus load " +
                         fixed(100 * result.can_bus_load, 1, "%, computed)"));
   if (const ButtonFrameCounts& heard = result.can_heard; heard.any()) {
     row("heard over CAN", std::to_string(heard.heard) + " frames of buttons; " +
@@ -239,9 +258,12 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
   }
   if (!result.can_not_heard.empty()) row("not heard over CAN", result.can_not_heard);
   if (result.key_events > 0) row("buttons by key", std::to_string(result.key_events) + " changes");
+  const auto of_reader = [&](std::uint64_t count) {
+    return result.dds_not_read.empty() ? std::to_string(count) : "-";
+  };
   row("DDS", std::to_string(result.dds.written) + " written, " +
-                 std::to_string(result.dds_reader.received) + " received, " +
-                 std::to_string(result.dds_reader.missed) + " missed, " +
+                 of_reader(result.dds_reader.received) + " received, " +
+                 of_reader(result.dds_reader.missed) + " missed, " +
                  std::to_string(result.dds.ring_dropped) + " dropped");
   if (const HeardCounts& heard = result.heard; heard.any()) {
     row("heard over DDS",
@@ -251,13 +273,18 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
             " tools; " + std::to_string(heard.refused) + " refused");
   }
   row("output_sha256", result.output_sha256);
-  for (const std::string& file : result.files) row("written", file);
-  if (!result.recording.reason.empty()) row("recording", result.recording.reason);
+  print_files(result, 0);
   for (const auto& notice : summary.at("notices")) row("this cell", notice.get<std::string>());
   if (const auto text = summary.at("corrected").get<std::string>(); !text.empty())
     row("corrected by", text);
   for (const std::string& refused : result.refused) row("refused", refused);
   for (const std::string& line : result.machine.spoils) row("this machine", line);
+}
+
+void print_files(const SessionResult& result, std::size_t first) {
+  for (std::size_t f = first; f < result.files.size(); ++f) {
+    if (std::filesystem::is_regular_file(result.files[f])) row("written", result.files[f]);
+  }
 }
 
 void draw_plots(const std::string& folder, SessionResult& result) {

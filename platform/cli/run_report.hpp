@@ -1,6 +1,7 @@
 // What a run says at its end: a table for a person, summary.json with the same figures, plots.
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -14,10 +15,11 @@ namespace glint {
 
 void print_table(const nlohmann::ordered_json& summary, const SessionResult& result);
 
-// tip_error.svg, tip_path.svg and frame_to_can.svg in `folder`; their names go to result.files.
-void draw_plots(const std::string& folder, SessionResult& result);
+// Rows of the files from this index on.
+void print_files(const SessionResult& result, std::size_t first);
 
-// Whether the run's own sums hold: nothing lost without being counted.
-[[nodiscard]] bool sums_hold(const SessionResult& result);
+// tip_error.svg, tip_path.svg and frame_to_can.svg in `folder`; their names go to result.files.
+// Throws InputError where one cannot be written.
+void draw_plots(const std::string& folder, SessionResult& result);
 
 }  // namespace glint

@@ -7,6 +7,7 @@
 #include "kernels/geometry.hpp"
 #include "kernels/units.hpp"
 #include "platform/rt/followed_robot.hpp"
+#include "platform/rt/loss_counters.hpp"
 #include "platform/rt/overrun_counters.hpp"
 
 namespace glint {
@@ -40,6 +41,8 @@ struct DdsSettings {
   // overruns so far (null: not counted; it outlives the sink).
   std::string best_effort;
   const OverrunCounters* overruns = nullptr;
+  // And what the run has lost so far (null: not counted; it outlives the sink).
+  const LossCounters* losses = nullptr;
   // And the robot that is followed (null: none is; it outlives the sink).
   const FollowedRobotNotes* robot = nullptr;
 };

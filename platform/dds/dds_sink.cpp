@@ -59,6 +59,7 @@ void DdsSink::stop() {
   stopping_.store(true);
   if (thread_.joinable()) thread_.join();
   write_waiting();
+  write_diagnostics();  // with what the last second lost
   publisher_->end_streams(k_receipts_limit);
   publisher_.reset();
 }
@@ -71,6 +72,7 @@ DdsCounts DdsSink::counts() const noexcept {
   counts.ring_dropped =
       ring_.dropped() + refused_.load(std::memory_order_relaxed) + counts.write_failed;
   counts.poses_written = poses_written_.load(std::memory_order_relaxed);
+  counts.others_lost = frames_.dropped() + others_failed_.load(std::memory_order_relaxed);
   return counts;
 }
 
@@ -79,12 +81,16 @@ void DdsSink::run() {
   while (!stopping_.load(std::memory_order_acquire)) {
     write_waiting();
     if (Clock::now() >= diagnostics_due) {
-      const DdsCounts now = counts();
-      publisher_->write_diagnostics({now.offered, now.written, now.ring_dropped});
+      write_diagnostics();
       diagnostics_due += k_diagnostics_period;
     }
     std::this_thread::sleep_for(chrono_of(poll_period_));
   }
+}
+
+void DdsSink::write_diagnostics() {
+  const DdsCounts now = counts();
+  publisher_->write_diagnostics({now.offered, now.written, now.ring_dropped});
 }
 
 std::shared_ptr<Participant> DdsSink::participant() const {
@@ -104,6 +110,7 @@ void DdsSink::write_waiting() {
     add_one(written_);
     if (sample.has_pose()) add_one(poses_written_);
   }
+  others_failed_.store(publisher_->others_failed(), std::memory_order_relaxed);
 }
 
 }  // namespace glint

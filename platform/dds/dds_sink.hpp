@@ -28,6 +28,8 @@ struct DdsCounts {
   std::uint64_t ring_dropped = 0;   // of these, not: ring full, unknown tool, stopped, not written
   std::uint64_t write_failed = 0;   // the part of ring_dropped that DDS or the tick order refused
   std::uint64_t poses_written = 0;  // written samples that had a pose
+  std::uint64_t others_lost = 0;    // poses and transforms: no room, or refused by DDS
+  [[nodiscard]] std::uint64_t lost() const { return ring_dropped + others_lost; }
 };
 
 class DdsSink {
@@ -53,8 +55,7 @@ class DdsSink {
   // From one thread only. False: the sample was dropped and counted. A tool's ticks must advance.
   bool offer(const PoseSample& sample) noexcept;
 
-  // From one other thread only: what a frame tells tf. False: no room, and the next one will say it
-  // again.
+  // From one other thread only: what a frame tells tf. False: no room; it is counted.
   bool offer_frame(const FrameTransforms& frame) noexcept { return frames_.push(frame); }
 
   // From one other thread only: where a robot that is followed now stands, for tf_static. Only the
@@ -78,6 +79,7 @@ class DdsSink {
  private:
   void run();
   void write_waiting();
+  void write_diagnostics();
 
   using Counter = std::atomic<std::uint64_t>;
   graph::Ring<PoseSample, k_ring_capacity> ring_;
@@ -85,6 +87,7 @@ class DdsSink {
   graph::TripleBuffer<Pose> robot_;
   std::uint64_t robot_version_ = 0;
   Counter offered_{0}, refused_{0}, written_{0}, write_failed_{0}, poses_written_{0};
+  Counter others_failed_{0};
   std::atomic<bool> accepting_{true};
   std::atomic<bool> stopping_{false};
   int tool_count_;

@@ -57,14 +57,33 @@ void Diagnostics::add(std::string_view tool, const PoseSample& sample, const Sin
 void Diagnostics::add_timing(const OverrunCounters& overruns, std::string_view best_effort) {
   const std::uint64_t frame = overruns.frame.load(std::memory_order_relaxed);
   const std::uint64_t tick = overruns.tick.load(std::memory_order_relaxed);
+  const std::uint64_t source = overruns.source.load(std::memory_order_relaxed);
   std::vector<Value>& values = values_.emplace_back();
   values.push_back({keep("overruns_frame"), keep(std::to_string(frame))});
   values.push_back({keep("overruns_tick"), keep(std::to_string(tick))});
+  values.push_back({keep("ticks_source_late"), keep(std::to_string(source))});
   values.push_back({keep("best_effort"), keep(best_effort)});
-  const bool late = frame + tick > 0;
-  const char* const message = late ? "overruns" : best_effort.empty() ? "in time" : "best effort";
+  const bool late = frame + tick + source > 0;
+  const char* const message = frame + tick > 0      ? "overruns"
+                              : source > 0          ? "source too slow"
+                              : best_effort.empty() ? "in time"
+                                                    : "best effort";
   add_entry(late || !best_effort.empty() ? k_warn : k_ok, keep("glint: timing"), keep(message),
             values);
+}
+
+void Diagnostics::add_losses(const LossCounters& losses) {
+  std::vector<Value>& values = values_.emplace_back();
+  std::string text;
+  for (std::size_t k = 0; k < k_loss_kinds; ++k) {
+    const auto kind = static_cast<LossKind>(k);
+    const std::string name(name_of(kind));
+    const std::string count = std::to_string(losses.of(kind));
+    values.push_back({keep(name), keep(count)});
+    if (losses.of(kind) > 0) text += (text.empty() ? "lost: " : ", ") + name + " " + count;
+  }
+  const bool lost = !text.empty();
+  add_entry(lost ? k_error : k_ok, keep("glint: losses"), keep(lost ? text : "none"), values);
 }
 
 void Diagnostics::add_robot(const FollowedRobotNotes& robot) {

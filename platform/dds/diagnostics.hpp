@@ -1,4 +1,4 @@
-// The sink's state as /diagnostics shows it: one entry a tool, one of timing, one of the robot.
+// The sink's state as /diagnostics shows it: one entry a tool, one each of timing, losses, robot.
 #pragma once
 
 #include <deque>
@@ -8,6 +8,7 @@
 
 #include "platform/dds/messages.hpp"
 #include "platform/rt/followed_robot.hpp"
+#include "platform/rt/loss_counters.hpp"
 #include "platform/rt/overrun_counters.hpp"
 
 namespace glint {
@@ -20,6 +21,8 @@ class Diagnostics {
   void add(std::string_view tool, const PoseSample& sample, const SinkFigures& figures);
   // Whether outputs are in time, and what this machine spoils.
   void add_timing(const OverrunCounters& overruns, std::string_view best_effort);
+  // What the run has lost so far, an error from the first loss on.
+  void add_losses(const LossCounters& losses);
   // Whether the robot stands where it is taken to be, as far as that was seen.
   void add_robot(const FollowedRobotNotes& robot);
   [[nodiscard]] DiagnosticsMessage message(Time unix_time);

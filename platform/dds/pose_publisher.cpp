@@ -123,10 +123,13 @@ void PosePublisher::write_pose(const ToolStream& stream, const PoseSample& sampl
   TfMessage tf{};
   tf.transforms._length = tf.transforms._maximum = 1;
   tf.transforms._buffer = &transform;
-  // Their success is not counted: the status is what a reader counts by.
-  dds_write(stream.pose, &pose);
-  dds_write(stream.pose_covariance, &covariance);
-  dds_write(tf_, &tf);
+  write_other(stream.pose, &pose);
+  write_other(stream.pose_covariance, &covariance);
+  write_other(tf_, &tf);
+}
+
+void PosePublisher::write_other(dds_entity_t writer, const void* message) {
+  if (dds_write(writer, message) != DDS_RETCODE_OK) ++others_failed_;
 }
 
 void PosePublisher::write_frame(const FrameTransforms& frame) {
@@ -139,7 +142,7 @@ void PosePublisher::write_frame(const FrameTransforms& frame) {
   TfMessage tf{};
   tf.transforms._length = tf.transforms._maximum = frame.robot_known ? 2 : 1;
   tf.transforms._buffer = transforms;
-  dds_write(tf_, &tf);
+  write_other(tf_, &tf);
 }
 
 void PosePublisher::write_robot(const Pose& T_world_robot) {
@@ -160,7 +163,7 @@ void PosePublisher::write_static_transforms() {
   TfMessage tf{};
   tf.transforms._length = tf.transforms._maximum = static_cast<std::uint32_t>(transforms.size());
   tf.transforms._buffer = transforms.data();
-  dds_write(tf_static_, &tf);
+  write_other(tf_static_, &tf);
 }
 
 void PosePublisher::write_diagnostics(const SinkFigures& figures) {
@@ -169,6 +172,7 @@ void PosePublisher::write_diagnostics(const SinkFigures& figures) {
     if (stream.started) text.add(stream.name, stream.sample, figures);
   }
   if (settings_.overruns != nullptr) text.add_timing(*settings_.overruns, settings_.best_effort);
+  if (settings_.losses != nullptr) text.add_losses(*settings_.losses);
   if (settings_.robot != nullptr) text.add_robot(*settings_.robot);
   const DiagnosticsMessage message = text.message(Time{dds_time()});
   dds_write(diagnostics_, &message);

@@ -1,6 +1,7 @@
 // Writes pose samples to their topics, in the caller's thread. The sink's thread is its only user.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,6 +25,9 @@ class PosePublisher {
   // Joins the domain, creates every writer and writes tf_static. Throws as Participant does, and
   // InputError for tools that are none, too many, or alike once named for ROS.
   explicit PosePublisher(const DdsSettings& settings);
+
+  // Poses and transforms that DDS refused so far.
+  [[nodiscard]] std::uint64_t others_failed() const { return others_failed_; }
 
   // How many readers the tool's status topic has found, the smallest over all tools.
   [[nodiscard]] int readers() const;
@@ -61,6 +65,7 @@ class PosePublisher {
 
   bool write_status(ToolStream& stream, Time tick, StatusMessage message);
   void write_pose(const ToolStream& stream, const PoseSample& sample);
+  void write_other(dds_entity_t writer, const void* message);
   void write_static_transforms();
   [[nodiscard]] Time unix_time(Time board) const { return board + settings_.unix_minus_board; }
   [[nodiscard]] const char* frame_name(ReferenceFrame frame) const;
@@ -68,6 +73,7 @@ class PosePublisher {
   DdsSettings settings_;
   std::shared_ptr<Participant> participant_;
   std::vector<ToolStream> streams_;
+  std::uint64_t others_failed_ = 0;
   dds_entity_t tf_ = 0, tf_static_ = 0, diagnostics_ = 0;
 };
 

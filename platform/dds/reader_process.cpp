@@ -100,7 +100,11 @@ ReaderResult ReaderProcess::finish(Duration limit) {
     if (!wait(k_end_limit)) throw MissingDevice("dds: the reader process does not end");
   }
   if (!WIFEXITED(status_) || WEXITSTATUS(status_) != 0) {
-    throw MissingDevice("dds: the reader process failed; expected it to find the sink");
+    const std::string how = WIFSIGNALED(status_)
+                                ? "was ended by signal " + std::to_string(WTERMSIG(status_))
+                                : "ended with code " + std::to_string(WEXITSTATUS(status_));
+    throw MissingDevice("dds: the reader process " + how + "; expected its result in " +
+                        result_file_);
   }
   return load_result(result_file_);
 }

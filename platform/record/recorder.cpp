@@ -158,6 +158,10 @@ std::uint64_t Recorder::dropped() const noexcept {
   return sum;
 }
 
+std::uint64_t Recorder::lost() const noexcept {
+  return dropped() + not_written_.load(std::memory_order_relaxed);
+}
+
 void Recorder::add_closing_fact(const std::string& name, const std::string& value) {
   closing_facts_[name] = value;
 }
@@ -178,6 +182,7 @@ bool Recorder::write_next() {
     const OfferSlot offer = lane.ring_.front();
     if (offer.empty() || offer.ticket != next_) continue;
     write_item(offer);
+    not_written_.store(writer_.messages_lost(), std::memory_order_relaxed);
     lane.ring_.release();
     ++next_;
     return true;

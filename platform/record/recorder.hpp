@@ -79,6 +79,8 @@ class Recorder {
 
   // Offers that were dropped so far; any thread may ask.
   [[nodiscard]] std::uint64_t dropped() const noexcept;
+  // These, and the messages that a failed write cost so far; any thread may ask.
+  [[nodiscard]] std::uint64_t lost() const noexcept;
 
   // Before close(); not from a real-time thread.
   void add_closing_fact(const std::string& name, const std::string& value);
@@ -95,6 +97,7 @@ class Recorder {
   std::array<RecorderLane, 4> lanes_;
   alignas(64) std::atomic<std::uint64_t> ticket_{0};
   std::uint64_t next_ = 0;
+  std::atomic<std::uint64_t> not_written_{0};
   std::atomic<bool> ending_{false};
   std::map<std::string, std::string> closing_facts_;
   RecordingOutcome outcome_;

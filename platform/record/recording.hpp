@@ -91,6 +91,7 @@ struct RecordingOutcome {
   std::uint64_t messages = 0;
   std::uint64_t bytes = 0;
   std::uint64_t dropped = 0;  // offers that found no room
+  std::uint64_t lost = 0;     // messages that a failed write cost
   bool ended_early = false;   // a write failed; what stands in the file is whole
   std::string reason;         // why, with path and the system's words
   std::string output_sha256;  // over the records written, lower-case hex

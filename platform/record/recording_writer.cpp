@@ -53,6 +53,7 @@ struct RecordingWriter::Body {
     const auto log_time =
         static_cast<std::uint64_t>(std::max<std::int64_t>(0, (time + unix_offset).nanoseconds));
     mcap.write({to, sequence++, log_time, log_time}, cdr.bytes());
+    ++offered;
     note_failure();
   }
   void note_failure() {
@@ -71,6 +72,7 @@ struct RecordingWriter::Body {
   McapWriter mcap;
   CdrWriter cdr;
   std::uint32_t sequence = 0;
+  std::uint64_t offered = 0;  // messages, written or not
   std::uint16_t frame = 0, reflectivity = 0, depth = 0, head_pose = 0, markers = 0, choice = 0,
                 dropped = 0, button = 0, robot_frame = 0, pen_buttons = 0, output = 0,
                 transform = 0;
@@ -147,6 +149,7 @@ RecordingOutcome RecordingWriter::Body::close() {
   note_failure();
   if (!outcome.ended_early) outcome.output_sha256 = output_hash.hex();
   outcome.messages = mcap.messages();
+  outcome.lost = offered - outcome.messages;
   closing[k_fact_complete] = outcome.complete() ? "true" : "false";
   closing[k_fact_dropped] = std::to_string(outcome.dropped);
   closing[k_fact_ended_early] = outcome.reason;
@@ -245,5 +248,9 @@ void RecordingWriter::add_closing_fact(const std::string& name, const std::strin
 RecordingOutcome RecordingWriter::close() { return body_->close(); }
 
 const RecordingOutcome& RecordingWriter::outcome() const { return body_->outcome; }
+
+std::uint64_t RecordingWriter::messages_lost() const {
+  return body_->mcap.failed() ? body_->offered - body_->mcap.messages() : 0;
+}
 
 }  // namespace glint

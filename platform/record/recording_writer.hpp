@@ -52,6 +52,8 @@ class RecordingWriter {
   // Index, statistics and closing facts; then the file gets its name. Again: does nothing.
   RecordingOutcome close();
   [[nodiscard]] const RecordingOutcome& outcome() const;
+  // Messages that a failed write cost so far: those of its chunk and all since.
+  [[nodiscard]] std::uint64_t messages_lost() const;
 
  private:
   struct Body;

@@ -83,11 +83,15 @@ void put_pose_fields(Row& row, const PoseSample& sample) {
 
 void TrajectoryLines::flush() {
   failed_ = failed_ || !file_.append({bytes_of(waiting_)});
+  if (failed_) lines_lost_ += lines_waiting_;
   waiting_.clear();
+  lines_waiting_ = 0;
 }
 
 void TrajectoryLines::add(std::string_view line) {
-  if (failed_ || closed_) return;
+  if (closed_) return;
+  ++lines_waiting_;
+  if (failed_) return flush();
   waiting_.append(line) += '\n';
   if (waiting_.size() >= k_flush_bytes) flush();
 }

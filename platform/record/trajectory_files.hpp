@@ -1,10 +1,13 @@
 // Trajectories as text: TUM for evo and its kin, CSV with every field for spreadsheets and pandas.
 //
 // Both grow as PATH.part and get their name when they are closed. A write that fails ends the file
-// with the last whole line; failed() and error() say so, later calls do nothing.
+// with the last whole line; failed(), error() and lines_lost() say so, later lines are only
+// counted.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "kernels/wire/pose_sample.hpp"
 #include "platform/record/growing_file.hpp"
@@ -22,11 +25,14 @@ class TrajectoryLines {
   bool close();
   [[nodiscard]] bool failed() const { return failed_; }
   [[nodiscard]] const std::string& error() const { return file_.error(); }
+  // Lines that a failed write cost so far.
+  [[nodiscard]] std::uint64_t lines_lost() const { return lines_lost_; }
 
  private:
   void flush();
   GrowingFile file_;
   std::string waiting_;
+  std::uint64_t lines_waiting_ = 0, lines_lost_ = 0;
   bool failed_ = false;
   bool closed_ = false;
 };

@@ -28,7 +28,14 @@ bool FileSink::write_waiting() {
   --waiting_;
   if (tum_ != nullptr) tum_->write(sample);
   if (csv_ != nullptr) csv_->write(sample);
+  count_lost();
   return true;
+}
+
+void FileSink::count_lost() noexcept {
+  const std::uint64_t tum = tum_ != nullptr ? tum_->file().lines_lost() : 0;
+  const std::uint64_t csv = csv_ != nullptr ? csv_->file().lines_lost() : 0;
+  lines_lost_.store(tum + csv, std::memory_order_relaxed);
 }
 
 void FileSink::run() {
@@ -48,6 +55,7 @@ std::string FileSink::close() {
   std::string wrong;
   if (tum_ != nullptr && !tum_->close()) wrong = tum_->file().error();
   if (csv_ != nullptr && !csv_->close() && wrong.empty()) wrong = csv_->file().error();
+  count_lost();
   return wrong;
 }
 

@@ -31,17 +31,22 @@ class FileSink {
 
   // Writes what waits and closes the files. The first line that says what went wrong, or nothing.
   std::string close();
-  [[nodiscard]] std::uint64_t dropped() const noexcept { return ring_.dropped(); }
+  // Samples that found no room, and lines that a failed write cost, so far; any thread may ask.
+  [[nodiscard]] std::uint64_t lost() const noexcept {
+    return ring_.dropped() + lines_lost_.load(std::memory_order_relaxed);
+  }
 
  private:
   void run();
   bool write_waiting();
+  void count_lost() noexcept;
 
   graph::Ring<PoseSample, k_ring_capacity> ring_;
   std::unique_ptr<TumFile> tum_;
   std::unique_ptr<CsvFile> csv_;
   WhenFull when_full_;
   std::atomic<std::int64_t> waiting_{0};
+  std::atomic<std::uint64_t> lines_lost_{0};
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };

@@ -20,6 +20,9 @@ class FrameSource {
   // frame group.
   [[nodiscard]] virtual bool wait(ArrivedFrame& arrived) = 0;
   virtual void give_back(const ArrivedFrame& arrived) noexcept = 0;
+  // Whether the newest frame that is due at this time came late, or has not come yet. From any
+  // thread.
+  [[nodiscard]] virtual bool late(Time /*now*/) const noexcept { return false; }
 };
 
 }  // namespace glint

@@ -1,6 +1,8 @@
 #include "platform/session/session.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -9,6 +11,7 @@
 #include <utility>
 
 #include "platform/dds/topic_names.hpp"
+#include "platform/input_error.hpp"
 #include "platform/mapping/cloud_files.hpp"
 #include "platform/mapping/depth_png.hpp"
 #include "platform/programming/key_reader.hpp"
@@ -142,7 +145,11 @@ void run_live(const Cell& cell, Time epoch, SimulatedSource& source, SessionGrou
   ToldOfRobot told;
   while (!frames_done ||
          (reached_ns < (end - tick_period(cell)).nanoseconds && !stopped(options))) {
-    if (options.progress) options.progress(static_cast<double>(reached_ns) * 1e-9, all_s);
+    // The source may be behind its time, the ticks are not.
+    const double reached_s = static_cast<double>(reached_ns) * 1e-9;
+    if (options.progress) {
+      options.progress(std::min(reached_s, source.delivered_part() * all_s), all_s);
+    }
     groups.reach(Time{reached_ns});
     tell_of_robot(groups, told);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -156,6 +163,7 @@ void run_live(const Cell& cell, Time epoch, SimulatedSource& source, SessionGrou
   result.heap_allocations_after_start = AllocationCounter::count() - allocations_before;
   result.heap_counted = AllocationCounter::available();
   result.page_faults_after_start = PageFaultCounter::count() - faults_before;
+  result.duration_s = static_cast<double>(reached_ns) * 1e-9;
   note(frame_thread.report(), result);
   note(tick_thread.report(), result);
   if (background_thread) note(background_thread->report(), result);
@@ -170,6 +178,7 @@ void run_in_order(const Cell& cell, Time& now, SimulatedSource& source, SessionG
   const auto tick_until = [&](Time limit) {
     for (; next_tick < limit; next_tick = next_tick + period) {
       now = next_tick;
+      result.duration_s = (now - Time{}).seconds();
       if (groups.background() != nullptr) groups.background()->reach(now);
       groups.tick(static_cast<std::uint32_t>(result.ticks++), next_tick, next_tick);
     }
@@ -196,8 +205,12 @@ void write_map(BackgroundGroup& background, const std::string& folder, SessionRe
   background.finish();
   if (background.map().count == 0) return;
   const std::string file = (std::filesystem::path(folder) / "map.ply").string();
-  write_cloud(file, host_cloud_of(background.map()));
-  result.files.push_back(file);
+  try {
+    write_cloud(file, host_cloud_of(background.map()));
+    result.files.push_back(file);
+  } catch (const InputError& error) {  // a full disk costs the map, not the figures
+    result.not_written.push_back(error.what());
+  }
 }
 
 }  // namespace
@@ -212,6 +225,12 @@ SessionResult run_session(const Cell& cell, sim::Scenario scenario, const Sessio
   SessionOptions options = given;
   if (!options.plan.planned) options.plan = plan_by_rule(cell);
   SessionResult result;
+  // What can be rendered before the session's clock starts cannot be late.
+  SimulatedSource source(simulator, {cell.realtime, options.source_frame_time});
+  source.fill([&options](int rendered, int wanted) {
+    if (options.rendering) options.rendering(rendered, wanted);
+    return !stopped(options);
+  });
   if (cell.realtime) {
     if (const MemoryLock lock = lock_memory(); !lock.locked) {
       result.refused.push_back("memory: " + lock.refused);
@@ -251,8 +270,8 @@ SessionResult run_session(const Cell& cell, sim::Scenario scenario, const Sessio
       cell, options, static_cast<std::size_t>(simulator.frame_count()), sinks, trace.get(), now,
       unix_offset_ns, std::move(scene));
   if (trace != nullptr) trace->start();
-  SimulatedSource source(simulator, sleep, now);
-  source.fill();
+  groups->watch(source);
+  source.start(sleep, now);
   if (cell.realtime) {
     const Time last = simulator.timing(simulator.frame_count() - 1).arrival;
     run_live(cell, epoch, source, *groups, last, options, result);
@@ -263,11 +282,12 @@ SessionResult run_session(const Cell& cell, sim::Scenario scenario, const Sessio
 
   if (groups->background() != nullptr) write_map(*groups->background(), options.out, result);
   groups->report(result);
-  result.duration_s = simulator.scenario().duration.seconds();
   result.accuracy = judge(result.outcomes, source.truths(), cell.tools, cell.lost_after);
   result.late_renders = source.late_renders();
   if (trace != nullptr) {
-    if (const std::string wrong = trace->close(); !wrong.empty()) result.refused.push_back(wrong);
+    if (const std::string wrong = trace->close(); !wrong.empty()) {
+      result.not_written.push_back(wrong);
+    }
     result.trace_spans = trace->written();
     result.trace_dropped = trace->dropped();
   }

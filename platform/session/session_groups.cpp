@@ -71,7 +71,8 @@ SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, st
              method_of(cell)),
       tick_(cell, frame_.estimates(), robot_, sinks.held_buttons(), now,
             {sinks.can(), sinks.dds(), sinks.files(),
-             sinks.recorder() != nullptr ? &sinks.recorder()->tick_lane() : nullptr},
+             sinks.recorder() != nullptr ? &sinks.recorder()->tick_lane() : nullptr,
+             sinks.recorder(), &sinks.losses()},
             unix_offset_ns, frames, tick_runner_, frame_.overrun_notes()) {
   robot_.write_slot() = declared_robot_frame(cell);
   robot_.publish(1, 0);
@@ -99,13 +100,16 @@ void SessionGroups::process(const ArrivedFrame& arrived) noexcept {
 void SessionGroups::tick(std::uint32_t number, Time nominal, Time woken) noexcept {
   tick_.tick(number, nominal, woken);
   counters_->tick.store(tick_runner_.overruns().total(), std::memory_order_relaxed);
+  counters_->source.store(tick_.ticks_source_late(), std::memory_order_relaxed);
 }
 
 void SessionGroups::report(SessionResult& result) {
   outcomes_.resize(processed_);
   result.outcomes = std::move(outcomes_);
   result.frames = static_cast<std::int64_t>(processed_);
-  result.latencies = tick_.latencies().entries();
+  result.sent = tick_.sent().left();
+  result.latencies = tick_.sent().latencies().entries();
+  result.ticks_source_late = tick_.ticks_source_late();
   result.worker_overruns = frame_runner_.late_waits() + tick_runner_.late_waits();
   result.frame_overruns = frame_runner_.overruns();
   result.tick_overruns = tick_runner_.overruns();

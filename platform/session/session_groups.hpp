@@ -35,6 +35,9 @@ class SessionGroups {
 
   [[nodiscard]] const BackgroundGroup* background() const noexcept { return background_.get(); }
 
+  // Ticks without a measurement are counted while this source is late.
+  void watch(const FrameSource& source) noexcept { tick_.watch(source); }
+
   // When all groups have ended.
   void report(SessionResult& result);
 

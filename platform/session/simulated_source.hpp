@@ -1,15 +1,14 @@
-// Simulated frames that arrive when a camera's would. A thread of its own renders ahead into a ring
+// Simulated frames that arrive when a camera's would. Threads of its own render ahead into a ring
 // of slots, so that a frame's pixels are in memory before the moment they are due.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <memory>
+#include <mutex>
 #include <thread>
 #include <vector>
 
-#include "graph/ring.hpp"
 #include "platform/rt/release.hpp"
 #include "platform/session/frame_source.hpp"
 #include "platform/sim/simulator.hpp"
@@ -19,43 +18,72 @@ namespace glint {
 // Waits until a Time of the session's clock.
 using SleepUntil = std::function<void(Time)>;
 
+struct SimulatedSourceSettings {
+  bool live = false;    // render as far ahead as fill() finds necessary
+  Duration frame_time;  // the source needs so long for each frame from when it is due: a slow one
+};
+
 class SimulatedSource final : public FrameSource {
  public:
-  static constexpr int k_slots = 24;  // half a second at 45 Hz, 1 MB each for AHAT
-
-  // `sleep_until` empty: frames arrive as fast as they are asked for, stamped with their simulated
-  // arrival. `now` gives the session's clock.
-  SimulatedSource(const sim::Simulator& simulator, SleepUntil sleep_until,
-                  std::function<Time()> now);
+  // Starts to render.
+  explicit SimulatedSource(const sim::Simulator& simulator, SimulatedSourceSettings settings = {});
   ~SimulatedSource() override;
   SimulatedSource(const SimulatedSource&) = delete;
   SimulatedSource& operator=(const SimulatedSource&) = delete;
 
-  // Blocks until half of the slots are rendered, so that the first frames are not late.
-  void fill();
+  // Blocks until so many frames wait that the rest will be rendered in time even if the machine
+  // becomes half as fast; a short run is rendered whole. At most k_fill_limit, and as far as memory
+  // goes. `go_on(rendered, wanted)`, called while it waits, ends it early with false.
+  void fill(const std::function<bool(int, int)>& go_on = {});
+  // Before the first wait(). `sleep_until` empty: frames arrive as fast as they are asked for,
+  // stamped with their simulated arrival. `now` gives the session's clock.
+  void start(SleepUntil sleep_until, std::function<Time()> now);
+
   [[nodiscard]] bool wait(ArrivedFrame& arrived) override;
   void give_back(const ArrivedFrame& arrived) noexcept override;
+  [[nodiscard]] bool late(Time now) const noexcept override {
+    return now.nanoseconds >= late_since_ns_.load(std::memory_order_relaxed);
+  }
 
   // One for each frame delivered so far, in the order of delivery; complete once wait() said false.
   [[nodiscard]] const std::vector<sim::SimTruth>& truths() const { return truths_; }
   // Frames that were not rendered by the time they were due: the machine was too slow.
   [[nodiscard]] int late_renders() const { return late_renders_; }
+  // Part of all frames that was delivered; from any thread.
+  [[nodiscard]] double delivered_part() const noexcept;
 
  private:
+  // Until its frame was given back a slot belongs to the frame group.
+  struct Slot {
+    FrameBuffer pixels;
+    Time mid_exposure;
+    std::uint32_t sequence = 0;
+    HeadPose head;
+    bool rendered = false;  // by `order_`
+  };
+
   void render_all();
+  void put(int number, sim::SimFrame& frame);
+  [[nodiscard]] int frames_wanted(double frames_a_second) const;
+  [[nodiscard]] Slot& slot_of(int number) {
+    return slots_[static_cast<std::size_t>(number) % slots_.size()];
+  }
 
   const sim::Simulator& simulator_;
+  SimulatedSourceSettings settings_;
   SleepUntil sleep_until_;
   std::function<Time()> now_;
-  std::vector<std::unique_ptr<sim::SimFrame>> slots_;
-  graph::Ring<int, 32> rendered_, free_;
+  std::vector<Slot> slots_;
   std::vector<sim::SimTruth> truths_;
-  int delivered_ = 0;
-  int late_renders_ = 0;
-  std::atomic<int> rendered_count_{0};
-  Release is_rendered_;  // once for each frame
+  std::mutex order_;  // of the renderers alone
+  std::atomic<int> next_{0}, rendered_count_{0}, delivered_{0}, given_back_{0};
+  std::atomic<int> ahead_max_;                          // frames rendered and not given back
+  std::atomic<std::int64_t> late_since_ns_{INT64_MAX};  // when the first of the late ones was due
   std::atomic<bool> stop_{false};
-  std::thread renderer_;
+  int late_renders_ = 0;
+  Time ready_;           // when a slow source was done with the last frame
+  Release is_rendered_;  // once for each frame, in their order
+  std::vector<std::thread> renderers_;
 };
 
 }  // namespace glint

@@ -29,12 +29,15 @@ struct SinkOutcome {
   HeardCounts heard;  // over DDS
   ReaderResult dds_reader;
   bool dds_was_read = false;
-  std::uint64_t files_dropped = 0;  // samples that TUM and CSV files lack
+  std::string dds_not_read;      // why the reader process has no result, where there was one
+  std::uint64_t files_lost = 0;  // lines that TUM and CSV files lack
+  std::string files_wrong;       // the first write of these that failed
   RecordingOutcome recording;
   std::string recording_file;
   std::string output_sha256;
-  std::vector<std::string> refused;  // real-time rights that the system did not grant
-  std::vector<std::string> files;    // everything written
+  std::vector<std::string> refused;      // real-time rights that the system did not grant
+  std::vector<std::string> files;        // everything written
+  std::vector<std::string> not_written;  // other files that the disk refused, each with the reason
 };
 
 }  // namespace glint

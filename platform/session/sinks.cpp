@@ -1,5 +1,6 @@
 #include "platform/session/sinks.hpp"
 
+#include <exception>
 #include <filesystem>
 #include <vector>
 
@@ -111,6 +112,7 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     DdsSettings settings = dds_settings(cell, unix_offset_ns);
     settings.best_effort = joined(options.best_effort);
     settings.overruns = &overruns_;
+    settings.losses = &losses_;
     if (cell.mapping && !cell.mapping->model.empty()) settings.robot = &robot_notes_;
     dds_ = std::make_unique<DdsSink>(settings);
     if (options.with_reader) {
@@ -138,6 +140,7 @@ void Sinks::offer_button(const ButtonEvent& event) {
 void Sinks::close(SinkOutcome& result) {
   can_->flush();
   result.can = can_->counts();
+  losses_.store(LossKind::can, result.can.lost());
   result.can_bus_load = can_bus_load_;
   can_.reset();
   if (!can_file_.empty()) result.files.push_back(can_file_);
@@ -152,18 +155,10 @@ void Sinks::close(SinkOutcome& result) {
     result.heard = inputs_->counts();
     inputs_.reset();  // the sink leaves the domain when nobody else holds it
   }
-  if (dds_ != nullptr) {
-    dds_->stop();
-    result.dds = dds_->counts();
-    if (reader_ != nullptr) {
-      result.dds_reader = reader_->finish(k_reader_limit);
-      result.dds_was_read = true;
-    }
-  }
   if (files_ != nullptr) {
-    result.files_dropped = files_->dropped();
-    const std::string wrong = files_->close();
-    if (!wrong.empty()) result.refused.push_back(wrong);
+    result.files_wrong = files_->close();
+    result.files_lost = files_->lost();
+    losses_.store(LossKind::files, result.files_lost);
     for (const std::string& file : {tum_file_, csv_file_}) {
       if (!file.empty()) result.files.push_back(file);
     }
@@ -171,8 +166,22 @@ void Sinks::close(SinkOutcome& result) {
   if (recorder_ != nullptr) {
     recorder_->add_closing_fact("output_sha256", result.output_sha256);
     result.recording = recorder_->close();
+    losses_.store(LossKind::recording, result.recording.dropped + result.recording.lost);
     result.recording_file = recording_file_;
     result.files.push_back(recording_file_);
+  }
+  // Last, so that the last diagnostics have every loss.
+  if (dds_ != nullptr) {
+    dds_->stop();
+    result.dds = dds_->counts();
+    if (reader_ != nullptr) {
+      try {
+        result.dds_reader = reader_->finish(k_reader_limit);
+        result.dds_was_read = true;
+      } catch (const std::exception& error) {
+        result.dds_not_read = error.what();
+      }
+    }
   }
 }
 

@@ -14,6 +14,7 @@
 #include "platform/record/button_event.hpp"
 #include "platform/record/recorder.hpp"
 #include "platform/rt/followed_robot.hpp"
+#include "platform/rt/loss_counters.hpp"
 #include "platform/rt/overrun_counters.hpp"
 #include "platform/session/file_sink.hpp"
 #include "platform/session/held_buttons.hpp"
@@ -50,6 +51,9 @@ class Sinks {
   // For whoever counts overruns; DDS diagnostics tell them.
   [[nodiscard]] OverrunCounters& overruns() noexcept { return overruns_; }
 
+  // For the tick group, which counts losses; likewise.
+  [[nodiscard]] LossCounters& losses() noexcept { return losses_; }
+
   // For whoever follows the robot; likewise.
   [[nodiscard]] FollowedRobotNotes& robot_notes() noexcept { return robot_notes_; }
 
@@ -60,6 +64,7 @@ class Sinks {
   std::string out_;
   double can_bus_load_ = 0;
   OverrunCounters overruns_;
+  LossCounters losses_;
   FollowedRobotNotes robot_notes_;
   ToolRequests tool_requests_;
   std::mutex one_button_;  // the lane of inputs and what is held are for one thread at a time

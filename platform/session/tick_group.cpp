@@ -1,5 +1,6 @@
 #include "platform/session/tick_group.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -21,11 +22,13 @@ TickGroup::TickGroup(const Cell& cell, graph::TripleBuffer<Estimates>& estimates
       runner_(&runner),
       frame_notes_(&frame_notes),
       node_(static_cast<unsigned>(cell.can.node)),
+      can_fd_(cell.can.fd),
       lost_after_(cell.lost_after),
       samples_(&output_->output<PoseSamples>()),
       frames_(&output_->output<CanFrames>()),
       unix_offset_ns_(unix_offset_ns),
-      latencies_(latency_entries) {
+      losses_({sinks.can, sinks.dds, sinks.recorder, sinks.files, sinks.losses}),
+      sent_(latency_entries) {
   configure(cell, *output_);
   output_->latest<Estimates>().bind(estimates);
   output_->latest<RobotFrame>().bind(robot);
@@ -48,7 +51,9 @@ void TickGroup::tick(std::uint32_t number, Time nominal, Time woken) noexcept {
     samples_ = &output_->output<PoseSamples>();
     frames_ = &output_->output<CanFrames>();
   }
-  if (!skipped_) send(woken);
+  if (source_ != nullptr && source_->late(nominal) && measures_none()) ++ticks_source_late_;
+  losses_.count();
+  if (!skipped_) send(now, woken);
   runner_->settle(*output_);
   if (!overrun_.happened()) *in_time_ = *samples_;
 
@@ -91,39 +96,90 @@ std::uint32_t TickGroup::carried_sequence() const noexcept {
   return std::as_const(*output_).token<graph::Latest<Estimates>>().value().verdict.stamp.sequence;
 }
 
-void TickGroup::send(Time woken) noexcept {
+// The tools of the cell that leave at this tick, each with all its frames, before the node's own.
+std::size_t TickGroup::pose_frames() const noexcept {
+  const int of_tool = can_fd_ ? 1 : k_can_frames_per_pose_max;
+  return static_cast<std::size_t>(std::min(samples_->count * of_tool, frames_->count));
+}
+
+bool TickGroup::measures_none() const noexcept {
+  if (skipped_) return true;
+  for (int t = 0; t < samples_->count; ++t) {
+    if (samples_->items[static_cast<std::size_t>(t)].state == TrackState::measured) return false;
+  }
+  return true;
+}
+
+void TickGroup::send(const Now& now, Time woken) noexcept {
+  send_poses(woken);
+  for (const CanFrame& frame : frames_->frames().subspan(pose_frames())) send_one(frame, now_());
+  send_emergency(now.tick);
+  runner_->add_span(k_span_sent, woken, now_());
+}
+
+void TickGroup::send_poses(Time woken) noexcept {
   const auto& estimates = std::as_const(*output_).token<graph::Latest<Estimates>>();
   // A substitute of this tick carries older estimates: the newest ones wait for the next tick.
   const bool first_carried = !overrun_.happened() && estimates.version() != carried_version_ &&
                              estimates.value().verdict.usable();
-  if (!overrun_.happened()) carried_version_ = estimates.version();
+  if (!overrun_.happened() && !first_carried) carried_version_ = estimates.version();
+  if (pose_frames() == 0) return;
 
+  TickOfFrames tick;
+  tick.whole = true;
+  tick.tools = samples_->count;
+  for (int t = 0; t < tick.tools; ++t) {
+    tick.states[static_cast<std::size_t>(t)] = samples_->items[static_cast<std::size_t>(t)].state;
+  }
   bool first = true;
-  for (const CanFrame& frame : frames_->frames()) {
-    send_one(frame);
-    if (first && first_carried) {
+  for (const CanFrame& frame : frames_->frames().first(pose_frames())) {
+    const Time time = now_();
+    const bool accepted = send_one(frame, time);
+    tick.whole = tick.whole && accepted;
+    if (first) tick.at = time;
+    if (first && accepted && first_carried) {
+      // Of a frame that is refused the next tick carries the estimate first.
+      carried_version_ = estimates.version();
       const Time published{estimates.time_ns()};
-      latencies_.add(
-          {published - estimates.value().verdict.stamp.arrival, woken - published, now_() - woken});
+      tick.carries = true;
+      tick.latency = {published - estimates.value().verdict.stamp.arrival, woken - published,
+                      now_() - woken};
     }
     first = false;
   }
-  tell_overrun();
-  runner_->add_span(k_span_sent, woken, now_());
+  tick.last = can_accepted_;
+  if (tick.whole || tick.carries) sent_.add(tick, sinks_.can->counts().sent);
 }
 
-// One emergency a tick, the frame group's first; what waits is told at the ticks after.
-void TickGroup::tell_overrun() noexcept {
+// One emergency a tick: the frame group's overruns first, then the tick's, then losses; what waits
+// is reported at the ticks after.
+void TickGroup::send_emergency(Time tick) noexcept {
   OverrunNote note;
-  if (!frame_notes_->pop(note) && !own_notes_.pop(note)) return;
-  const graph::OverrunDecision& decision = note.decision;
-  send_one(overrun_frame(node_, {note.group, static_cast<std::uint8_t>(decision.kind),
-                                 reason_of(decision.policy), decision.after_node}));
+  if (frame_notes_->pop(note) || own_notes_.pop(note)) {
+    const graph::OverrunDecision& decision = note.decision;
+    (void)send_one(overrun_frame(node_, {note.group, static_cast<std::uint8_t>(decision.kind),
+                                         reason_of(decision.policy), decision.after_node}),
+                   now_());
+    return;
+  }
+  if (const auto kind = losses_.take_due(tick)) {
+    (void)send_one(loss_frame(node_, *kind), now_());
+  }
 }
 
-void TickGroup::send_one(const CanFrame& frame) noexcept {
-  if (sinks_.can != nullptr) sinks_.can->send(frame, now_());
+bool TickGroup::send_one(const CanFrame& frame, Time time) noexcept {
   ++can_frames_;
+  const bool accepted = sinks_.can != nullptr && sinks_.can->send(frame, time);
+  if (accepted) ++can_accepted_;
+  return accepted;
+}
+
+const SentTicks& TickGroup::sent() noexcept {
+  if (sinks_.can != nullptr) {
+    sinks_.can->flush();
+    sent_.settle(sinks_.can->counts().sent);
+  }
+  return sent_;
 }
 
 std::string TickGroup::output_sha256() const { return hash_.hex(); }

@@ -15,7 +15,9 @@
 #include "platform/record/sha256.hpp"
 #include "platform/session/file_sink.hpp"
 #include "platform/session/frame_group.hpp"
-#include "platform/session/latency.hpp"
+#include "platform/session/frame_source.hpp"
+#include "platform/session/loss_watch.hpp"
+#include "platform/session/sent_ticks.hpp"
 
 namespace glint {
 
@@ -25,6 +27,8 @@ struct TickSinks {
   DdsSink* dds = nullptr;
   FileSink* files = nullptr;
   RecorderLane* lane = nullptr;
+  const Recorder* recorder = nullptr;  // the lane's
+  LossCounters* losses = nullptr;      // where they are counted
 };
 
 class TickGroup {
@@ -38,7 +42,13 @@ class TickGroup {
   // time, what the policy says leaves.
   void tick(std::uint32_t number, Time nominal, Time woken) noexcept;
 
-  [[nodiscard]] const LatencyLog& latencies() const noexcept { return latencies_; }
+  // From here on the ticks without a measurement are counted while this source is late.
+  void watch(const FrameSource& source) noexcept { source_ = &source; }
+
+  // After the last tick: flushes the CAN sink first.
+  [[nodiscard]] const SentTicks& sent() noexcept;
+  // Ticks that had no measurement of any tool while the source was late.
+  [[nodiscard]] std::uint64_t ticks_source_late() const noexcept { return ticks_source_late_; }
   [[nodiscard]] std::uint64_t can_frames() const noexcept { return can_frames_; }
   [[nodiscard]] std::uint64_t records() const noexcept { return records_; }
   // What left at the last tick; none where it was skipped.
@@ -48,10 +58,13 @@ class TickGroup {
 
  private:
   void answer(const Now& now) noexcept;
-  void send(Time woken) noexcept;
-  void tell_overrun() noexcept;
+  void send(const Now& now, Time woken) noexcept;
+  void send_poses(Time woken) noexcept;
+  void send_emergency(Time tick) noexcept;
   [[nodiscard]] std::uint32_t carried_sequence() const noexcept;
-  void send_one(const CanFrame& frame) noexcept;
+  bool send_one(const CanFrame& frame, Time time) noexcept;
+  [[nodiscard]] std::size_t pose_frames() const noexcept;
+  [[nodiscard]] bool measures_none() const noexcept;
   void offer_samples() noexcept;
 
   std::unique_ptr<Output> output_ = std::make_unique<Output>();
@@ -62,6 +75,7 @@ class TickGroup {
   OverrunNotes* frame_notes_;
   OverrunNotes own_notes_;
   unsigned node_;
+  bool can_fd_;
   Duration lost_after_;
   graph::OverrunDecision overrun_;  // of the last tick
   bool skipped_ = false;            // and nothing left at it
@@ -71,10 +85,13 @@ class TickGroup {
   std::unique_ptr<PoseSamples> substitute_ = std::make_unique<PoseSamples>();
   std::unique_ptr<CanFrames> substitute_frames_ = std::make_unique<CanFrames>();
   std::int64_t unix_offset_ns_;
-  LatencyLog latencies_;
+  LossWatch losses_;
+  SentTicks sent_;
+  const FrameSource* source_ = nullptr;
+  std::uint64_t ticks_source_late_ = 0;
   Sha256 hash_;
   std::uint64_t carried_version_ = 0;  // of the estimates that CAN has carried already
-  std::uint64_t can_frames_ = 0;
+  std::uint64_t can_frames_ = 0, can_accepted_ = 0;
   std::uint64_t records_ = 0;
 };
 

@@ -179,6 +179,7 @@ TEST_F(TimingFields, SayInDiagnosticsWhatWasLateAndWhatIsBestEffort) {
     EXPECT_EQ(found.values, (std::map<std::string, std::string>{
                                 {"overruns_frame", std::to_string(expected.frame)},
                                 {"overruns_tick", std::to_string(expected.tick)},
+                                {"ticks_source_late", "0"},
                                 {"best_effort", expected.best_effort}}));
   }
 }
@@ -210,6 +211,33 @@ TEST_F(TimingFields, SayInDiagnosticsThatTheRobotWasSeenElsewhereAndHowFar) {
   EXPECT_NEAR(std::stod(jumped.values.at("jump_deg")), 2.0054, 1e-3);
   robot.jumped = false;  // seen again where it is taken to be
   EXPECT_EQ(diagnostic_entry(settings, "glint: robot").level, 0);
+}
+
+TEST_F(TimingFields, SayInDiagnosticsWhatWasLost) {
+  LossCounters losses;
+  DdsSettings settings = test_settings();
+  settings.losses = &losses;
+  const DiagnosticEntry none = diagnostic_entry(settings, "glint: losses");
+  EXPECT_EQ(none.level, 0);
+  EXPECT_EQ(none.message, "none");
+  losses.store(LossKind::recording, 12072);
+  losses.store(LossKind::can, 3);
+  const DiagnosticEntry lost = diagnostic_entry(settings, "glint: losses");
+  EXPECT_EQ(lost.level, 2);
+  EXPECT_EQ(lost.message, "lost: CAN 3, recording 12072");
+  EXPECT_EQ(lost.values.at("recording"), "12072");
+  EXPECT_EQ(lost.values.at("files"), "0");
+}
+
+TEST_F(TimingFields, SayInDiagnosticsThatTheSourceIsTooSlow) {
+  OverrunCounters counters;
+  DdsSettings settings = test_settings();
+  settings.overruns = &counters;
+  counters.source = 7;
+  const DiagnosticEntry late = diagnostic_entry(settings, "glint: timing");
+  EXPECT_EQ(late.level, 1);
+  EXPECT_EQ(late.message, "source too slow");
+  EXPECT_EQ(late.values.at("ticks_source_late"), "7");
 }
 
 TEST_F(TimingFields, SayInDiagnosticsThatTheRobotsJointsAreNoLongerHeard) {

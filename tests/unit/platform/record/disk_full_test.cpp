@@ -6,11 +6,15 @@
 #include <sys/wait.h>
 
 #include <csignal>
+#include <fstream>
+#include <string>
+#include <thread>
 
 #include "platform/input_error.hpp"
 #include "platform/record/growing_file.hpp"
 #include "platform/record/recorder.hpp"
 #include "platform/record/recording_reader.hpp"
+#include "platform/record/trajectory_files.hpp"
 #include "tests/unit/platform/record/recording_samples.hpp"
 
 namespace glint {
@@ -27,6 +31,7 @@ RecorderSettings small_chunks() {
 void record_past_the_end(const std::string& path) {
   constexpr std::uint64_t k_frames = 100;  // 49 kB each
   RecordingOutcome outcome;
+  std::uint64_t lost_while_recording = 0;
   {
     Recorder recorder(path, sample_info(RecordingLevel::full), small_chunks());
     const FrameBuffer buffer = sample_frame(128, 96, 16);
@@ -34,6 +39,8 @@ void record_past_the_end(const std::string& path) {
       recorder.frame_lane().offer_choice(sample_choice(i));
       EXPECT_TRUE(recorder.frame_lane().offer_frame(buffer.view({1}, {2}, 3), {}));
     }
+    while (recorder.lost() == 0) std::this_thread::yield();
+    lost_while_recording = recorder.lost();
     outcome = recorder.close();
   }
   EXPECT_TRUE(outcome.ended_early);
@@ -41,6 +48,9 @@ void record_past_the_end(const std::string& path) {
   EXPECT_EQ(outcome.dropped, 0U);
   EXPECT_GT(outcome.messages, 10U);
   EXPECT_LT(outcome.messages, 4 * k_frames);
+  EXPECT_EQ(outcome.messages + outcome.lost, 4 * k_frames) << "each is written or counted";
+  EXPECT_GE(outcome.lost, lost_while_recording);
+  EXPECT_GT(lost_while_recording, 0U);
   EXPECT_GT(outcome.bytes, 500'000U);
   EXPECT_NE(outcome.reason.find(path), std::string::npos) << outcome.reason;
   EXPECT_TRUE(std::filesystem::exists(path)) << outcome.reason;
@@ -103,6 +113,24 @@ void with_file_limit(Check check) {
 TEST(DiskFull, LimitOnTheSizeOfFilesEndsTheRecordingLikewise) {
   const TemporaryFolder folder;
   with_file_limit([&] { record_past_the_end(folder.file("run.mcap")); });
+}
+
+TEST(DiskFull, CountsTheLinesThatATrajectoryLacks) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("samples.csv");
+  with_file_limit([&] {
+    constexpr std::uint64_t k_samples = 10'000;
+    CsvFile csv(path);
+    PoseSample sample;
+    for (std::uint64_t i = 0; i < k_samples; ++i) csv.write(sample);
+    EXPECT_GT(csv.file().lines_lost(), 0U);
+    EXPECT_FALSE(csv.close());
+    std::ifstream file(path);
+    std::uint64_t lines = 0;
+    for (std::string line; std::getline(file, line);) ++lines;
+    EXPECT_GT(lines, 1'000U);
+    EXPECT_EQ(lines + csv.file().lines_lost(), k_samples + 1) << "with the heading";
+  });
 }
 
 TEST(DiskFull, LeavesNothingOfWhatDidNotFitWhole) {

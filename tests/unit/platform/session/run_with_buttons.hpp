@@ -22,8 +22,8 @@ inline SessionResult run_with_buttons(const Cell& cell, const std::vector<Button
   const auto groups = std::make_unique<SessionGroups>(
       cell, options, static_cast<std::size_t>(simulator.frame_count()), sinks, nullptr, clock, 0,
       BackgroundScene{});
-  SimulatedSource source(simulator, {}, clock);
-  source.fill();
+  SimulatedSource source(simulator);
+  source.start({}, clock);
   SessionResult result;
   auto event = events.begin();
   const auto tick_until = [&](Time limit) {
