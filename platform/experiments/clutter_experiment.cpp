@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "kernels/pose/lever_arm.hpp"
 #include "nodes/tracker.hpp"
 #include "platform/cells/cell.hpp"
 #include "platform/cells/tool_notices.hpp"
@@ -55,7 +57,8 @@ Cell cell_of(const ClutterCase& c) {
   return cell;
 }
 
-// What leaves the graph: the pose that the filter has after the frame, in this frame's camera.
+// What leaves the graph: the pose that the filter has after the frame, in this frame's camera, and
+// its covariance, moved from the markers' middle to the tip.
 FrameOutcome as_followed(const FrameOutcome& fitted, const Estimates& estimates,
                          const ToolSet& tools, const HeadPose& head) {
   FrameOutcome outcome = fitted;
@@ -68,6 +71,14 @@ FrameOutcome as_followed(const FrameOutcome& fitted, const Estimates& estimates,
     const bool in_world = track.base == ReferenceFrame::world;
     outcome.tools[i].T_camera_tool =
         in_world ? head.T_world_camera.inverse() * T_base_tool : T_base_tool;
+    const MotionCovariance& all = track.motion.covariance;
+    Matrix6 covariance;
+    covariance << all.block<3, 3>(k_position, k_position), all.block<3, 3>(k_position, k_rotation),
+        all.block<3, 3>(k_rotation, k_position), all.block<3, 3>(k_rotation, k_rotation);
+    const Vector3 arm =
+        track.motion.pose.rotation * (tools.items[i].tip_m - tools.items[i].middle_m());
+    outcome.tools[i].tip_sigma_m =
+        std::sqrt(moved_covariance(covariance, arm).topLeftCorner<3, 3>().trace());
   }
   return outcome;
 }
@@ -83,8 +94,11 @@ class SeedTrackers {
     FrameOutcome outcome;
     for (std::size_t t = 0; t < trackers_.size(); ++t) {
       const SeedResult found = trackers_[t].process(frame, head);
-      // It does not say which markers it used: a pose is judged by all of them.
-      outcome.tools[t] = {found.reason == Reason::none, found.reason, 0xFF, found.T_camera_tool};
+      // It states no assignment: `swapped` is judged by all markers.
+      outcome.tools[t].seen = found.reason == Reason::none;
+      outcome.tools[t].reason = found.reason;
+      outcome.tools[t].marker_mask = 0xFF;
+      outcome.tools[t].T_camera_tool = found.T_camera_tool;
     }
     return outcome;
   }
@@ -100,8 +114,7 @@ void run_case(const ClutterCase& c, const CaseOptions& options, CaseList& list) 
   tracker->latest<ToolSet>().set(c.tools, 1, 0);
   const sim::Simulator simulator(c.scenario);
   SeedTrackers seed(c);
-  ClutterTally glint(c.tools, cell.lost_after), fits(c.tools, cell.lost_after);
-  ClutterTally published(c.tools, cell.lost_after);
+  ClutterTally glint(c.tools), fits(c.tools), published(c.tools);
   SearchTally search;
   sim::SimFrame frame;
   const int seed_frames = options.quick ? k_seed_frames_quick : k_seed_frames;
@@ -112,7 +125,7 @@ void run_case(const ClutterCase& c, const CaseOptions& options, CaseList& list) 
     tracker->activate();
     search.add(*tracker, c.tools);
     const Estimates& estimates = tracker->output<Estimates>();
-    const FrameOutcome fitted = outcome_of(estimates);
+    const FrameOutcome fitted = outcome_of(estimates, tracker.get());
     fits.add(fitted, frame.truth);
     glint.add(as_followed(fitted, estimates, c.tools, frame.head), frame.truth);
     if (i < seed_frames) published.add(seed.process(frame.view(), frame.head), frame.truth);
@@ -122,8 +135,8 @@ void run_case(const ClutterCase& c, const CaseOptions& options, CaseList& list) 
   figures.push_back({"blobs_most", "", static_cast<double>(search.blobs_most)});
   figures.push_back({"named_most", "", static_cast<double>(search.steps_most)});
   figures.push_back({"searches_full", "", static_cast<double>(search.full)});
-  list.cases.push_back({c.name, "glint", glint.visible(), std::move(figures)});
-  list.cases.push_back({c.name, "seed", published.visible(), published.figures({}, {})});
+  list.cases.push_back({c.name, "glint", glint.trackable(), std::move(figures)});
+  list.cases.push_back({c.name, "seed", published.trackable(), published.figures({}, {})});
 }
 
 // 1 where the cell reader refuses the two tools.

@@ -1,23 +1,12 @@
 #include "platform/experiments/clutter_tally.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <string>
-
-#include "platform/experiments/point_view.hpp"
 
 namespace glint {
 namespace {
 
-constexpr double k_gross_m = 0.02, k_gross_rad = 15 * 3.14159265358979323846 / 180;
-
-bool is_gross(const Tool& tool, const Pose& seen, const Pose& truth) {
-  for (int i = 0; i < tool.marker_count; ++i) {
-    const Vector3& marker = tool.markers_m[static_cast<std::size_t>(i)];
-    if ((seen * marker - truth * marker).norm() > k_gross_m) return true;
-  }
-  return turned_by(seen, truth) > k_gross_rad;
-}
+constexpr double k_swapped_m = 0.02;
 
 bool lies_on(const Tool& tool, const ToolOutcome& found, const Tool& other, const Pose& truth) {
   for (int i = 0; i < tool.marker_count; ++i) {
@@ -25,7 +14,7 @@ bool lies_on(const Tool& tool, const ToolOutcome& found, const Tool& other, cons
     const Vector3 place = found.T_camera_tool * tool.markers_m[static_cast<std::size_t>(i)];
     const auto end = other.markers_m.begin() + other.marker_count;
     if (std::none_of(other.markers_m.begin(), end, [&](const Vector3& marker) {
-          return (truth * marker - place).norm() <= k_gross_m;
+          return (truth * marker - place).norm() <= k_swapped_m;
         }))
       return false;
   }
@@ -39,20 +28,17 @@ void ClutterTally::add(const FrameOutcome& outcome, const sim::SimTruth& truth) 
   for (int t = 0; t < tools_.count; ++t) {
     const auto i = static_cast<std::size_t>(t);
     const ToolOutcome& found = outcome.tools[i];
-    const int markers = std::popcount(truth.visible_mask[i]);
-    const bool recent = truth.mid_exposure - last_tracked_[i] <= lost_after_;
+    const Pose T_camera_tool = T_camera_world * truth.T_world_tool[i];
     ++judged_;
-    if (markers >= 4 || (markers == 3 && recent)) {
-      ++visible_;
+    if (is_trackable(truth.visible_mask[i])) {
+      ++trackable_;
       if (found.seen)
         ++tracked_;
       else
         ++missed_[static_cast<std::size_t>(found.reason)];
     }
     if (!found.seen) continue;
-    last_tracked_[i] = truth.mid_exposure;
-    if (!is_gross(tools_.items[i], found.T_camera_tool, T_camera_world * truth.T_world_tool[i]))
-      continue;
+    if (!is_gross(error_of(found, tools_.items[i], T_camera_tool))) continue;
     ++gross_;
     for (int o = 0; o < tools_.count; ++o) {
       const auto other = static_cast<std::size_t>(o);
@@ -69,10 +55,10 @@ std::vector<Figure> ClutterTally::figures(const Bar& tracked, const Bar& wrong) 
   const auto share = [](std::int64_t part, std::int64_t of) {
     return 100 * static_cast<double>(part) / static_cast<double>(of);
   };
-  std::vector<Figure> figures = {{"tracked", "%", share(tracked_, visible_), tracked},
+  std::vector<Figure> figures = {{"tracked", "%", share(tracked_, trackable_), tracked},
                                  {"gross", "", static_cast<double>(gross_), wrong},
                                  {"swapped", "", static_cast<double>(swapped_), wrong},
-                                 {"visible_share", "%", share(visible_, judged_)}};
+                                 {"trackable_share", "%", share(trackable_, judged_)}};
   for (std::size_t reason = 0; reason < missed_.size(); ++reason) {
     if (missed_[reason] == 0) continue;
     figures.push_back({"missed_" + std::string(name_of(static_cast<Reason>(reason))), "",

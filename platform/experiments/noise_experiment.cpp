@@ -5,11 +5,11 @@
 #include <cmath>
 #include <memory>
 
-#include "kernels/angles.hpp"
 #include "kernels/pose/correspond.hpp"
 #include "kernels/pose/decide_labeling.hpp"
 #include "platform/experiments/estimator_settings.hpp"
 #include "platform/experiments/noisy_frame.hpp"
+#include "platform/session/accuracy.hpp"
 
 namespace glint {
 namespace {
@@ -17,7 +17,6 @@ namespace {
 constexpr int k_noise_frames = 100'000;
 constexpr int k_noise_frames_quick = 500;
 constexpr double k_pixel_sigma_px = 0.1;
-constexpr double k_noise_gross_m = 0.02, k_noise_gross_rad = 15 * k_radians_per_degree;
 constexpr std::array k_noises_m = {0.0, 0.001, 0.002, 0.003, 0.005};
 
 enum class Knowledge { nothing, prior };
@@ -43,17 +42,17 @@ struct NoiseTally {
   std::int64_t hypotheses = 0, hypotheses_most = 0, full = 0;
 
   void add(const NoiseCase& c, const PointView& view, const Pose& truth, const Labeling& labeling,
-           const Pose& pose) {
+           const Pose& pose, double tip_sigma_m) {
     ++found;
-    bool other = false, far = false;
-    for (int i = 0; i < c.tool.tool.marker_count; ++i) {
+    const Tool& tool = c.tool.tool;
+    bool other = false;
+    for (int i = 0; i < tool.marker_count; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      const Vector3& marker = c.tool.tool.markers_m[at];
       other = other || (labeling.marker[at] >= 0 && labeling.marker[at] != view.truth[at]);
-      far = far || (pose * marker - truth * marker).norm() > k_noise_gross_m;
     }
     wrong += other ? 1 : 0;
-    gross += far || turned_by(pose, truth) > k_noise_gross_rad ? 1 : 0;
+    const double tip_m = (pose * tool.tip_m - truth * tool.tip_m).norm();
+    gross += is_gross({tip_m, turned_by(pose, truth), tip_sigma_m, other}) ? 1 : 0;
   }
 };
 
@@ -120,11 +119,12 @@ void try_frame(const NoiseCase& c, const NoisyFrame& frame, const EstimatorSetti
   if (decided.chosen >= 0) {
     tallies.glint.add(c, frame.view, frame.truth,
                       labelings.items[static_cast<std::size_t>(decided.chosen)],
-                      decided.pose.T_camera_tool);
+                      decided.pose.T_camera_tool,
+                      std::sqrt(decided.pose.covariance.topLeftCorner<3, 3>().trace()));
   }
   if (labelings.count > 0) {
     tallies.svd.add(c, frame.view, frame.truth, labelings.items[0],
-                    labelings.items[0].T_camera_tool);
+                    labelings.items[0].T_camera_tool, 0);  // it states no covariance
   }
 }
 

@@ -4,8 +4,8 @@
 // around it, whose images touch no other; without and with a prior (10 mm and 5 degrees rms).
 // Correspondence with the gate of the declared noise, then the weighted fit of every labeling kept,
 // decided by chi-square; beside it the labeling and the pose of the least unweighted rms. Found: a
-// pose is called measured. Gross: called measured with a marker more than 20 mm or the orientation
-// more than 15 degrees off.
+// pose is called measured. Wrong: with a wrong marker assignment. Gross: as is_gross() of
+// platform/session/accuracy.hpp defines it.
 #pragma once
 
 #include "platform/experiments/case_list.hpp"

@@ -3,70 +3,109 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <set>
 
 namespace glint {
 namespace {
 
-constexpr double k_gross_m = 0.020;
-constexpr double k_gross_rad = 15.0 * 3.14159265358979323846 / 180.0;
+// A partly hidden marker's centroid stays on its disc, and that of a marker merged with another of
+// its size within one radius beside it: beyond both lies another reflector's blob.
+bool lies_beside(const BlobSlopes& blob, const Vector3& marker_m, double radius_m) {
+  const Vector3 ray = Vector3(double{blob.x}, double{blob.y}, 1).normalized();
+  return marker_m.cross(ray).squaredNorm() > 4 * radius_m * radius_m;
+}
 
-double angle_between(const Quaternion& a, const Quaternion& b) { return a.angularDistance(b); }
+void state(const Tracker& tracker, int t, ToolOutcome& outcome) {
+  const auto i = static_cast<std::size_t>(t);
+  const FittedTool& fitted = tracker.parts<FittedTools>(t % k_tool_slices).tools[i];
+  const Labeling& labeling = tracker.token<Assignment>().labeling[i];
+  const Markers& markers = tracker.token<Markers>();
+  outcome.tip_sigma_m = std::sqrt(fitted.covariance.topLeftCorner<3, 3>().trace());
+  for (std::size_t m = 0; m < labeling.marker.size(); ++m) {
+    if (((fitted.marker_mask >> m) & 1) == 0) continue;
+    const Vector3& ray = markers.items[static_cast<std::size_t>(labeling.marker[m])].ray;
+    outcome.blobs[m] = {static_cast<float>(ray.x() / ray.z()),
+                        static_cast<float>(ray.y() / ray.z())};
+    outcome.blob_mask = static_cast<std::uint8_t>(outcome.blob_mask | (1u << m));
+  }
+}
 
 }  // namespace
 
-FrameOutcome outcome_of(const Estimates& estimates) {
+bool is_trackable(std::uint8_t visible_mask) {
+  return std::popcount(visible_mask) >= k_trackable_markers;
+}
+
+bool is_gross(const TrackingError& error) {
+  if (error.angle_rad > k_gross_angle_rad) return true;
+  if (error.misassigned && error.tip_m > k_gross_misassigned_m) return true;
+  return error.tip_m > k_gross_tip_m && error.tip_m > k_gross_sigmas * error.tip_sigma_m;
+}
+
+TrackingError error_of(const ToolOutcome& outcome, const Tool& tool, const Pose& T_camera_tool) {
+  TrackingError error;
+  error.tip_m = (outcome.T_camera_tool * tool.tip_m - T_camera_tool * tool.tip_m).norm();
+  error.angle_rad = outcome.T_camera_tool.rotation.angularDistance(T_camera_tool.rotation);
+  error.tip_sigma_m = outcome.tip_sigma_m;
+  for (std::size_t m = 0; m < outcome.blobs.size(); ++m) {
+    if (((outcome.blob_mask >> m) & 1) == 0) continue;
+    if (lies_beside(outcome.blobs[m], T_camera_tool * tool.markers_m[m], tool.marker_radius_m))
+      error.misassigned = true;
+  }
+  return error;
+}
+
+FrameOutcome outcome_of(const Estimates& estimates, const Tracker* tracker) {
   FrameOutcome outcome;
   outcome.verdict = estimates.verdict.reason;
   for (int t = 0; t < estimates.tool_count; ++t) {
-    const auto i = static_cast<std::size_t>(t);
-    const Track& track = estimates.tracks[i];
-    const bool seen = track.seen_now && estimates.verdict.usable();
-    outcome.tools[i] = {seen, track.reason, track.marker_mask, track.T_camera_tool,
-                        track.identity != 0};
+    const Track& track = estimates.tracks[static_cast<std::size_t>(t)];
+    ToolOutcome& tool = outcome.tools[static_cast<std::size_t>(t)];
+    tool.seen = track.seen_now && estimates.verdict.usable();
+    tool.reason = track.reason;
+    tool.marker_mask = track.marker_mask;
+    tool.T_camera_tool = track.T_camera_tool;
+    tool.there = track.identity != 0;
+    if (tool.seen && tracker != nullptr) state(*tracker, t, tool);
   }
   return outcome;
 }
 
 Accuracy judge(const std::vector<FrameOutcome>& outcomes, const std::vector<sim::SimTruth>& truths,
-               const ToolSet& tools, Duration lost_after) {
+               const ToolSet& tools) {
   Accuracy result;
   double tip_sum = 0, angle_sum = 0;
-  std::array<Time, k_tools_max> last_tracked;
-  last_tracked.fill(Time{INT64_MIN / 2});
+  std::set<std::int64_t> exposed;
+  std::array<bool, k_tools_max> there;
+  there.fill(true);
   const std::size_t count = std::min(outcomes.size(), truths.size());
   result.frames = static_cast<std::int64_t>(count);
   for (std::size_t f = 0; f < count; ++f) {
     const FrameOutcome& outcome = outcomes[f];
     const sim::SimTruth& truth = truths[f];
-    // A frame that was not in time counts as one that was not tracked, not as none at all.
-    if (outcome.verdict != Reason::none && !is_overrun(outcome.verdict)) {
-      ++result.refused;
-      continue;
-    }
+    const bool overrun = is_overrun(outcome.verdict);
+    result.refused += outcome.verdict != Reason::none && !overrun ? 1 : 0;
+    if (!exposed.insert(truth.mid_exposure.nanoseconds).second) continue;
     for (int t = 0; t < tools.count; ++t) {
       const auto i = static_cast<std::size_t>(t);
       const ToolOutcome& tool = outcome.tools[i];
-      if (!tool.there) continue;
-      const int visible = std::popcount(truth.visible_mask[i]);
-      const bool recent = truth.mid_exposure - last_tracked[i] <= lost_after;
-      if (visible >= 4 || (visible == 3 && recent)) {
+      if (!overrun) there[i] = tool.there;  // an overrun's substitute does not state it
+      if (!there[i]) continue;
+      if (is_trackable(truth.visible_mask[i])) {
         ++result.trackable;
         result.tracked += tool.seen ? 1 : 0;
       }
       if (!tool.seen) continue;
-      last_tracked[i] = truth.mid_exposure;
 
-      const Pose T_camera_tool = truth.T_world_camera.inverse() * truth.T_world_tool[i];
-      const double tip_error =
-          (tool.T_camera_tool * tools.items[i].tip_m - T_camera_tool * tools.items[i].tip_m).norm();
-      const double angle = angle_between(tool.T_camera_tool.rotation, T_camera_tool.rotation);
+      const TrackingError error =
+          error_of(tool, tools.items[i], truth.T_world_camera.inverse() * truth.T_world_tool[i]);
       ++result.poses;
-      result.gross += tip_error > k_gross_m || angle > k_gross_rad || visible < 3 ? 1 : 0;
-      tip_sum += tip_error * tip_error;
-      angle_sum += angle * angle;
-      result.tip_max_m = std::max(result.tip_max_m, tip_error);
-      result.tip_errors_m.push_back(tip_error);
-      result.angle_errors_rad.push_back(angle);
+      result.gross += is_gross(error) ? 1 : 0;
+      tip_sum += error.tip_m * error.tip_m;
+      angle_sum += error.angle_rad * error.angle_rad;
+      result.tip_max_m = std::max(result.tip_max_m, error.tip_m);
+      result.tip_errors_m.push_back(error.tip_m);
+      result.angle_errors_rad.push_back(error.angle_rad);
       if (t == 0) {
         result.path_truth_m.push_back(truth.T_world_tool[0] * tools.items[0].tip_m);
         result.path_seen_m.push_back(truth.T_world_camera *

@@ -1,38 +1,73 @@
 // How good the poses were, against the simulator's truth: at mid-exposure, in the camera's frame.
 //
-// A frame counts as trackable for a tool with 4 or more of its markers visible, or with 3 while a
-// tracked frame is at most lost_after old. tracked_fraction is the part of these that gave a pose.
+// trackable  by truth alone, at least k_trackable_markers of the tool's markers are visible
+//            (platform/sim/visibility.hpp). A frame that is delivered twice counts once. A frame
+//            that the tracker refused or was late for counts all the same.
+// fresh      the tracker accepted a pose from this frame. tracked_fraction is the share of
+//            trackable frames that are fresh.
+// gross      see is_gross(). The number of markers behind a pose is no part of it.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
-#include "nodes/tokens.hpp"
+#include "kernels/angles.hpp"
+#include "nodes/tracker.hpp"
 #include "platform/sim/simulator.hpp"
 
 namespace glint {
 
+inline constexpr int k_trackable_markers = 3;
+inline constexpr double k_gross_tip_m = 0.020;
+inline constexpr double k_gross_sigmas = 3;
+inline constexpr double k_gross_angle_rad = 15 * k_radians_per_degree;
+inline constexpr double k_gross_misassigned_m = 0.005;
+
+[[nodiscard]] bool is_trackable(std::uint8_t visible_mask);
+
+struct TrackingError {
+  double tip_m = 0;
+  double angle_rad = 0;
+  double tip_sigma_m = 0;    // stated: root of the tip covariance's trace; 0: none is stated
+  bool misassigned = false;  // a marker was given a blob that is not its own
+};
+
+// The rotation is off by more than 15 deg; or the tip by more than 20 mm and by more than three
+// stated sigmas; or by more than 5 mm under a wrong marker assignment.
+[[nodiscard]] bool is_gross(const TrackingError& error);
+
+// Where in the image a marker's blob lies: x/z and y/z of its centroid's ray.
+struct BlobSlopes {
+  float x = 0, y = 0;
+};
+
 // What a frame gave for one tool, kept small so that a whole run fits into memory set aside.
 struct ToolOutcome {
-  bool seen = false;
+  bool seen = false;  // fresh
   Reason reason = Reason::none;
   std::uint8_t marker_mask = 0;
   Pose T_camera_tool;
   bool there = true;  // false: taken out of the set, so that nobody can expect it
+  double tip_sigma_m = 0;
+  std::uint8_t blob_mask = 0;  // the markers of the pose whose blobs follow; 0: not stated
+  std::array<BlobSlopes, k_markers_per_tool_max> blobs{};
 };
 struct FrameOutcome {
   Reason verdict = Reason::none;  // why the frame itself was refused
   std::array<ToolOutcome, k_tools_max> tools;
 };
 
+[[nodiscard]] TrackingError error_of(const ToolOutcome& outcome, const Tool& tool,
+                                     const Pose& T_camera_tool);  // the true one
+
 struct Accuracy {
   std::int64_t frames = 0;     // delivered
   std::int64_t refused = 0;    // late, doubled, invalid
   std::int64_t trackable = 0;  // tool and frame
-  std::int64_t tracked = 0;    // of those
+  std::int64_t tracked = 0;    // of those, fresh
   std::int64_t poses = 0;      // all accepted poses, also of frames that were not trackable
-  std::int64_t gross = 0;      // further than 20 mm or 15 deg from truth, or no tool there
+  std::int64_t gross = 0;      // of poses
   double tip_rms_m = 0;
   double tip_max_m = 0;
   double angle_rms_rad = 0;
@@ -48,9 +83,10 @@ struct Accuracy {
 
 // outcomes[i] and truths[i] belong to the i-th frame delivered.
 [[nodiscard]] Accuracy judge(const std::vector<FrameOutcome>& outcomes,
-                             const std::vector<sim::SimTruth>& truths, const ToolSet& tools,
-                             Duration lost_after);
+                             const std::vector<sim::SimTruth>& truths, const ToolSet& tools);
 
-[[nodiscard]] FrameOutcome outcome_of(const Estimates& estimates);
+// `tracker`: the one that made the estimates, its tokens still those of this frame; null: another
+// method or an overrun's substitute made them, which states neither covariance nor assignment.
+[[nodiscard]] FrameOutcome outcome_of(const Estimates& estimates, const Tracker* tracker = nullptr);
 
 }  // namespace glint

@@ -38,6 +38,11 @@ class FrameGroup {
   [[nodiscard]] graph::TripleBuffer<Estimates>& estimates() noexcept { return estimates_; }
   // The overruns that somebody has to tell the world: the tick group, by CAN.
   [[nodiscard]] OverrunNotes& overrun_notes() noexcept { return notes_; }
+  // The tracker, its tokens those of the last frame; null: a method or an overrun's policy made the
+  // estimates.
+  [[nodiscard]] const Tracker* tracker() const noexcept {
+    return method_ == nullptr && !overrun_.happened() ? tracker_.get() : nullptr;
+  }
   // What the last frame left.
   [[nodiscard]] const Estimates& newest() const noexcept { return *newest_; }
   [[nodiscard]] std::uint64_t activations() const noexcept { return group_.choice().activation; }

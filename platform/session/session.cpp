@@ -282,7 +282,7 @@ SessionResult run_session(const Cell& cell, sim::Scenario scenario, const Sessio
 
   if (groups->background() != nullptr) write_map(*groups->background(), options.out, result);
   groups->report(result);
-  result.accuracy = judge(result.outcomes, source.truths(), cell.tools, cell.lost_after);
+  result.accuracy = judge(result.outcomes, source.truths(), cell.tools);
   result.late_renders = source.late_renders();
   if (trace != nullptr) {
     if (const std::string wrong = trace->close(); !wrong.empty()) {

@@ -91,7 +91,8 @@ SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, st
 void SessionGroups::process(const ArrivedFrame& arrived) noexcept {
   frame_.process(arrived);
   counters_->frame.store(frame_runner_.overruns().total(), std::memory_order_relaxed);
-  if (processed_ < outcomes_.size()) outcomes_[processed_++] = outcome_of(frame_.newest());
+  if (processed_ < outcomes_.size())
+    outcomes_[processed_++] = outcome_of(frame_.newest(), frame_.tracker());
   if (background_ == nullptr) return;
   background_->tracked().write_slot() = capsules_of(frame_.newest());
   background_->tracked().publish(processed_, arrived.frame.arrival.nanoseconds);

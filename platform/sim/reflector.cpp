@@ -177,7 +177,11 @@ Drawn draw(const Reflector& reflector, const CameraModel& model, const LensRays&
   double whole = 0, open = 0;
   for (int y = box.y0; y < box.y1; ++y) {
     for (int x = box.x0; x < box.x1; ++x) {
-      if (!rays.has_ray(x, y)) continue;
+      if (!rays.has_ray(x, y)) {
+        const Vector2 middle(x + 0.5, y + 0.5);
+        if ((middle - drawn.pixel).squaredNorm() < drawn.radius_px * drawn.radius_px) whole += 1;
+        continue;
+      }
       const Light light = light_of_pixel(reflector, near, rays, x, y, exposures);
       whole += light.rays;
       open += light.open;
@@ -189,9 +193,9 @@ Drawn draw(const Reflector& reflector, const CameraModel& model, const LensRays&
       }
     }
   }
-  const double rim_px = 1.1 * drawn.radius_px + 0.5 * blur_px + 1;
-  const bool inside = drawn.pixel.x() > rim_px && drawn.pixel.x() < rays.width() - rim_px &&
-                      drawn.pixel.y() > rim_px && drawn.pixel.y() < rays.height() - rim_px;
+  const double rim_px = drawn.radius_px;
+  const bool inside = drawn.pixel.x() >= rim_px && drawn.pixel.x() <= rays.width() - rim_px &&
+                      drawn.pixel.y() >= rim_px && drawn.pixel.y() <= rays.height() - rim_px;
   drawn.open_share = inside && whole > 0 ? open / whole : 0;
   return drawn;
 }

@@ -38,8 +38,8 @@ struct Reflector {
 struct Drawn {
   Vector2 pixel = Vector2::Zero();  // of the centre, mid-exposure
   double radius_px = 0;
-  double peak_signal = 0;
-  double open_share = 0;  // of its silhouette: in the frame, with a ray, not hidden
+  double peak_signal = 0;  // 0: it sends no light into the image
+  double open_share = 0;   // of its disc: with a ray, not hidden; 0: not all inside the image
 };
 
 // hiders: what may stand before it (camera frame).

@@ -7,7 +7,7 @@ bool stands_alone(const Scene& scene, const DrawnReflectors& drawn, int index) {
   const Drawn& own = drawn[static_cast<std::size_t>(index)];
   for (int i = 0; i < scene.reflectors.count; ++i) {
     const Drawn& other = drawn[static_cast<std::size_t>(i)];
-    if (i == index || other.radius_px == 0) continue;
+    if (i == index || other.peak_signal == 0) continue;  // a hidden one merges with nothing
     const double reach = own.radius_px + other.radius_px + k_gap_px;
     if ((own.pixel - other.pixel).squaredNorm() < reach * reach) return false;
   }
@@ -25,9 +25,7 @@ void find_visible(const Camera& camera, const Scene& scene, const DrawnReflector
     const Drawn& own = drawn[static_cast<std::size_t>(i)];
     const double range = reflector.centre.norm();
     const bool visible = own.open_share >= k_open_share_min && range >= camera.range_min_m &&
-                         range <= camera.range_max_m &&
-                         own.peak_signal > double{1} * camera.threshold &&
-                         stands_alone(scene, drawn, i);
+                         range <= camera.range_max_m && stands_alone(scene, drawn, i);
     if (!visible) continue;
     std::uint8_t& mask = masks[static_cast<std::size_t>(reflector.tool)];
     mask = static_cast<std::uint8_t>(mask | (1u << reflector.marker));

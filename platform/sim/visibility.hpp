@@ -1,11 +1,13 @@
-// Which markers a perfect observer would call visible: the truth that tracked fractions divide by.
+// Which markers are visible by truth alone: what `trackable` frames are counted by.
 //
 // A marker is visible if
-//   - its whole silhouette lies inside the frame and the lens, and at least k_open_share_min of it
-//     is not hidden by shaft, hand or other things,
+//   - at least k_open_share_min of its disc (its silhouette) is unobstructed: a pixel whose ray the
+//     lens does not map counts as obstructed,
+//   - its disc lies inside the image,
 //   - its range is within the camera's range_min_m..range_max_m,
-//   - its brightest pixel is above the camera's threshold,
-//   - no other reflector's silhouette comes within k_gap_px of its own: two would make one blob.
+//   - it is not merged with another reflector: no other disc that sends light into the image comes
+//     within k_gap_px of its own, where two discs may make one blob.
+// Brightness is no part of it: the threshold belongs to the tracker.
 #pragma once
 
 #include <array>
@@ -17,7 +19,7 @@
 
 namespace glint::sim {
 
-inline constexpr double k_open_share_min = 0.95;
+inline constexpr double k_open_share_min = 0.80;
 inline constexpr double k_gap_px = 2.0;
 
 using DrawnReflectors = std::array<Drawn, k_reflectors_max>;  // in the scene's order

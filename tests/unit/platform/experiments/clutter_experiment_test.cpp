@@ -5,6 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "kernels/angles.hpp"
+#include "kernels/motion/interpolate.hpp"
 #include "platform/cells/tool_distinction.hpp"
 #include "platform/cells/tool_notices.hpp"
 #include "platform/experiments/clutter_scene.hpp"
@@ -12,8 +14,6 @@
 
 namespace glint {
 namespace {
-
-const Duration k_lost_after = milliseconds(250);
 
 double value_of(const std::vector<Figure>& figures, const std::string& name) {
   for (const Figure& figure : figures)
@@ -34,54 +34,66 @@ struct TwoSeen {
                           {Quaternion::Identity(), Vector3(0.3, 0, 0.5)}};
     truth.visible_mask = {0b11111, 0b1111};
     for (std::size_t t = 0; t < 2; ++t)
-      outcome.tools[t] = {true, Reason::none, truth.visible_mask[t], truth.T_world_tool[t]};
+      show(outcome.tools[t], truth.visible_mask[t], truth.T_world_tool[t]);
+  }
+  static void show(ToolOutcome& tool, std::uint8_t mask, const Pose& T_camera_tool) {
+    tool.seen = true;
+    tool.marker_mask = mask;
+    tool.T_camera_tool = T_camera_tool;
+  }
+  // About the tip, which so stays where it is.
+  void turn(std::size_t t, double angle_rad) {
+    Pose& pose = outcome.tools[t].T_camera_tool;
+    const Vector3 tip = pose * tools.items[t].tip_m;
+    pose.rotation = from_rotation_vector(Vector3(angle_rad, 0, 0)) * pose.rotation;
+    pose.translation = tip - pose.rotation * tools.items[t].tip_m;
   }
 };
 
 TEST(ClutterTally, CountsToolsAsTheyAreAsTracked) {
   const TwoSeen seen;
-  ClutterTally tally(seen.tools, k_lost_after);
+  ClutterTally tally(seen.tools);
   tally.add(seen.outcome, seen.truth);
-  EXPECT_EQ(tally.visible(), 2);
+  EXPECT_EQ(tally.trackable(), 2);
   EXPECT_EQ(tally.tracked(), 2);
   EXPECT_EQ(tally.gross(), 0);
   EXPECT_EQ(tally.swapped(), 0);
 }
 
-TEST(ClutterTally, CountsThreeMarkersAsVisibleOnlyWhereATrackIsYoung) {
+TEST(ClutterTally, CountsThreeMarkersWhateverWasTrackedBefore) {
   TwoSeen seen;
   seen.tools.count = 1;
-  ClutterTally tally(seen.tools, k_lost_after);
+  ClutterTally tally(seen.tools);
   seen.truth.visible_mask[0] = 0b111;
   seen.outcome.tools[0].seen = false;
   seen.outcome.tools[0].reason = Reason::no_labeling;
   tally.add(seen.outcome, seen.truth);
-  EXPECT_EQ(tally.visible(), 0);
-  tally.add(TwoSeen().outcome, seen.truth);  // tracked, at time 0
-  EXPECT_EQ(tally.visible(), 0);
-  seen.truth.mid_exposure = Time{} + k_lost_after;
-  tally.add(seen.outcome, seen.truth);
-  EXPECT_EQ(tally.visible(), 1);
+  EXPECT_EQ(tally.trackable(), 1);
   EXPECT_EQ(value_of(tally.figures({}, {}), "missed_no_labeling"), 1);
-  seen.truth.mid_exposure = seen.truth.mid_exposure + Duration{1};
-  tally.add(seen.outcome, seen.truth);
-  EXPECT_EQ(tally.visible(), 1);
+  seen.truth.visible_mask[0] = 0b11;
+  tally.add(TwoSeen().outcome, seen.truth);
+  EXPECT_EQ(tally.trackable(), 1);
 }
 
 TEST(ClutterTally, CallsAPoseGrossThatIsFarOffOrTurned) {
   TwoSeen seen;
-  ClutterTally tally(seen.tools, k_lost_after);
+  ClutterTally tally(seen.tools);
   seen.outcome.tools[0].T_camera_tool.translation.z() += 0.021;
   seen.outcome.tools[1].T_camera_tool.translation.z() += 0.019;
   tally.add(seen.outcome, seen.truth);
   EXPECT_EQ(tally.gross(), 1);
+  TwoSeen turned;
+  turned.turn(0, 15.1 * k_radians_per_degree);
+  turned.turn(1, 14.9 * k_radians_per_degree);
+  tally.add(turned.outcome, turned.truth);
+  EXPECT_EQ(tally.gross(), 2);
   EXPECT_EQ(tally.swapped(), 0);
 }
 
 TEST(ClutterTally, CallsSwappedOnlyWhatLiesOnAnotherTool) {
   TwoSeen seen;
   seen.tools.items[0] = seen.tools.items[1];
-  ClutterTally tally(seen.tools, k_lost_after);
+  ClutterTally tally(seen.tools);
   seen.outcome.tools[0].marker_mask = 0b1111;
   seen.outcome.tools[0].T_camera_tool = seen.truth.T_world_tool[1];
   seen.outcome.tools[1].T_camera_tool.translation.y() += 0.2;  // on none

@@ -45,16 +45,46 @@ TEST(Visible, IsNoMarkerOutOfRange) {
   EXPECT_EQ(mask_of(dark_scene({0, 0, 0.97})), 0b11111);
 }
 
-TEST(Visible, IsNoMarkerThatIsTooDark) {
+// The edge of a thick vertical line runs beside marker 0's centre, which is at (3, -2, 500) mm.
+Scenario with_edge_beside_marker_0(double beside_radii) {
+  Scenario scenario = dark_scene();
+  const double edge_mm = 0.9 * (3 + beside_radii * 5.5);  // 450 mm ahead
+  const double axis_m = 0.001 * (edge_mm + 4 - 3);
+  scenario.tools[0].parts.push_back({{axis_m, -0.03, -0.05}, {axis_m, 0.03, -0.05}, 0.004, 300});
+  return scenario;
+}
+
+// A line at 0.6 radii leaves 86 % of a disc, one at 0.4 radii 75 %.
+TEST(Visible, IsAMarkerWhoseDiscIsOpenByFourFifths) {
+  EXPECT_EQ(mask_of(with_edge_beside_marker_0(0.6)), 0b11111);
+  EXPECT_EQ(mask_of(with_edge_beside_marker_0(0.4)), 0b11110);
+}
+
+TEST(Visible, IsNoMarkerThatTheLensCutsByMoreThanAFifth) {
+  // Marker 2 is at (-42, 28, 490) mm: its centre lies at a tangent of 0.1030 from the axis, its rim
+  // 0.0112 further.
+  Scenario scenario = dark_scene();
+  scenario.camera.model.lens = Lens::rational;
+  scenario.camera.model.field_tangent_max = 0.1108;
+  EXPECT_EQ(mask_of(scenario) & 0b00100, 0b00100);
+  scenario.camera.model.field_tangent_max = 0.1052;
+  EXPECT_EQ(mask_of(scenario) & 0b00100, 0);
+}
+
+// The tracker's threshold is no part of the truth.
+TEST(Visible, IsAMarkerDarkerThanTheThreshold) {
   Scenario scenario = dark_scene();
   scenario.signal.marker = 1200;
-  EXPECT_EQ(mask_of(scenario), 0);
+  EXPECT_EQ(mask_of(scenario), 0b11111);
 }
 
 TEST(Visible, IsNoMarkerThatMergesWithClutter) {
   Scenario scenario = dark_scene();
   scenario.clutter.push_back({{0.012, -0.002, 0.55}, Vector3::Zero(), 0.005, 8000});
   EXPECT_EQ(mask_of(scenario), 0b11110);
+  // Behind a finger it merges with nothing.
+  scenario.tools[0].parts.push_back({{0.008, -0.02, 0.03}, {0.008, 0.02, 0.03}, 0.008, 300});
+  EXPECT_EQ(mask_of(scenario), 0b11111);
 }
 
 TEST(Visible, IsNothingWhileAHandPassesBefore) {
