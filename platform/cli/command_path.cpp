@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "platform/cli/commands.hpp"
+#include "platform/cli/losses_json.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/publishing.hpp"
 #include "platform/input_error.hpp"
@@ -60,6 +61,8 @@ void print_table(const RecordedPath& drawn, double spacing_m) {
   const auto notice = [](std::int64_t count, const char* what) {
     if (count > 0) std::printf("notice  %lld %s\n", static_cast<long long>(count), what);
   };
+  if (drawn.losses.any())
+    std::printf("notice  the recording lacks %s\n", text_of(drawn.losses).c_str());
   notice(counts.not_measured, "poses left out: not measured");
   notice(counts.not_in_robot, "poses left out: not in the robot's frame");
   notice(counts.not_usable, "poses left out: out of order or a jump");
@@ -89,7 +92,8 @@ nlohmann::ordered_json figures(const RecordedPath& drawn) {
           {"gaps", counts.gaps},
           {"presses_in_vain", counts.presses_in_vain},
           {"points_left_out", counts.points_left_out},
-          {"strokes_left_out", counts.strokes_left_out}};
+          {"strokes_left_out", counts.strokes_left_out},
+          {"missing", losses_json(drawn.losses)}};
 }
 
 void publish(const RecordedPath& drawn, const PublishOptions& options) {
@@ -119,7 +123,7 @@ int make_path(PathArguments& arguments) {
   write(arguments.urscript, script);
   write_json(arguments.json, figures(drawn));
   publish(drawn, arguments.publish);
-  return 0;
+  return drawn.losses.any() ? 1 : 0;
 }
 
 // Metres, written with their unit: 2mm, 0.5cm, 0.01m.
@@ -169,7 +173,8 @@ void add_path(CLI::App& app, int& exit_code) {
   add_length(command, "--blend", script.blend_m, "largest blend radius", 0, 0.1);
   add_publish_options(*command, arguments->publish);
   command->add_flag("--allow-truncated", arguments->options.tolerance.truncated,
-                    "read a file that was cut short up to its last whole chunk");
+                    "read a file that was cut short or damaged but for what is not whole, and "
+                    "count what is missing: exit code 1");
   command->add_flag("--allow-incomplete", arguments->options.tolerance.incomplete,
                     "read a recording that dropped something or ended early");
   command->add_option("--json", arguments->json, "write the figures here");

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "platform/cli/commands.hpp"
+#include "platform/cli/losses_json.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/progress.hpp"
 #include "platform/input_error.hpp"
@@ -32,13 +33,16 @@ int replay_recording(const ReplayArguments& arguments) {
   std::printf("level            %s\nframes           %lld\nticks            %lld\n",
               result.level.c_str(), static_cast<long long>(result.frames),
               static_cast<long long>(result.ticks));
-  std::printf("records          %lld (recorded %lld, differing %lld)\noutput_sha256    %s\n",
-              static_cast<long long>(result.records),
-              static_cast<long long>(result.records_recorded),
-              static_cast<long long>(result.mismatches), result.output_sha256.c_str());
-  std::printf("the run's own    %s  %s\n",
+  std::printf(
+      "records          %lld (recorded %lld, compared %lld, differing %lld)\n",
+      static_cast<long long>(result.records), static_cast<long long>(result.records_recorded),
+      static_cast<long long>(result.records_compared), static_cast<long long>(result.mismatches));
+  const bool lost = result.losses.any();
+  if (lost) std::printf("missing          %s\n", text_of(result.losses).c_str());
+  std::printf("output_sha256    %s\nthe run's own    %s  %s%s\n", result.output_sha256.c_str(),
               result.recorded_sha256.empty() ? "(none)" : result.recorded_sha256.c_str(),
-              result.agrees() ? "equal" : "DIFFERENT");
+              result.agrees() ? "equal" : "DIFFERENT",
+              lost && result.agrees() ? " as far as records could be compared" : "");
   if (result.first_mismatch >= 0) {
     std::printf("first difference at record %lld\n", static_cast<long long>(result.first_mismatch));
   }
@@ -49,13 +53,15 @@ int replay_recording(const ReplayArguments& arguments) {
                               {"overruns", result.overruns},
                               {"records", result.records},
                               {"records_recorded", result.records_recorded},
+                              {"records_compared", result.records_compared},
                               {"records_differing", result.mismatches},
                               {"first_difference", result.first_mismatch},
                               {"versions_missing", result.versions_missing},
+                              {"missing", losses_json(result.losses)},
                               {"output_sha256", result.output_sha256},
                               {"recorded_sha256", result.recorded_sha256},
                               {"agrees", result.agrees()}});
-  return result.agrees() ? 0 : 1;
+  return result.agrees() && !lost ? 0 : 1;
 }
 
 int replay_marker_points(const ReplayArguments& arguments) {
@@ -108,7 +114,8 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->add_option("--workers", arguments->workers, "threads: 1 or 2, the same bytes")
       ->check(CLI::Range(1, 2));
   command->add_flag("--allow-truncated", arguments->tolerance.truncated,
-                    "read a file that was cut short up to its last whole chunk");
+                    "read a file that was cut short or damaged but for what is not whole, and "
+                    "count what is missing: exit code 1");
   command->add_flag("--allow-incomplete", arguments->tolerance.incomplete,
                     "read a recording that dropped something or ended early");
   command->add_option("--json", arguments->json, "write the figures here");

@@ -98,6 +98,7 @@ RecordedPath recorded_path(const std::string& recording, const RecordedPathOptio
   }
   for (; event != events.end(); ++event) capture.add(*event);
   capture.finish();
+  result.losses = reader.losses();
   result.path = capture.path();
   result.counts = capture.counts();
   if (result.counts.taken == 0) throw InputError(recording + nothing_taken(result.counts));

@@ -22,7 +22,8 @@ struct RecordedPath {
   CaptureCounts counts;
   std::string tool;
   std::int64_t events = 0;
-  Duration unix_offset;  // added to a point's time it gives time since 1970 (UTC)
+  Duration unix_offset;    // added to a point's time it gives time since 1970 (UTC)
+  RecordingLosses losses;  // only where the tolerance allows them
 };
 
 // Throws InputError: no recording, no such tool, no event at all, or nothing that could be taken.

@@ -63,6 +63,7 @@ class ByteReader {
   [[nodiscard]] bool failed() const { return failed_; }
   [[nodiscard]] bool at_end() const { return failed_ || at_ == bytes_.size(); }
   [[nodiscard]] std::size_t position() const { return at_; }
+  [[nodiscard]] std::size_t left() const { return bytes_.size() - at_; }
 
  private:
   std::span<const std::uint8_t> bytes_;

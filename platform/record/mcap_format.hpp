@@ -16,6 +16,8 @@ namespace glint {
 inline constexpr std::array<std::uint8_t, 8> k_mcap_magic{0x89, 'M', 'C',  'A',
                                                           'P',  '0', '\r', '\n'};
 inline constexpr std::uint64_t k_mcap_heading_bytes = 9;  // kind, then length of the content
+// Longer than any chunk or attachment of a real recording: a flipped bit cannot ask for all memory.
+inline constexpr std::uint64_t k_mcap_record_bytes_max = std::uint64_t{256} << 20;
 inline constexpr std::uint64_t k_mcap_footer_bytes = k_mcap_heading_bytes + 20;
 
 enum class McapKind : std::uint8_t {
@@ -120,6 +122,7 @@ void append_footer_heading(Bytes& to, std::uint64_t summary_start, std::uint64_t
 [[nodiscard]] McapChannel read_channel(ByteReader& reader);
 [[nodiscard]] McapMessageHeading read_message_heading(ByteReader& reader);
 [[nodiscard]] McapChunkHeading read_chunk_heading(ByteReader& reader);
+[[nodiscard]] McapChunkIndex read_chunk_index(ByteReader& reader);  // its offset and length alone
 [[nodiscard]] McapAttachmentIndex read_attachment_index(ByteReader& reader);
 [[nodiscard]] McapMetadataIndex read_metadata_index(ByteReader& reader);
 [[nodiscard]] McapStatistics read_statistics(ByteReader& reader);

@@ -56,6 +56,15 @@ McapChunkHeading read_chunk_heading(ByteReader& reader) {
   return heading;
 }
 
+McapChunkIndex read_chunk_index(ByteReader& reader) {
+  McapChunkIndex index;
+  index.start = reader.number<std::uint64_t>();
+  index.end = reader.number<std::uint64_t>();
+  index.offset = reader.number<std::uint64_t>();
+  index.length = reader.number<std::uint64_t>();
+  return index;
+}
+
 McapAttachmentIndex read_attachment_index(ByteReader& reader) {
   McapAttachmentIndex index;
   index.offset = reader.number<std::uint64_t>();

@@ -7,10 +7,6 @@
 namespace glint {
 namespace {
 
-// Longer than any chunk or attachment that anybody writes; keeps a flipped bit from asking for all
-// the memory there is.
-constexpr std::uint64_t k_record_bytes_max = std::uint64_t{256} << 20;
-
 std::string kind_and_length(std::uint64_t kind, std::uint64_t bytes) {
   return "a record of kind " + std::to_string(kind) + " and " + std::to_string(bytes) + " bytes";
 }
@@ -30,10 +26,10 @@ McapReader::Heading McapReader::heading_at(std::uint64_t offset, std::uint64_t e
   ByteReader reader(bytes);
   const auto kind = reader.number<std::uint8_t>();
   const auto length = reader.number<std::uint64_t>();
-  if (kind == 0 || length > end - offset - k_mcap_heading_bytes || length > k_record_bytes_max)
+  if (kind == 0 || length > end - offset - k_mcap_heading_bytes || length > k_mcap_record_bytes_max)
     file_.refuse(offset, kind_and_length(kind, length),
                  "a record within the " + std::to_string(end - offset - k_mcap_heading_bytes) +
-                     " bytes that follow, and at most " + std::to_string(k_record_bytes_max));
+                     " bytes that follow, and at most " + std::to_string(k_mcap_record_bytes_max));
   return {static_cast<McapKind>(kind), length};
 }
 
@@ -64,6 +60,11 @@ bool McapReader::open_record() {
   record_at_ = at_;
   const Heading heading = heading_at(at_, data_end_);
   const std::uint64_t whole = k_mcap_heading_bytes + heading.bytes;
+  const auto known = known_records_.find(at_);
+  if (known != known_records_.end() &&
+      (known->second.kind != heading.kind || known->second.length != whole))
+    file_.refuse(at_, kind_and_length(static_cast<std::uint64_t>(heading.kind), heading.bytes),
+                 "the record that the index has here; the file is damaged here");
   file_.read(at_, whole, record_);
   at_ += whole;
   if (heading.kind != McapKind::data_end) crc_ = crc32(crc_, record_);
@@ -74,16 +75,19 @@ void McapReader::open_chunk(std::uint64_t offset) {
   ByteReader content(std::span<const std::uint8_t>(record_).subspan(k_mcap_heading_bytes));
   const McapChunkHeading heading = read_chunk_heading(content);
   if (content.failed()) refuse_content(offset, "chunk");
-  if (!heading.compression.empty())
+  if (!heading.compression.empty()) {
+    compressed_ = compressed_ || heading.compression == "zstd" || heading.compression == "lz4";
     file_.refuse(offset, "a chunk compressed with '" + heading.compression.substr(0, 16) + "'",
                  "chunks without compression, as Glint writes them");
+  }
   const auto records = content.take(heading.record_bytes);
   if (content.failed() || heading.uncompressed_bytes != heading.record_bytes)
     refuse_content(offset, "chunk");
   const std::uint32_t crc = crc32(0, records);
   if (heading.crc != 0 && heading.crc != crc)
     file_.refuse(offset, "a chunk with checksum " + std::to_string(crc),
-                 std::to_string(heading.crc) + "; the file is damaged here");
+                 std::to_string(heading.crc) +
+                     "; the file is damaged here; --allow-truncated reads all but this chunk");
   chunk_.emplace(records);
 }
 
@@ -100,6 +104,7 @@ std::optional<McapMessage> McapReader::message(ByteReader& content) {
   found.schema = schema == schemas_.end() ? nullptr : &schema->second;
   found.file_offset = record_at_;
   ++messages_;
+  ++messages_read_[found.heading.channel_id];
   return found;
 }
 
@@ -133,7 +138,7 @@ void McapReader::check_end(std::uint64_t offset) {
   at_ = data_end_;
 }
 
-std::optional<McapMessage> McapReader::next() {
+std::optional<McapMessage> McapReader::next_whole() {
   for (;;) {
     if (auto found = next_in_chunk()) return found;
     if (!open_record()) return std::nullopt;
@@ -152,6 +157,8 @@ std::optional<McapMessage> McapReader::next() {
         check_end(record_at_);
         break;
       case McapKind::message: {
+        // Among indexed chunks it is another record, whose kind is damaged.
+        if (ending_ == McapEnding::optional && !known_records_.empty()) break;
         auto found = message(content);
         found->payload = std::span<const std::uint8_t>(record_).subspan(
             k_mcap_heading_bytes + k_mcap_message_heading_bytes);

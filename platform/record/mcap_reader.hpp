@@ -1,7 +1,8 @@
 // Reads an MCAP file from its first message to its last, checking every length and checksum.
 //
-// Memory: the largest record. A file without an ending (power failure, a copy that broke off) is
-// refused, or on request read up to its last whole record.
+// Memory: the largest record. A file without an ending (power failure, a copy that broke off) or
+// with a damaged record is refused, or on request read but for what is not whole; losses() counts
+// that.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,16 @@ namespace glint {
 
 enum class McapEnding : std::uint8_t {
   required,  // index, statistics and end mark must be there and right
-  optional,  // a file cut short is read up to its last whole record
+  optional,  // what is not whole is left out and counted
+};
+
+// What was left out so far; all of it once next() returned nothing.
+struct McapLosses {
+  std::uint64_t chunks = 0;                       // damaged ones
+  std::uint64_t bytes = 0;                        // of them, and behind the last whole record
+  std::map<std::string, std::uint64_t> messages;  // by topic
+  bool at_least = false;  // more messages may be missing: no statistics tell how many there were
+  [[nodiscard]] bool any() const { return bytes > 0 || !messages.empty(); }
 };
 
 // Valid until the next call of next().
@@ -45,6 +55,7 @@ class McapReader {
   [[nodiscard]] const std::vector<McapAttachmentIndex>& attachments() const { return attachments_; }
   [[nodiscard]] const std::map<std::string, McapTexts>& metadata() const { return metadata_; }
   [[nodiscard]] bool cut_short() const { return !has_ending_; }
+  [[nodiscard]] const McapLosses& losses() const { return losses_; }
   [[nodiscard]] const InputFile& file() const { return file_; }
 
  private:
@@ -52,15 +63,27 @@ class McapReader {
     McapKind kind{};
     std::uint64_t bytes = 0;  // of the content
   };
+  struct KnownRecord {
+    McapKind kind{};
+    std::uint64_t length = 0;  // heading included
+  };
   [[nodiscard]] bool read_ending();
+  [[nodiscard]] bool find_ending();
   void read_summary(std::uint64_t start, std::uint64_t end);
   void find_what_is_whole();
   void read_header();
   void read_metadata(const McapMetadataIndex& index);
+  void read_metadata_or_leave_it(const McapMetadataIndex& index);
+  void note_record(const Heading& heading, std::uint64_t at);
   [[nodiscard]] Heading heading_at(std::uint64_t offset, std::uint64_t end) const;
   void open_chunk(std::uint64_t offset);
   [[nodiscard]] bool open_record();
   void check_end(std::uint64_t offset);
+  [[nodiscard]] std::optional<McapMessage> next_whole();
+  void leave_out_record();
+  void leave_out_tail();
+  void count_messages(ByteReader records);
+  void count_by_statistics();
   std::optional<McapMessage> message(ByteReader& content);
   std::optional<McapMessage> next_in_chunk();
   void add_schema(ByteReader& content, std::uint64_t offset);
@@ -74,7 +97,14 @@ class McapReader {
   std::vector<McapAttachmentIndex> attachments_;
   std::map<std::string, McapTexts> metadata_;
   std::optional<McapStatistics> statistics_;
+  McapEnding ending_;
   bool has_ending_ = false;
+  bool has_data_end_ = false;                             // all messages' records are there
+  bool ended_ = false;                                    // next() returned nothing
+  bool compressed_ = false;                               // by another program, not by damage
+  std::map<std::uint64_t, KnownRecord> known_records_;    // of the index, by offset
+  std::map<std::uint16_t, std::uint64_t> messages_read_;  // by channel
+  McapLosses losses_;
   std::uint64_t data_end_ = 0;   // of the records that next() reads
   std::uint64_t at_ = 0;         // of the record that next() reads next
   std::uint64_t record_at_ = 0;  // of the record that is open

@@ -7,7 +7,7 @@
 
 namespace glint {
 
-McapReader::McapReader(const std::string& path, McapEnding ending) : file_(path) {
+McapReader::McapReader(const std::string& path, McapEnding ending) : file_(path), ending_(ending) {
   Bytes magic;
   file_.read(0, std::min<std::uint64_t>(file_.size(), k_mcap_magic.size()), magic);
   if (!std::equal(magic.begin(), magic.end(), k_mcap_magic.begin(), k_mcap_magic.end()))
@@ -15,7 +15,7 @@ McapReader::McapReader(const std::string& path, McapEnding ending) : file_(path)
                  "the first bytes of an MCAP file, 89 4D 43 41 50 30 0D 0A");
   crc_ = crc32(0, magic);
   at_ = k_mcap_magic.size();
-  has_ending_ = read_ending();
+  has_ending_ = find_ending();
   if (!has_ending_) {
     if (ending == McapEnding::required)
       file_.refuse(file_.size(), "the file ends without its index: it was cut short",
@@ -32,6 +32,22 @@ void McapReader::read_header() {
   profile_ = content.text();
   (void)content.text();  // the library that wrote it
   if (content.failed()) refuse_content(k_mcap_magic.size(), "header");
+}
+
+// False: there is none to use, and what it would have told is as if never read.
+bool McapReader::find_ending() {
+  if (ending_ == McapEnding::required) return read_ending();
+  try {
+    return read_ending();
+  } catch (const InputError&) {
+    schemas_.clear();
+    channels_.clear();
+    attachments_.clear();
+    metadata_.clear();
+    statistics_.reset();
+    known_records_.clear();
+    return false;
+  }
 }
 
 // False: there is no footer. Throws where there is one and something about it is wrong.
@@ -69,6 +85,14 @@ bool McapReader::read_ending() {
   return true;
 }
 
+void McapReader::read_metadata_or_leave_it(const McapMetadataIndex& index) {
+  try {
+    read_metadata(index);
+  } catch (const InputError&) {
+    if (ending_ == McapEnding::required) throw;
+  }
+}
+
 void McapReader::read_summary(std::uint64_t start, std::uint64_t end) {
   const auto inside = [&](std::uint64_t offset, std::uint64_t length) {
     return length >= k_mcap_heading_bytes && offset <= start && length <= start - offset;
@@ -81,53 +105,63 @@ void McapReader::read_summary(std::uint64_t start, std::uint64_t end) {
     if (heading.kind == McapKind::schema) add_schema(content, at);
     if (heading.kind == McapKind::channel) add_channel(content, at);
     if (heading.kind == McapKind::statistics) statistics_ = read_statistics(content);
+    if (heading.kind == McapKind::chunk_index) {
+      const McapChunkIndex index = read_chunk_index(content);
+      if (!inside(index.offset, index.length)) refuse_content(at, "chunk index");
+      known_records_[index.offset] = {McapKind::chunk, index.length};
+    }
     if (heading.kind == McapKind::attachment_index) {
       attachments_.push_back(read_attachment_index(content));
       const McapAttachmentIndex& index = attachments_.back();
       if (!inside(index.offset, index.length)) refuse_content(at, "attachment index");
+      known_records_[index.offset] = {McapKind::attachment, index.length};
     }
     if (heading.kind == McapKind::metadata_index) {
       const McapMetadataIndex index = read_metadata_index(content);
       if (!inside(index.offset, index.length)) refuse_content(at, "metadata index");
-      read_metadata(index);
+      known_records_[index.offset] = {McapKind::metadata, index.length};
+      read_metadata_or_leave_it(index);
     }
     if (content.failed()) refuse_content(at, "summary");
     at += k_mcap_heading_bytes + heading.bytes;
   }
 }
 
-// Walks over the records until one is not whole, and notes what the index would have said.
-void McapReader::find_what_is_whole() {
-  std::uint64_t at = k_mcap_magic.size();
+// Notes what the index would have told of a record.
+void McapReader::note_record(const Heading& heading, std::uint64_t at) {
+  const std::uint64_t whole = k_mcap_heading_bytes + heading.bytes;
+  if (heading.kind == McapKind::metadata) read_metadata({at, whole, ""});
+  if (heading.kind != McapKind::attachment) return;
   Bytes bytes;
+  file_.read(at + k_mcap_heading_bytes, heading.bytes, bytes);
+  ByteReader content(bytes);
+  McapAttachmentIndex index{at, whole, 0, 0, 0, "", ""};
+  index.log_time = content.number<std::uint64_t>();
+  index.create_time = content.number<std::uint64_t>();
+  index.name = content.text();
+  index.media_type = content.text();
+  index.data_bytes = content.number<std::uint64_t>();
+  if (!content.failed()) attachments_.push_back(index);
+}
+
+// Walks over the records until one is cut.
+void McapReader::find_what_is_whole() {
+  data_end_ = k_mcap_magic.size();
   try {
-    while (at < file_.size()) {
-      const Heading heading = heading_at(at, file_.size());
-      const std::uint64_t whole = k_mcap_heading_bytes + heading.bytes;
-      if (heading.kind == McapKind::metadata) read_metadata({at, whole, ""});
-      if (heading.kind == McapKind::attachment) {
-        file_.read(at + k_mcap_heading_bytes, heading.bytes, bytes);
-        ByteReader content(bytes);
-        McapAttachmentIndex index{at, whole, 0, 0, 0, "", ""};
-        index.log_time = content.number<std::uint64_t>();
-        index.create_time = content.number<std::uint64_t>();
-        index.name = content.text();
-        index.media_type = content.text();
-        index.data_bytes = content.number<std::uint64_t>();
-        attachments_.push_back(index);
+    while (data_end_ < file_.size()) {
+      const Heading heading = heading_at(data_end_, file_.size());
+      has_data_end_ = heading.kind == McapKind::data_end;
+      if (has_data_end_) return;
+      try {
+        note_record(heading, data_end_);
+      } catch (const InputError&) {
+        // Damaged: what asks for it does not find it.
       }
-      if (heading.kind == McapKind::chunk) {
-        file_.read(at, whole, record_);
-        open_chunk(at);  // refuses what the disk only promised to hold
-        chunk_.reset();
-      }
-      if (heading.kind == McapKind::data_end) break;
-      at += whole;
+      data_end_ += k_mcap_heading_bytes + heading.bytes;
     }
   } catch (const InputError&) {
-    // This record is not whole: what is whole ends here.
+    // This record is cut: what is whole ends here.
   }
-  data_end_ = at;
 }
 
 }  // namespace glint

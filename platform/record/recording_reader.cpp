@@ -49,6 +49,7 @@ struct RecordingReader::Body {
 
   // Nothing: not one of Glint's own messages.
   std::optional<RecordedMessage> decode(const McapMessage& message);
+  std::optional<RecordedMessage> decode_frame(const McapMessage& message);
   template <class T>
   RecordedMessage checked(std::optional<T> read, const McapMessage& message) const {
     if (!read)
@@ -63,18 +64,34 @@ struct RecordingReader::Body {
   RecordingLevel level{};
   Duration nominal_tick, unix_offset;
   ImageRows reflectivity, depth;  // the newest; a frame message may refer to them
+  std::uint64_t gaps = 0;         // before those images
+  std::int64_t frames_without_pixels = 0;
 };
+
+// A damaged chunk may have held the images that the frame refers to.
+std::optional<RecordedMessage> RecordingReader::Body::decode_frame(const McapMessage& message) {
+  auto frame = read_frame(message.payload, reflectivity, depth);
+  if (!frame && gaps > 0) {
+    ++frames_without_pixels;
+    return std::nullopt;
+  }
+  return checked(std::move(frame), message);
+}
 
 std::optional<RecordedMessage> RecordingReader::Body::decode(const McapMessage& message) {
   const std::string& topic = message.channel->topic;
   const MessageBytes bytes = message.payload;
+  if (gaps != mcap.losses().chunks) {
+    gaps = mcap.losses().chunks;
+    reflectivity = depth = {};
+  }
   if (topic == k_reflectivity_topic || topic == k_depth_topic) {
     auto image = read_image(bytes);
     if (!image) return checked(std::optional<HeadPose>(), message);
     (topic == k_depth_topic ? depth : reflectivity) = std::move(*image);
     return std::nullopt;
   }
-  if (topic == k_frame_topic) return checked(read_frame(bytes, reflectivity, depth), message);
+  if (topic == k_frame_topic) return decode_frame(message);
   if (topic == k_head_pose_topic) return checked(read_head_pose(bytes), message);
   if (topic == k_markers_topic) return checked(read_markers(bytes), message);
   if (topic == k_choice_topic) return checked(read_choice(bytes), message);
@@ -101,6 +118,34 @@ std::optional<RecordedMessage> RecordingReader::next() {
   while (const auto message = body_->mcap.next())
     if (auto decoded = body_->decode(*message)) return decoded;
   return std::nullopt;
+}
+
+std::uint64_t RecordingReader::gaps() const { return body_->mcap.losses().chunks; }
+
+RecordingLosses RecordingReader::losses() const {
+  const McapLosses& left_out = body_->mcap.losses();
+  RecordingLosses losses;
+  const std::string_view of_frames =
+      keeps_frames(body_->level) ? k_frame_topic : k_markers_topic;  // at level outputs neither
+  for (const auto& [topic, count] : left_out.messages) {
+    losses.messages += static_cast<std::int64_t>(count);
+    if (topic == of_frames) losses.frames = static_cast<std::int64_t>(count);
+  }
+  losses.frames += body_->frames_without_pixels;
+  losses.chunks = static_cast<std::int64_t>(left_out.chunks);
+  losses.bytes = left_out.bytes;
+  losses.at_least = left_out.at_least;
+  return losses;
+}
+
+std::string text_of(const RecordingLosses& losses) {
+  std::string text = losses.at_least ? "at least " : "";
+  text += std::to_string(losses.frames) + " frames (" + std::to_string(losses.messages) +
+          " messages), " + std::to_string(losses.bytes) + " bytes";
+  if (losses.chunks > 0)
+    text += ", " + std::to_string(losses.chunks) + " damaged " +
+            (losses.chunks == 1 ? "chunk" : "chunks");
+  return text;
 }
 
 Attachment RecordingReader::attachment(const std::string& name) {

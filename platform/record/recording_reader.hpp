@@ -12,9 +12,21 @@
 namespace glint {
 
 struct ReadTolerance {
-  bool truncated = false;   // a file cut short is read up to its last whole chunk
+  bool truncated = false;   // a file cut short or damaged is read but for what is not whole
   bool incomplete = false;  // a recording that dropped offers or ended early is read all the same
 };
+
+// What of the file is not read; all of it once next() returned nothing.
+struct RecordingLosses {
+  std::int64_t frames = 0;    // at level outputs: none
+  std::int64_t messages = 0;  // of every kind, the frames' own among them
+  std::int64_t chunks = 0;    // damaged ones
+  std::uint64_t bytes = 0;
+  bool at_least = false;  // the file does not tell how many frames and messages it had
+  [[nodiscard]] bool any() const { return bytes > 0 || messages > 0; }
+};
+// "at least 3 frames (12 messages), 4096 bytes, 1 damaged chunk".
+[[nodiscard]] std::string text_of(const RecordingLosses& losses);
 
 class RecordingReader {
  public:
@@ -33,6 +45,9 @@ class RecordingReader {
 
   // The next of Glint's own messages; nothing at the end. Throws InputError.
   [[nodiscard]] std::optional<RecordedMessage> next();
+  // Each damaged chunk leaves one gap in the order of the messages.
+  [[nodiscard]] std::uint64_t gaps() const;
+  [[nodiscard]] RecordingLosses losses() const;
 
   // Throws InputError, which lists the names there are.
   [[nodiscard]] Attachment attachment(const std::string& name);

@@ -52,7 +52,19 @@ class Replayer {
     configure(cell, *output_);
   }
 
-  void on(const HeadPose& head) { head_ = head; }
+  // Messages are missing here. The tracker lacks the frames among them, so its records are no
+  // longer those of the run.
+  void on_gap() {
+    gap_ = true;
+    head_since_gap_ = choice_since_gap_ = false;
+    decided_.clear();
+    recorded_.clear();
+  }
+
+  void on(const HeadPose& head) {
+    head_ = head;
+    head_since_gap_ = true;
+  }
   void on(const DroppedInput&) {}  // said beside the frame, which is there as well
   void on(const ButtonEvent&) {}   // a path is made of it; ticks read what was held by then
   // It stands in front of every tick that read it.
@@ -64,6 +76,7 @@ class Replayer {
   void on(const PenButtonsRecord& buttons) { pen_buttons_[buttons.version] = {buttons.held}; }
 
   void on(const FrameMessage& frame) {
+    if (!has_all_inputs()) return;
     const Frame view = frame.view();
     tracker_->input<Frame>() = view;
     tracker_->input<HeadPose>() = head_;
@@ -72,6 +85,7 @@ class Replayer {
   }
 
   void on(const MarkerFrame& frame) {
+    if (!has_all_inputs()) return;
     const FrameStamp stamp{frame.mid_exposure, frame.arrival, frame.sequence, frame.reason};
     marker_tracker_->input<FrameStamp>() = stamp;
     marker_tracker_->input<Markers>() = frame.markers;
@@ -87,6 +101,7 @@ class Replayer {
   void on(const ChoiceRecord& choice) {
     if (choice.group == k_frame_group) {
       frame_choice_ = choice;
+      choice_since_gap_ = true;
       return;
     }
     if (choice.group != k_tick_group) return;
@@ -107,6 +122,18 @@ class Replayer {
 
  private:
   using Record = std::vector<std::uint8_t>;
+
+  // Behind a gap a frame's choice tells its number; the first frame may lack its choice or head
+  // pose.
+  [[nodiscard]] bool has_all_inputs() {
+    if (!gap_) return true;
+    if (!head_since_gap_ || !choice_since_gap_) {
+      ++result_.losses.frames;
+      return false;
+    }
+    version_ = std::max(version_, frame_choice_.activation - 1);
+    return true;
+  }
 
   [[nodiscard]] graph::OverrunDecision overrun_of_frame() const {
     return frame_choice_.activation == version_ + 1 ? frame_choice_.overrun
@@ -158,34 +185,40 @@ class Replayer {
     }
   }
 
+  // Each returns false where the recording lacks the version that the tick read.
+  bool take_estimates(std::uint64_t version) {
+    if (version == 0 || version == output_->latest<Estimates>().version()) return true;
+    // Versions only rise, so what is older than this one is never read again.
+    estimates_.erase(estimates_.begin(), estimates_.lower_bound(version));
+    const auto known = estimates_.find(version);
+    if (known == estimates_.end()) return false;
+    output_->latest<Estimates>().set(*known->second, version, 0);
+    return true;
+  }
+  bool take_robot_frame(std::uint64_t version) {
+    if (version == output_->latest<RobotFrame>().version()) return true;
+    const RobotFrame* const robot = robot_frame(version);
+    if (robot == nullptr) return false;
+    output_->latest<RobotFrame>().set(*robot, version, 0);
+    return true;
+  }
+  // Older recordings name no version of the buttons: 0, none was ever held.
+  bool take_buttons(std::uint64_t version) {
+    if (version == output_->latest<PenButtons>().version()) return true;
+    const auto known = pen_buttons_.find(version);
+    if (known == pen_buttons_.end()) return false;
+    output_->latest<PenButtons>().set(known->second, version, 0);
+    return true;
+  }
+
+  // Behind a gap a tick goes on with what was there before.
   void decide(const ChoiceRecord& choice) {
-    const std::uint64_t version = choice.versions[0];
-    if (version > 0 && version != output_->latest<Estimates>().version()) {
-      // Versions only rise, so what is older than this one is never read again.
-      estimates_.erase(estimates_.begin(), estimates_.lower_bound(version));
-      const auto known = estimates_.find(version);
-      if (known == estimates_.end()) {
-        ++result_.versions_missing;
-        return;
-      }
-      output_->latest<Estimates>().set(*known->second, version, 0);
-    }
-    if (choice.versions[1] != output_->latest<RobotFrame>().version()) {
-      const RobotFrame* const robot = robot_frame(choice.versions[1]);
-      if (robot == nullptr) {
-        ++result_.versions_missing;
-        return;
-      }
-      output_->latest<RobotFrame>().set(*robot, choice.versions[1], 0);
-    }
-    // Older recordings name no version of the buttons: 0, none was ever held.
-    if (choice.versions[2] != output_->latest<PenButtons>().version()) {
-      const auto known = pen_buttons_.find(choice.versions[2]);
-      if (known == pen_buttons_.end()) {
-        ++result_.versions_missing;
-        return;
-      }
-      output_->latest<PenButtons>().set(known->second, choice.versions[2], 0);
+    const bool estimates = take_estimates(choice.versions[0]);
+    const bool robot = take_robot_frame(choice.versions[1]);
+    const bool buttons = take_buttons(choice.versions[2]);
+    if (!(estimates && robot && buttons) && !gap_) {
+      ++result_.versions_missing;
+      return;
     }
     // Ticks that were skipped have numbers, too.
     const auto number =
@@ -229,7 +262,9 @@ class Replayer {
   }
 
   void compare() {
+    if (gap_) return;
     while (!decided_.empty() && !recorded_.empty()) {
+      ++result_.records_compared;
       if (decided_.front() != recorded_.front()) {
         if (result_.mismatches++ == 0) result_.first_mismatch = compared_;
       }
@@ -252,6 +287,7 @@ class Replayer {
   std::map<std::uint64_t, RobotFrame> robot_frames_;
   std::map<std::uint64_t, PenButtons> pen_buttons_;
   HeadPose head_;
+  bool gap_ = false, head_since_gap_ = false, choice_since_gap_ = false;
   std::unique_ptr<Tracker> tracker_ = std::make_unique<Tracker>();
   std::unique_ptr<MarkerTracker> marker_tracker_ = std::make_unique<MarkerTracker>();
   std::unique_ptr<Output> output_ = std::make_unique<Output>();
@@ -268,6 +304,13 @@ void resend(const OutputMessage& message, Sha256& hash, ReplayResult& result) {
   hash.add(message.record);
   ++result.records;
   ++result.records_recorded;
+  ++result.records_compared;
+}
+
+void add_losses(const RecordingLosses& found, RecordingLosses& losses) {
+  const std::int64_t without_inputs = losses.frames;
+  losses = found;
+  losses.frames += without_inputs;
 }
 
 Time time_of(const RecordedMessage& message, Time otherwise) {
@@ -289,7 +332,10 @@ ReplayResult replay(const std::string& file, const ReplayOptions& options) {
   Replayer replayer(cell, reader.nominal_tick(), options.workers, result);
   Sha256 resent;
   Time now;
+  std::uint64_t gaps = 0;
   while (auto message = reader.next()) {
+    if (reader.gaps() != gaps) replayer.on_gap();
+    gaps = reader.gaps();
     now = time_of(*message, now);
     if (options.progress) options.progress(static_cast<double>(now.nanoseconds) * 1e-9);
     if (only_outputs) {
@@ -300,6 +346,11 @@ ReplayResult replay(const std::string& file, const ReplayOptions& options) {
     std::visit([&](const auto& item) { replayer.on(item); }, *message);
   }
   replayer.finish();
+  add_losses(reader.losses(), result.losses);
+  if (result.records == 0 && result.records_recorded == 0)
+    throw InputError(file + ": nothing to replay: " + std::to_string(result.frames) +
+                     " frames and " + std::to_string(result.ticks) +
+                     " ticks, but no output record; expected a recording of a run with ticks");
   if (only_outputs) result.output_sha256 = resent.hex();
   return result;
 }

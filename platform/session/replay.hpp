@@ -26,17 +26,21 @@ struct ReplayResult {
   std::int64_t mismatches = 0;        // records that differ from the recorded ones
   std::int64_t first_mismatch = -1;   // its number
   std::int64_t versions_missing = 0;  // ticks that read what the recording lacks
+  RecordingLosses losses;             // only where the tolerance allows them
+  std::int64_t records_compared = 0;  // behind a gap none: the tracker lacks frames from there on
   std::string output_sha256;          // of the records decided here
   std::string recorded_sha256;        // of the run, as it wrote at its end
-  // A recording that ended early has no hash of its own, and its last tick may be cut in two.
+  // A recording that ended early has no hash of its own, and its last tick may be cut in two. Of a
+  // damaged one, the records before the damage are compared.
   [[nodiscard]] bool agrees() const {
     if (mismatches != 0) return false;
-    if (recorded_sha256.empty()) return records_recorded > 0;
+    if (recorded_sha256.empty() || losses.any()) return records_compared > 0;
     return versions_missing == 0 && records == records_recorded && output_sha256 == recorded_sha256;
   }
 };
 
-// Throws InputError for a file that is no recording, or not a whole one.
+// Throws InputError for a file that is no recording, not a whole one, or one without an output
+// record to compare: there is nothing to replay.
 [[nodiscard]] ReplayResult replay(const std::string& file, const ReplayOptions& options);
 
 }  // namespace glint

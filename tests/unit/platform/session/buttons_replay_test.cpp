@@ -85,14 +85,7 @@ INSTANTIATE_TEST_SUITE_P(AtEveryLevel, ButtonsReplay,
 void copy_recording(const std::string& from, const std::string& to,
                     const std::function<bool(RecordedMessage&)>& keep) {
   RecordingReader reader(from);
-  RecordingInfo info;
-  info.level = reader.level();
-  info.nominal_tick = reader.nominal_tick();
-  info.unix_offset = reader.unix_offset();
-  for (const std::string& name : reader.attachment_names()) {
-    info.attachments.push_back(reader.attachment(name));
-  }
-  RecordingWriter writer(to, info);
+  RecordingWriter writer(to, info_of(reader));
   while (auto message = reader.next()) {
     if (!keep(*message)) continue;
     if (const auto* head = std::get_if<HeadPose>(&*message)) writer.write_head_pose(*head);

@@ -1,8 +1,14 @@
 #include "platform/session/replay.hpp"
 
+#include <cstring>
 #include <fstream>
+#include <iterator>
 
 #include "platform/cells/tool_writer.hpp"
+#include "platform/input_error.hpp"
+#include "platform/record/mcap_format.hpp"
+#include "platform/record/recording_writer.hpp"
+#include "platform/session/choices.hpp"
 #include "tests/unit/platform/session/same_bytes.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
 
@@ -47,6 +53,100 @@ TEST(Replay, GivesTheSameBytesAsARunWithTwoWorkers) {
   const std::string expected = short_run(cell, one.path()).output_sha256;
   cell.workers = 2;
   EXPECT_EQ(short_run(cell, two.path()).output_sha256, expected);
+}
+
+std::string bytes_of_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// A run of chunks of a second each, at every level that decides again.
+class ReplayOfWhatIsLeft : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    run_ = short_run(short_cell(3.5, GetParam()), folder_.path());
+    bytes_ = bytes_of_file(run_.recording_file);
+  }
+  // Where the chunk with this number begins; it begins with its kind, 6, and its length.
+  std::size_t chunk(int number) const {
+    std::size_t at = k_mcap_magic.size();
+    for (;;) {
+      std::uint64_t length = 0;
+      std::memcpy(&length, bytes_.data() + at + 1, sizeof length);
+      if (bytes_[at] == '\6' && number-- == 0) return at;
+      at += k_mcap_heading_bytes + length;
+    }
+  }
+  ReplayResult replayed(const std::string& bytes) {
+    const std::string path = folder_.path() + "/left.mcap";
+    std::ofstream(path, std::ios::binary) << bytes;
+    EXPECT_THROW((void)replay(path, {}), InputError);
+    ReplayOptions options;
+    options.tolerance.truncated = true;
+    return replay(path, options);
+  }
+
+  TemporaryFolder folder_;
+  SessionResult run_;
+  std::string bytes_;
+};
+
+TEST_P(ReplayOfWhatIsLeft, LosesADamagedChunkAlone) {
+  std::string bytes = bytes_;
+  bytes[chunk(1) + 3000] ^= 1;
+  const ReplayResult result = replayed(bytes);
+  EXPECT_EQ(result.losses.chunks, 1);
+  EXPECT_FALSE(result.losses.at_least);
+  EXPECT_GE(result.losses.frames, 4);  // at level full a chunk has few frames, at others a second's
+  EXPECT_LT(result.losses.frames, 70);
+  EXPECT_EQ(result.losses.frames + result.frames, run_.frames);
+  EXPECT_TRUE(result.agrees()) << result.mismatches;
+  EXPECT_GT(result.records_compared, 10);
+  EXPECT_GT(result.records, result.records_compared + 200) << "behind the gap it goes on";
+  EXPECT_GT(result.records_recorded, 500);
+}
+
+TEST_P(ReplayOfWhatIsLeft, CountsWhatACutFileLacks) {
+  const std::size_t kept = chunk(2) + 20'000;
+  const ReplayResult result = replayed(bytes_.substr(0, kept));
+  EXPECT_EQ(result.losses.bytes, 20'000U);
+  EXPECT_GT(result.losses.frames, 0);
+  EXPECT_TRUE(result.losses.at_least);
+  EXPECT_TRUE(result.agrees()) << result.mismatches;
+  EXPECT_GT(result.records_compared, 20);
+}
+
+INSTANTIATE_TEST_SUITE_P(AtEveryLevel, ReplayOfWhatIsLeft, testing::Values("full", "roi", "blobs"),
+                         [](const auto& level) { return std::string(level.param); });
+
+// What an interrupted run may leave: frames, but no tick yet; or ticks, but no frame.
+TEST(Replay, RefusesARecordingWithoutAnOutputRecord) {
+  const TemporaryFolder folder;
+  const SessionResult run = short_run(short_cell(0.3, "blobs"), folder.path());
+  const std::string file = folder.path() + "/few.mcap";
+  for (const bool keep_frames : {true, false}) {
+    {
+      RecordingReader reader(run.recording_file);
+      RecordingWriter writer(file, info_of(reader));
+      while (const auto message = reader.next()) {
+        if (const auto* choice = std::get_if<ChoiceRecord>(&*message);
+            choice != nullptr && (choice->group == k_frame_group) == keep_frames)
+          writer.write_choice(*choice);
+        if (!keep_frames) continue;
+        if (const auto* head = std::get_if<HeadPose>(&*message)) writer.write_head_pose(*head);
+        if (const auto* frame = std::get_if<MarkerFrame>(&*message)) writer.write_markers(*frame);
+      }
+    }
+    try {
+      (void)replay(file, {});
+      FAIL() << "was replayed";
+    } catch (const InputError& error) {
+      const std::string found = keep_frames ? "14 frames and 0 ticks" : "0 frames and 3 ticks";
+      EXPECT_EQ(std::string(error.what()),
+                file + ": nothing to replay: " + found +
+                    ", but no output record; expected a recording of a run with ticks");
+    }
+  }
 }
 
 TEST(Replay, SeesADifferentSettingAsADifference) {

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "platform/record/recording_reader.hpp"
 #include "platform/session/replay.hpp"
 #include "platform/session/session.hpp"
 
@@ -21,6 +22,18 @@ inline ReplayResult expect_same_bytes(const std::string& recording, const Sessio
                                << ", " << workers << " workers";
   EXPECT_EQ(result.output_sha256, run.output_sha256);
   return result;
+}
+
+// Of a recording that is to be written again in part.
+inline RecordingInfo info_of(RecordingReader& reader) {
+  RecordingInfo info;
+  info.level = reader.level();
+  info.nominal_tick = reader.nominal_tick();
+  info.unix_offset = reader.unix_offset();
+  for (const std::string& name : reader.attachment_names()) {
+    info.attachments.push_back(reader.attachment(name));
+  }
+  return info;
 }
 
 }  // namespace glint
