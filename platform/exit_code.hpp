@@ -15,7 +15,7 @@ namespace glint {
 template <class Body>
 [[nodiscard]] int exit_code_of(const CLI::App& app, const char* program, const Body& body) {
   const auto fails = [&](const std::exception& error, int code) {
-    std::fprintf(stderr, "%s: %s\n", program, error.what());
+    std::fprintf(stderr, "%s: %s\n", program, one_line(error.what()).c_str());
     return code;
   };
   try {

@@ -7,6 +7,7 @@
 #include "platform/cells/toml_reader.hpp"
 #include "platform/cells/tool_formats.hpp"
 #include "platform/input_error.hpp"
+#include "platform/printable.hpp"
 
 namespace glint {
 
@@ -38,6 +39,11 @@ std::optional<Tool> built_in_tool(std::string_view name) {
 std::string stem_of(const std::string& path) { return std::filesystem::path(path).stem().string(); }
 
 void set_name(Tool& tool, const std::string& name, const std::string& place) {
+  if (printable(name) != name) {
+    throw InputError(place + ": name \"" + name +
+                     "\" has characters that no screen shows; expected "
+                     "printable UTF-8");
+  }
   if (name.empty() || name.size() >= tool.name.size()) {
     throw InputError(place + ": name \"" + name + "\" has " + std::to_string(name.size()) +
                      " bytes; expected 1 to " + std::to_string(tool.name.size() - 1));

@@ -25,7 +25,8 @@ inline constexpr double k_passive_sphere_radius_mm = 5.75;
 // The file's name without folder and ending, for formats that carry none.
 [[nodiscard]] std::string stem_of(const std::string& path);
 
-// `place` is "path:line" or "path". Throws InputError for a name that is empty or too long.
+// `place` is "path:line" or "path". Throws InputError for a name that is empty, too long
+// or not printable.
 void set_name(Tool& tool, const std::string& name, const std::string& place);
 
 // Throws InputError unless 3 to 8 markers were found.

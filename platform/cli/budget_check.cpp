@@ -11,6 +11,7 @@
 #include "platform/cli/budget_commands.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/input_error.hpp"
+#include "platform/printable.hpp"
 
 namespace glint {
 namespace {
@@ -47,7 +48,7 @@ int run_check(const CheckArguments& arguments) {
   }
 
   const CheckResult result = check(input, options);
-  std::fputs(check_table(input, result).c_str(), stdout);
+  std::fputs(printable_lines(check_table(input, result)).c_str(), stdout);
   nlohmann::ordered_json json = check_json(input, options, result);
   json["plan"] = arguments.plan;
   write_json(arguments.json, json);

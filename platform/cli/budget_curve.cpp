@@ -11,6 +11,7 @@
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/progress.hpp"
 #include "platform/input_error.hpp"
+#include "platform/printable.hpp"
 
 namespace glint {
 namespace {
@@ -57,7 +58,7 @@ int draw_curve(const CurveCommand& command) {
   const std::vector<CurveRow> rows = cost_curve(seen, board);
   const std::string unit = counts ? "instructions" : "ns";
   std::printf("%s a frame, ROI on, 512x512; bound by board %s\n\n", unit.c_str(),
-              board.name.c_str());
+              printable(board.name).c_str());
   std::printf("%5s %6s %6s %12s %12s %12s\n", "tools", "strays", "frames", "median", "max",
               "bound");
   bool holds = !rows.empty();

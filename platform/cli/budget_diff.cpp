@@ -6,6 +6,7 @@
 #include "platform/budget/compare/budget_diff.hpp"
 #include "platform/cli/budget_commands.hpp"
 #include "platform/cli/output_file.hpp"
+#include "platform/printable.hpp"
 
 namespace glint {
 namespace {
@@ -17,8 +18,8 @@ struct DiffArguments {
 
 int print_diff(const DiffArguments& arguments) {
   const BudgetDiff diff = budget_diff(arguments.before, arguments.after, arguments.settings);
-  std::printf("%-28s %-8s %14s %14s  %-19s %s\n", "", diff.unit.c_str(), "before", "after",
-              diff.exact ? "ratio" : "ratio, interval", "");
+  std::printf("%-28s %-8s %14s %14s  %-19s %s\n", "", printable(diff.unit).c_str(), "before",
+              "after", diff.exact ? "ratio" : "ratio, interval", "");
   for (const DiffRow& row : diff.rows) {
     char ratio[48];
     if (row.low == row.high) {
@@ -26,12 +27,14 @@ int print_diff(const DiffArguments& arguments) {
     } else {
       std::snprintf(ratio, sizeof ratio, "%.4f to %.4f", row.low, row.high);
     }
-    std::printf("%-28s %-8s %14.3f %14.3f  %-19s %s%s\n", row.name.c_str(), row.what.c_str(),
-                row.before, row.after, ratio, name_of(row.change).c_str(),
-                row.worse_beyond ? ", beyond the tolerance" : "");
+    std::printf("%-28s %-8s %14.3f %14.3f  %-19s %s%s\n", printable(row.name).c_str(),
+                printable(row.what).c_str(), row.before, row.after, ratio,
+                name_of(row.change).c_str(), row.worse_beyond ? ", beyond the tolerance" : "");
   }
-  for (const std::string& name : diff.only_before) std::printf("only before: %s\n", name.c_str());
-  for (const std::string& name : diff.only_after) std::printf("only after: %s\n", name.c_str());
+  for (const std::string& name : diff.only_before)
+    std::printf("only before: %s\n", printable(name).c_str());
+  for (const std::string& name : diff.only_after)
+    std::printf("only after: %s\n", printable(name).c_str());
   if (diff.exact) {
     std::printf("instruction counts: every difference is one\n");
   } else {

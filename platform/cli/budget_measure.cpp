@@ -13,6 +13,7 @@
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/progress.hpp"
 #include "platform/input_error.hpp"
+#include "platform/printable.hpp"
 #include "platform/rt/processor_name.hpp"
 
 namespace glint {
@@ -85,9 +86,9 @@ const char* verdict_of(const MeasuredCosts& kernel) {
 }
 
 void print(const Measurement& measurement) {
-  std::printf("%s a call, %s, %s\n\n", measurement.unit(), measurement.machine.c_str(),
+  std::printf("%s a call, %s, %s\n\n", measurement.unit(), printable(measurement.machine).c_str(),
               measurement.board.empty() ? "costs fitted now"
-                                        : ("costs of board " + measurement.board).c_str());
+                                        : printable("costs of board " + measurement.board).c_str());
   std::printf("%-15s %12s %12s %6s %6s  %-16s %s\n", "kernel", "bound", "observed max", "ratio",
               "cell", "worst input", "judged half above (worst excess)");
   for (const MeasuredCosts& kernel : measurement.kernels) {

@@ -6,6 +6,7 @@
 #include "platform/budget/report/budget_report.hpp"
 #include "platform/cli/budget_commands.hpp"
 #include "platform/cli/output_file.hpp"
+#include "platform/printable.hpp"
 
 namespace glint {
 namespace {
@@ -25,12 +26,14 @@ int write_report(const ReportArguments& arguments) {
   for (const Illustration& figure : figures_of(document)) {
     write_text((folder / "figures" / (figure.name + ".svg")).string(), standalone_svg(figure));
   }
-  std::printf("%s: %s\n", name_of(document.verdict).c_str(), document.verdict_text.c_str());
+  std::printf("%s: %s\n", name_of(document.verdict).c_str(),
+              printable(document.verdict_text).c_str());
   for (const Headline& headline : document.headlines) {
-    std::printf("  %-10s %-16s %s\n", name_of(headline.kind).c_str(), headline.value.c_str(),
-                headline.what.c_str());
+    std::printf("  %-10s %-16s %s\n", name_of(headline.kind).c_str(),
+                printable(headline.value).c_str(), printable(headline.what).c_str());
   }
-  for (const Sentence& reason : document.reasons) std::printf("  %s\n", reason.text.c_str());
+  for (const Sentence& reason : document.reasons)
+    std::printf("  %s\n", printable(reason.text).c_str());
   std::printf("written    %s\n", (folder / "budget.html").string().c_str());
   return document.verdict == Verdict::fails || document.verdict == Verdict::void_bound ? 1 : 0;
 }

@@ -12,6 +12,7 @@
 #include "platform/cli/budget_commands.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/input_error.hpp"
+#include "platform/printable.hpp"
 #include "schedules/list_schedule.hpp"
 #include "schedules/static_order.hpp"
 #include "schedules/synthesis.hpp"
@@ -52,7 +53,7 @@ int schedule(const ScheduleArguments& arguments) {
         least_makespan(model.groups[g], model.cores, model.system.core_handover_ns);
   }
   for (const std::string& fault : check_plan(plan, model))
-    std::printf("FAILS    %s\n", fault.c_str());
+    std::printf("FAILS    %s\n", printable(fault).c_str());
   write_text(arguments.out, plan_text(plan, model));
 
   std::printf("group        priority  makespan us  least us  list us  one core us  %s\n",
@@ -64,7 +65,7 @@ int schedule(const ScheduleArguments& arguments) {
           ->makespan_ns;
     };
     const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
-    std::printf("%-12s %8d  %11.1f  %8.1f %8.1f  %11.1f  ", plan.groups[g].name.c_str(),
+    std::printf("%-12s %8d  %11.1f  %8.1f %8.1f  %11.1f  ", printable(plan.groups[g].name).c_str(),
                 plan.groups[g].priority, us(plan.groups[g].makespan_ns),
                 us(plan.groups[g].least_possible_ns), us(length(model.cores)), us(length(1)));
     if (typical) {
@@ -74,7 +75,7 @@ int schedule(const ScheduleArguments& arguments) {
     }
   }
   const CheckInput input{cell, board, plan, limits, {}};
-  std::printf("\n%s\n", slack_table(check(input, {})).c_str());
+  std::printf("\n%s\n", printable_lines(slack_table(check(input, {}))).c_str());
   std::printf("written  %s\n", arguments.out.c_str());
   return check_plan(plan, model).empty() ? 0 : 1;
 }

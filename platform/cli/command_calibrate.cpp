@@ -6,6 +6,7 @@
 #include "platform/cli/calibrate_commands.hpp"
 #include "platform/cli/commands.hpp"
 #include "platform/cli/output_file.hpp"
+#include "platform/printable.hpp"
 
 namespace glint {
 
@@ -27,7 +28,7 @@ void add_pose_options(CLI::App& command, PoseSource& source) {
 
 void finish_calibration(const CalibrationOutput& output, const Figures& figures,
                         const std::vector<CalibrationFile>& files) {
-  std::fputs(figures_table(figures).c_str(), stdout);
+  std::fputs(printable_lines(figures_table(figures)).c_str(), stdout);
   for (const CalibrationFile& file : files) {
     const std::string path = (std::filesystem::path(output.out) / file.name).string();
     write_text(path, file.text);

@@ -10,6 +10,7 @@
 #include "platform/experiments/case_experiments.hpp"
 #include "platform/experiments/experiment.hpp"
 #include "platform/experiments/experiment_report.hpp"
+#include "platform/printable.hpp"
 
 namespace glint {
 namespace {
@@ -30,7 +31,7 @@ int run_published(ExperimentKind kind, const ExperimentArguments& arguments) {
   const ExperimentResult result =
       kind == ExperimentKind::still ? run_static(options) : run_dynamic(options);
   progress.clear();
-  std::fputs(experiment_table(result).c_str(), stdout);
+  std::fputs(printable_lines(experiment_table(result)).c_str(), stdout);
   if (!arguments.json.empty()) write_text(arguments.json, experiment_json(result));
   make_folder(arguments.out);
   for (const std::string& file : write_experiment_plots(result, arguments.out)) {
@@ -47,7 +48,7 @@ int run_cases(const CaseExperiment& experiment, const ExperimentArguments& argum
   make_folder(options.out);
   const CaseList list = experiment.run(options);
   progress.clear();
-  std::fputs(case_table(list).c_str(), stdout);
+  std::fputs(printable_lines(case_table(list)).c_str(), stdout);
   if (!arguments.json.empty()) write_text(arguments.json, case_json(list, options));
   for (const std::string& file : list.plots) std::printf("written  %s\n", file.c_str());
   return missed_bars(list) == 0 ? 0 : 1;

@@ -13,6 +13,7 @@
 #include "platform/cli/commands.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/input_error.hpp"
+#include "platform/printable.hpp"
 #include "platform/report/picture.hpp"
 #include "platform/sensors/frame_files.hpp"
 #include "platform/session/pipeline.hpp"
@@ -128,7 +129,7 @@ int inspect_frame(const InspectArguments& arguments) {
     if (track.seen_now) found.push_back(tool_json(cell.tools.items[i], track));
     reasons.push_back({{"tool", name}, {"reason", reason}});
     lines.push_back(name + ": " + (track.seen_now ? "found" : reason));
-    std::printf("%-16s %s\n", name.c_str(), track.seen_now ? "found" : reason.c_str());
+    std::printf("%-16s %s\n", printable(name).c_str(), track.seen_now ? "found" : reason.c_str());
   }
   std::printf("%-16s %d (and %u outside the size gate)\n", "blobs", blobs.count, blobs.dropped);
 

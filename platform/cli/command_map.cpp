@@ -15,6 +15,7 @@
 #include "platform/mapping/map_chain.hpp"
 #include "platform/mapping/map_picture.hpp"
 #include "platform/mapping/occupancy.hpp"
+#include "platform/printable.hpp"
 
 namespace glint {
 namespace {
@@ -55,7 +56,8 @@ void print_table(const MapCounts& counts, const PlaneSearch& planes) {
                 i + 1, plane.points, 1e3 * plane.rms_m, plane.normal.x(), plane.normal.y(),
                 plane.normal.z(), plane.offset_m);
   }
-  for (const std::string& notice : counts.notices) std::printf("notice  %s\n", notice.c_str());
+  for (const std::string& notice : counts.notices)
+    std::printf("notice  %s\n", printable(notice).c_str());
 }
 
 void print_table(const OccupancyCounts& counts) {

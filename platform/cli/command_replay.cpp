@@ -10,6 +10,7 @@
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/progress.hpp"
 #include "platform/input_error.hpp"
+#include "platform/printable.hpp"
 #include "platform/session/replay.hpp"
 #include "platform/session/replay_points.hpp"
 
@@ -31,7 +32,7 @@ int replay_recording(const ReplayArguments& arguments) {
   const ReplayResult result = replay(arguments.recording, options);
   progress.clear();
   std::printf("level            %s\nframes           %lld\nticks            %lld\n",
-              result.level.c_str(), static_cast<long long>(result.frames),
+              printable(result.level).c_str(), static_cast<long long>(result.frames),
               static_cast<long long>(result.ticks));
   std::printf(
       "records          %lld (recorded %lld, compared %lld, differing %lld)\n",
@@ -40,7 +41,7 @@ int replay_recording(const ReplayArguments& arguments) {
   const bool lost = result.losses.any();
   if (lost) std::printf("missing          %s\n", text_of(result.losses).c_str());
   std::printf("output_sha256    %s\nthe run's own    %s  %s%s\n", result.output_sha256.c_str(),
-              result.recorded_sha256.empty() ? "(none)" : result.recorded_sha256.c_str(),
+              result.recorded_sha256.empty() ? "(none)" : printable(result.recorded_sha256).c_str(),
               result.agrees() ? "equal" : "DIFFERENT",
               lost && result.agrees() ? " as far as records could be compared" : "");
   if (result.first_mismatch >= 0) {

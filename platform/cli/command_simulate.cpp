@@ -11,6 +11,7 @@
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/progress.hpp"
 #include "platform/input_error.hpp"
+#include "platform/printable.hpp"
 #include "platform/record/recording_writer.hpp"
 #include "platform/record/trajectory_files.hpp"
 #include "platform/session/recorded_cell.hpp"
@@ -97,7 +98,7 @@ int simulate(const SimulateArguments& arguments) {
   if (recording != nullptr) {
     const RecordingOutcome outcome = recording->close();
     if (outcome.ended_early) {
-      std::fprintf(stderr, "glint: %s\n", outcome.reason.c_str());
+      std::fprintf(stderr, "glint: %s\n", printable(outcome.reason).c_str());
       return 1;
     }
     files.push_back(in_folder("frames.mcap"));

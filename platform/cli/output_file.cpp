@@ -50,7 +50,9 @@ void ReservedRoom::release() noexcept {
 }
 
 void write_json(const std::string& path, const nlohmann::ordered_json& figures) {
-  if (!path.empty()) write_text(path, figures.dump(2) + "\n");
+  // Names of files may be no UTF-8, which JSON does not hold.
+  constexpr auto replace = nlohmann::ordered_json::error_handler_t::replace;
+  if (!path.empty()) write_text(path, figures.dump(2, ' ', false, replace) + "\n");
 }
 
 }  // namespace glint

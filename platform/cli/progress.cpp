@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "platform/printable.hpp"
+
 namespace glint {
 namespace {
 
@@ -34,9 +36,9 @@ void Progress::show(double done, double all, const std::string& note) {
   shown_ = true;
   if (all > 0) {
     std::fprintf(stderr, "\r\033[K%s %3.0f %%  %s", what_.c_str(),
-                 100.0 * std::clamp(done / all, 0.0, 1.0), note.c_str());
+                 100.0 * std::clamp(done / all, 0.0, 1.0), printable(note).c_str());
   } else {
-    std::fprintf(stderr, "\r\033[K%s %.1f s  %s", what_.c_str(), done, note.c_str());
+    std::fprintf(stderr, "\r\033[K%s %.1f s  %s", what_.c_str(), done, printable(note).c_str());
   }
   std::fflush(stderr);
 }

@@ -5,6 +5,7 @@
 #include "platform/cli/progress.hpp"
 #include "platform/dds/topic_names.hpp"
 #include "platform/input_error.hpp"
+#include "platform/printable.hpp"
 #include "platform/reference/camera_info.hpp"
 
 namespace glint {
@@ -88,7 +89,7 @@ Pose start_of(ReferenceArguments& arguments, const AnyRobot& robot, ReferenceLis
   if (!arguments.seed.empty()) return checked(pose_of_seed(arguments.seed), "--seed");
   const Vector3& t = heard.guess.pose.translation;
   std::printf("guess      [%.3f, %.3f, %.3f] m of %s, in frame \"%s\"\n", t.x(), t.y(), t.z(),
-              k_initial_pose_topic, heard.guess.frame.data());
+              k_initial_pose_topic, printable(heard.guess.frame.data()).c_str());
   check_frame(heard.guess, arguments.scene.camera);
   return checked(heard.guess.pose, k_initial_pose_topic);
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kernels/angles.hpp"
+#include "platform/printable.hpp"
 
 namespace glint {
 namespace {
@@ -54,7 +55,7 @@ void print_reference(const Reference& reference, const ReferenceFacts& facts) {
     std::printf("meshes     %d triangles without an area skipped\n", facts.triangles_skipped);
   }
   std::printf("verdict    %s%s%s\n", name_of(reference.verdict).c_str(),
-              reference.why.empty() ? "" : ": ", reference.why.c_str());
+              reference.why.empty() ? "" : ": ", printable(reference.why).c_str());
 }
 
 nlohmann::ordered_json reference_json(const Reference& reference, const ReferenceFacts& facts) {

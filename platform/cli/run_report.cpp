@@ -12,6 +12,7 @@
 #include "platform/cells/correction_text.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/run_output.hpp"
+#include "platform/printable.hpp"
 #include "platform/report/plots.hpp"
 #include "platform/session/background_json.hpp"
 
@@ -29,7 +30,7 @@ ordered_json as_json(const LatencyFigures& figures) {
 }
 
 void row(const char* name, const std::string& value) {
-  std::printf("  %-30s %s\n", name, value.c_str());
+  std::printf("  %-30s %s\n", name, printable(value).c_str());
 }
 
 std::string fixed(double value, int digits, const char* unit) {

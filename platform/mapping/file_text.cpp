@@ -68,9 +68,8 @@ std::size_t FileText::count(std::string_view word, std::size_t most) const {
 }
 
 void FileText::refuse(const std::string& found, const std::string& expected) const {
-  std::string line = path_ + ":line " + std::to_string(line_) + ": ";
-  for (const char c : found + "; expected " + expected) line += c >= ' ' && c <= '~' ? c : '?';
-  throw InputError(line);
+  throw InputError(path_ + ":line " + std::to_string(line_) + ": " + found + "; expected " +
+                   expected);
 }
 
 }  // namespace glint

@@ -23,7 +23,7 @@ class FileText {
   [[nodiscard]] double number(std::string_view word) const;
   [[nodiscard]] std::size_t count(std::string_view word, std::size_t most) const;
 
-  // Throws InputError("path:line N: found; expected ..."); words of the file are made printable.
+  // Throws InputError("path:line N: found; expected ...").
   [[noreturn]] void refuse(const std::string& found, const std::string& expected) const;
 
  private:

@@ -41,10 +41,8 @@ void InputFile::read(std::uint64_t offset, std::uint64_t count, Bytes& bytes) co
 
 void InputFile::refuse(std::uint64_t offset, const std::string& found,
                        const std::string& expected) const {
-  std::string line = path_ + ":byte " + std::to_string(offset) + ": ";
-  for (const char c : found + "; expected " + expected)
-    line += c >= ' ' && c <= '~' ? c : '?';  // words of the file may hold anything
-  throw InputError(line);
+  throw InputError(path_ + ":byte " + std::to_string(offset) + ": " + found + "; expected " +
+                   expected);
 }
 
 }  // namespace glint

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "platform/input_error.hpp"
+#include "platform/printable.hpp"
 
 namespace glint {
 namespace {
@@ -21,29 +22,6 @@ std::string attributes(const Stroke& stroke) {
   std::string text =
       " stroke=\"" + std::string(stroke.colour) + "\" stroke-width=\"" + unit(stroke.width) + '"';
   if (!stroke.dashes.empty()) text += " stroke-dasharray=\"" + std::string(stroke.dashes) + '"';
-  return text;
-}
-
-std::string escaped(std::string_view words) {
-  std::string text;
-  for (const char c : words) {
-    switch (c) {
-      case '&':
-        text += "&amp;";
-        break;
-      case '<':
-        text += "&lt;";
-        break;
-      case '>':
-        text += "&gt;";
-        break;
-      case '"':
-        text += "&quot;";
-        break;
-      default:
-        text += c;
-    }
-  }
   return text;
 }
 
@@ -106,7 +84,7 @@ void SvgCanvas::text(const Vector2& place, std::string_view words, const TextSty
   if (style.bold) body_ += " font-weight=\"bold\"";
   if (style.upwards)
     body_ += " transform=\"rotate(-90 " + unit(place.x()) + ' ' + unit(place.y()) + ")\"";
-  body_ += '>' + escaped(words) + "</text>\n";
+  body_ += '>' + printable_markup(words) + "</text>\n";
 }
 
 std::string SvgCanvas::clip_rectangle(const Vector2& corner, const Vector2& size) {

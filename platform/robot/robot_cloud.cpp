@@ -7,6 +7,7 @@
 
 #include "platform/input_error.hpp"
 #include "platform/mapping/file_text.hpp"
+#include "platform/printable.hpp"
 #include "platform/record/growing_file.hpp"
 
 namespace glint {
@@ -210,15 +211,15 @@ void write_robot_cloud(const std::string& path, const RobotCloud& robot) {
   std::string bytes =
       "ply\nformat binary_little_endian 1.0\ncomment glint robot cloud 1\n"
       "comment robot " +
-      robot.name + "\n";
+      printable(robot.name) + "\n";
   char spacing[64];
   std::snprintf(spacing, sizeof spacing, "comment spacing_m %.9g\n",
                 static_cast<double>(robot.spacing_m));
   bytes += spacing;
-  for (const std::string& input : robot.inputs) bytes += "comment input " + input + "\n";
+  for (const std::string& input : robot.inputs) bytes += "comment input " + printable(input) + "\n";
   for (std::size_t l = 0; l < robot.links.size(); ++l) {
     if (l > 0) bytes += joint_line(robot.tree.joints[l - 1]);
-    bytes += "comment link " + robot.links[l] + "\n";
+    bytes += "comment link " + printable(robot.links[l]) + "\n";
   }
   bytes += "element vertex " + std::to_string(robot.points.size()) + "\n";
   for (const char* property : k_properties) bytes += std::string("property ") + property + "\n";

@@ -3,6 +3,7 @@
 #include "platform/budget/report/document.hpp"
 #include "platform/budget/report/drawing.hpp"
 #include "platform/budget/report/page_style.hpp"
+#include "platform/printable.hpp"
 
 namespace glint {
 namespace {
@@ -37,7 +38,7 @@ std::string classes(std::string_view a, std::string_view b) {
 std::string rich(std::string_view text) {
   std::string html;
   bool code = false;
-  for (const char c : escaped(text)) {
+  for (const char c : printable_markup(text)) {
     if (c != '`') {
       html += c;
       continue;
@@ -58,7 +59,7 @@ struct BlockHtml {
     return "<p" + classes(class_of(sentence.tone), "") + '>' + rich(sentence.text) + "</p>\n";
   }
   std::string operator()(const Command& command) const {
-    return "<pre><code>" + escaped(command.text) + "</code></pre>\n";
+    return "<pre><code>" + printable_markup(command.text) + "</code></pre>\n";
   }
   std::string operator()(const Illustration& figure) const { return figure_html(figure); }
   std::string operator()(const FigureGrid& grid) const {
@@ -96,9 +97,9 @@ std::string headline_html(const Headline& headline) {
   const bool words = headline.value.find_first_of("0123456789") == std::string::npos;
   return "<div class=\"tile " + std::string(class_of(headline.kind)) + "\"><div class=\"kind\">" +
          std::string(mark_of(headline.kind)) + name_of(headline.kind) + "</div><div class=\"value" +
-         (words ? " words" : "") + "\">" + escaped(headline.value) + "</div><p class=\"what\">" +
-         escaped(headline.what) + "</p><p class=\"from\">" + escaped(headline.provenance) +
-         "</p></div>\n";
+         (words ? " words" : "") + "\">" + printable_markup(headline.value) +
+         "</div><p class=\"what\">" + printable_markup(headline.what) + "</p><p class=\"from\">" +
+         printable_markup(headline.provenance) + "</p></div>\n";
 }
 
 }  // namespace
@@ -111,10 +112,11 @@ std::string html_of(const Document& document) {
       "'unsafe-inline'; img-src data:\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
-      escaped(document.title) + "</title>\n<style>" + std::string(k_figure_colours) +
+      printable_markup(document.title) + "</title>\n<style>" + std::string(k_figure_colours) +
       std::string(k_figure_style) + std::string(k_page_style) +
-      "</style></head>\n<body><div class=\"page\">\n<header><h1>" + escaped(document.title) +
-      "</h1><p>" + escaped(document.subtitle) + "</p></header>\n<main>\n";
+      "</style></head>\n<body><div class=\"page\">\n<header><h1>" +
+      printable_markup(document.title) + "</h1><p>" + printable_markup(document.subtitle) +
+      "</p></header>\n<main>\n";
   html += "<section class=\"verdict " + std::string(class_of(document.verdict)) +
           "\" id=\"verdict\"><div class=\"mark\">" + name_of(document.verdict) + "</div><div><p>" +
           rich(document.verdict_text) + "</p>";
@@ -129,13 +131,13 @@ std::string html_of(const Document& document) {
   for (const Headline& headline : document.headlines) html += headline_html(headline);
   html += "</div>\n<nav aria-label=\"Sections\"><ol>";
   for (const Section& section : document.sections) {
-    html += "<li><a href=\"#" + section.id + "\">" + escaped(section.title) + "</a></li>";
+    html += "<li><a href=\"#" + section.id + "\">" + printable_markup(section.title) + "</a></li>";
   }
   html += "</ol></nav>\n";
   int number = 0;
   for (const Section& section : document.sections) {
     html += "<section id=\"" + section.id + "\"><h2><span class=\"number\">" +
-            std::to_string(++number) + "</span>" + escaped(section.title) + "</h2>\n";
+            std::to_string(++number) + "</span>" + printable_markup(section.title) + "</h2>\n";
     for (const Block& block : section.blocks) html += std::visit(BlockHtml{}, block);
     html += "</section>\n";
   }

@@ -1,4 +1,5 @@
 #include "platform/budget/report/document.hpp"
+#include "platform/printable.hpp"
 
 namespace glint {
 namespace {
@@ -85,7 +86,7 @@ std::string markdown_of(const Document& document) {
     text += "\n## " + std::to_string(++number) + ". " + section.title + "\n\n";
     for (const Block& block : section.blocks) text += std::visit(BlockMarkdown{}, block);
   }
-  return text;
+  return printable_lines(text);
 }
 
 std::vector<Illustration> figures_of(const Document& document) {

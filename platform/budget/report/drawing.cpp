@@ -1,5 +1,6 @@
 #include "platform/budget/report/drawing.hpp"
 
+#include "platform/printable.hpp"
 #include "platform/report/axes.hpp"
 #include "platform/report/svg.hpp"
 
@@ -19,29 +20,6 @@ constexpr double k_character = 0.56;
 
 }  // namespace
 
-std::string escaped(std::string_view text) {
-  std::string html;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        html += "&amp;";
-        break;
-      case '<':
-        html += "&lt;";
-        break;
-      case '>':
-        html += "&gt;";
-        break;
-      case '"':
-        html += "&quot;";
-        break;
-      default:
-        html += c;
-    }
-  }
-  return html;
-}
-
 std::string fitting(std::string_view words, double width, double size) {
   const auto room = static_cast<std::size_t>(std::max(0.0, width / (k_character * size)));
   if (words.size() <= room) return std::string(words);
@@ -52,7 +30,7 @@ std::string fitting(std::string_view words, double width, double size) {
 Drawing::Drawing(double width, double height, std::string_view spoken) {
   body_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\"" + attribute("width", width) +
           attribute("height", height) + " viewBox=\"0 0 " + number_text(width, 2) + ' ' +
-          number_text(height, 2) + "\"><title>" + escaped(spoken) + "</title>\n";
+          number_text(height, 2) + "\"><title>" + printable_markup(spoken) + "</title>\n";
 }
 
 void Drawing::line(double x1, double y1, double x2, double y2, std::string_view classes) {
@@ -64,13 +42,13 @@ void Drawing::box(const Box& box, std::string_view classes, std::string_view hin
   body_ += "<rect" + attribute("x", box.x) + attribute("y", box.y) +
            attribute("width", std::max(0.0, box.width)) + attribute("height", box.height) +
            class_attribute(classes);
-  body_ += hint.empty() ? "/>\n" : "><title>" + escaped(hint) + "</title></rect>\n";
+  body_ += hint.empty() ? "/>\n" : "><title>" + printable_markup(hint) + "</title></rect>\n";
 }
 
 void Drawing::text(double x, double y, std::string_view words, std::string_view classes) {
   if (words.empty()) return;
   body_ += "<text" + attribute("x", x) + attribute("y", y) + class_attribute(classes) + '>' +
-           escaped(words) + "</text>\n";
+           printable_markup(words) + "</text>\n";
 }
 
 void Drawing::x_axis(const Box& area, double high, std::string_view label, int wanted) {

@@ -7,9 +7,6 @@
 
 namespace glint {
 
-// &, <, > and " as entities.
-[[nodiscard]] std::string escaped(std::string_view text);
-
 struct Box {
   double x = 0, y = 0, width = 0, height = 0;
 };

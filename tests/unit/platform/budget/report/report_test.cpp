@@ -8,6 +8,7 @@
 #include "platform/budget/report/drawing.hpp"
 #include "platform/budget/report/sections.hpp"
 #include "platform/input_error.hpp"
+#include "platform/printable.hpp"
 #include "tests/unit/platform/budget/report/sample_files.hpp"
 
 namespace glint {
@@ -166,7 +167,7 @@ TEST_F(BudgetReport, SaysTheSameInMarkdownAsOnThePage) {
   const Document document = report({});
   const std::string html = html_of(document), markdown = markdown_of(document);
   for (const Section& part : document.sections) {
-    EXPECT_NE(html.find(escaped(part.title)), std::string::npos) << part.title;
+    EXPECT_NE(html.find(printable_markup(part.title)), std::string::npos) << part.title;
     EXPECT_NE(markdown.find(part.title), std::string::npos) << part.title;
   }
   for (const Illustration& figure : figures_of(document)) {

@@ -1,0 +1,95 @@
+// Cleans text that comes from a file or from the network before a person's screen shows it: error
+// messages, tables, HTML, SVG. Control characters would move the cursor, rewrite lines or change
+// the direction of the text.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace glint {
+
+// The number of bytes of the UTF-8 character that `text` begins with; 0: it is no UTF-8.
+// Unicode 15, table 3-7: neither overlong forms nor surrogates.
+[[nodiscard]] inline std::size_t utf8_character(std::string_view text, char32_t& character) {
+  const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text[i]); };
+  const std::uint8_t first = byte(0);
+  character = first;
+  if (first < 0x80) return 1;
+  const std::size_t size = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+  if (first < 0xC2 || first > 0xF4 || text.size() < size) return 0;
+  character = first & (0xFFu >> (size + 1));
+  for (std::size_t i = 1; i < size; ++i) {
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+    character = character << 6 | (byte(i) & 0x3Fu);
+  }
+  constexpr char32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+  const bool surrogate = character >= 0xD800 && character <= 0xDFFF;
+  return character < least[size] || character > 0x10FFFF || surrogate ? 0 : size;
+}
+
+// Whether a terminal shows the character as a glyph or a blank, in the order of the text.
+[[nodiscard]] inline bool is_printable(char32_t c) {
+  const auto within = [c](char32_t low, char32_t high) { return c >= low && c <= high; };
+  const bool control = c < 0x20 || within(0x7F, 0x9F);
+  const bool invisible_or_turning = c == 0x61C || within(0x200B, 0x200F) ||
+                                    within(0x2028, 0x202E) || within(0x2060, 0x206F) ||
+                                    c == 0xFEFF || within(0xFFF9, 0xFFFB);
+  return !control && !invisible_or_turning;
+}
+
+// One line: '?' stands for each character that is_printable refuses and for each byte that is no
+// UTF-8. Printable text stays as it is.
+[[nodiscard]] inline std::string printable(std::string_view foreign) {
+  std::string clean;
+  clean.reserve(foreign.size());
+  while (!foreign.empty()) {
+    char32_t character = 0;
+    const std::size_t size = utf8_character(foreign, character);
+    if (size == 0 || !is_printable(character)) {
+      clean += '?';
+    } else {
+      clean += foreign.substr(0, size);
+    }
+    foreign.remove_prefix(size == 0 ? 1 : size);
+  }
+  return clean;
+}
+
+// The same line by line, for a table: line feeds stay.
+[[nodiscard]] inline std::string printable_lines(std::string_view foreign) {
+  std::string clean;
+  for (std::size_t end = 0; (end = foreign.find('\n')) != std::string_view::npos;) {
+    clean += printable(foreign.substr(0, end)) + '\n';
+    foreign.remove_prefix(end + 1);
+  }
+  return clean + printable(foreign);
+}
+
+// Cleaned, and as text of HTML, XML or SVG, between tags or in an attribute's double quotes. A line
+// feed stays: it is a blank there.
+[[nodiscard]] inline std::string printable_markup(std::string_view foreign) {
+  std::string text;
+  for (const char c : printable_lines(foreign)) {
+    switch (c) {
+      case '&':
+        text += "&amp;";
+        break;
+      case '<':
+        text += "&lt;";
+        break;
+      case '>':
+        text += "&gt;";
+        break;
+      case '"':
+        text += "&quot;";
+        break;
+      default:
+        text += c;
+    }
+  }
+  return text;
+}
+
+}  // namespace glint
