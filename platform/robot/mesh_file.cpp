@@ -1,30 +1,25 @@
 #include "platform/robot/mesh_file.hpp"
 
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
 #include <algorithm>
-#include <assimp/Importer.hpp>
+#include <array>
 #include <cctype>
-#include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 #include "platform/input_error.hpp"
+#include "platform/robot/limited_process.hpp"
+#include "platform/robot/mesh_bytes.hpp"
 
 namespace glint {
 namespace {
 
 constexpr std::uintmax_t k_mesh_bytes_max = 256u << 20;
-constexpr int k_nodes_deep_max = 64;
 // A link of ten metres is a crane's; one of a millimetre is nobody's.
 constexpr double k_extent_max_m = 10, k_extent_min_m = 1e-3;
-// Corners of real meshes are a tenth of a millimetre apart or more: this is a line or a point.
-constexpr double k_area_min_m2 = 1e-12;
-
 // A binary STL says how many triangles it has: believed only where the file is as long.
 void check_binary_stl(const std::string& path, std::uintmax_t size) {
   std::ifstream file(path, std::ios::binary);
@@ -41,49 +36,39 @@ void check_binary_stl(const std::string& path, std::uintmax_t size) {
   }
 }
 
-struct Reader {
-  const std::string& path;
-  Eigen::Vector3d scale;
-  Mesh mesh;
+// The program lies beside this one.
+std::string reader_program() {
+  std::error_code failed;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", failed);
+  return (self.parent_path() / "glint_mesh_reader").string();
+}
 
-  void add(const aiMesh& part, const aiMatrix4x4& to_root) {
-    for (unsigned f = 0; f < part.mNumFaces; ++f) {
-      const aiFace& face = part.mFaces[f];
-      if (face.mNumIndices != 3) {
-        ++mesh.skipped;  // a lone point or line
-        continue;
-      }
-      Eigen::Vector3d corner[3];
-      for (int k = 0; k < 3; ++k) {
-        const aiVector3D v = to_root * part.mVertices[face.mIndices[k]];
-        corner[k] = scale.cwiseProduct(Eigen::Vector3d(v.x, v.y, v.z));
-      }
-      const double area = 0.5 * (corner[1] - corner[0]).cross(corner[2] - corner[0]).norm();
-      if (!(area > k_area_min_m2) || !std::isfinite(area)) {
-        ++mesh.skipped;
-        continue;
-      }
-      if (mesh.triangles.size() >= k_mesh_triangles_max) {
-        throw InputError(path + ": more than " + std::to_string(k_mesh_triangles_max) +
-                         " triangles; expected a mesh of a robot's link");
-      }
-      mesh.triangles.push_back(
-          {corner[0].cast<float>(), corner[1].cast<float>(), corner[2].cast<float>()});
-    }
-  }
+std::string number_text(double number) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.17g", number);
+  return text.data();
+}
 
-  void add(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, int depth) {
-    if (depth > k_nodes_deep_max) {
-      throw InputError(path + ": nodes nested more than " + std::to_string(k_nodes_deep_max) +
-                       " deep; expected a mesh of a robot's link");
-    }
-    const aiMatrix4x4 to_root = above * node.mTransformation;
-    for (unsigned m = 0; m < node.mNumMeshes; ++m) add(*scene.mMeshes[node.mMeshes[m]], to_root);
-    for (unsigned c = 0; c < node.mNumChildren; ++c) {
-      add(scene, *node.mChildren[c], to_root, depth + 1);
-    }
+Mesh read_apart(const std::string& path, const Eigen::Vector3d& scale, const MeshLimits& limits) {
+  const ProcessOutput output =
+      output_of({reader_program(), path, number_text(scale.x()), number_text(scale.y()),
+                 number_text(scale.z()), std::to_string(limits.memory_mb)},
+                {std::size_t{40} * k_mesh_triangles_max, limits.time});
+  switch (output.end) {
+    case ProcessEnd::done:
+      return mesh_of_bytes(output.bytes, path);
+    case ProcessEnd::timed_out:
+      throw InputError(path + ": takes longer than " +
+                       std::to_string(limits.time.nanoseconds / 1'000'000) +
+                       " ms to read; expected a mesh of a robot's link");
+    case ProcessEnd::failed:
+    case ProcessEnd::killed:
+    case ProcessEnd::too_much:
+      break;
   }
-};
+  throw InputError(path +
+                   ": the library that reads meshes fails on it; expected an undamaged mesh");
+}
 
 double extent_of(const Mesh& mesh) {
   Eigen::Vector3f low = mesh.triangles[0].a, high = low;
@@ -96,7 +81,7 @@ double extent_of(const Mesh& mesh) {
 
 }  // namespace
 
-Mesh read_mesh(const std::string& path, const Eigen::Vector3d& scale) {
+Mesh read_mesh(const std::string& path, const Eigen::Vector3d& scale, const MeshLimits& limits) {
   std::error_code failed;
   const std::uintmax_t size = std::filesystem::file_size(path, failed);
   if (failed) throw InputError(path + ": cannot be opened; expected a mesh");
@@ -112,19 +97,12 @@ Mesh read_mesh(const std::string& path, const Eigen::Vector3d& scale) {
   }
   if (kind == ".stl") check_binary_stl(path, size);
 
-  Assimp::Importer importer;
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
-  if (scene == nullptr || scene->mRootNode == nullptr) {
-    throw InputError(path + ": no mesh: " + importer.GetErrorString());
-  }
-  Reader reader{path, scale, {}};
-  reader.add(*scene, *scene->mRootNode, aiMatrix4x4(), 0);
-  if (reader.mesh.triangles.empty()) {
-    throw InputError(path + ": none of its " + std::to_string(reader.mesh.skipped) +
+  Mesh mesh = read_apart(path, scale, limits);
+  if (mesh.triangles.empty()) {
+    throw InputError(path + ": none of its " + std::to_string(mesh.skipped) +
                      " triangles has an area; expected a surface");
   }
-  const double extent = extent_of(reader.mesh);
+  const double extent = extent_of(mesh);
   if (extent > k_extent_max_m) {
     throw InputError(path + ": spans " + std::to_string(extent) +
                      " m; expected a robot's link: is the mesh in millimetres? Then give its <mesh>"
@@ -134,27 +112,70 @@ Mesh read_mesh(const std::string& path, const Eigen::Vector3d& scale) {
     throw InputError(path + ": spans " + std::to_string(extent * 1e3) +
                      " mm; expected a robot's link: was it scaled twice?");
   }
-  return std::move(reader.mesh);
+  return mesh;
 }
 
+namespace {
+
+namespace fs = std::filesystem;
+
+// Whether `path` lies in `folder`, by their words alone: a link in a package folder was put there
+// by the folder's owner and may lead out of it.
+bool lies_in(const fs::path& folder, const fs::path& path) {
+  fs::path base = fs::absolute(folder.empty() ? "." : folder).lexically_normal();
+  if (!base.has_filename()) base = base.parent_path();  // "folder/" has an empty last part
+  const auto [end, _] = std::mismatch(base.begin(), base.end(), path.begin(), path.end());
+  return end == base.end();
+}
+
+// `entry` of --package-dir: FOLDER or NAME=FOLDER.
+fs::path folder_of(const std::string& entry) {
+  return entry.substr(entry.find('=') == std::string::npos ? 0 : entry.find('=') + 1);
+}
+
+// A path that names its place itself: absolute, or beside the URDF.
+std::string confined(const fs::path& path, const std::string& name, const RobotFiles& files,
+                     bool beside) {
+  const fs::path found = fs::absolute(path).lexically_normal();
+  bool inside = beside && lies_in(fs::path(files.urdf).parent_path(), found);
+  for (const std::string& entry : files.package_dirs) {
+    inside = inside || lies_in(folder_of(entry), found);
+  }
+  if (!inside) {
+    throw InputError(files.urdf + ": mesh '" + name + "' lies outside of " +
+                     (beside ? "the URDF's folder and " : "") +
+                     "every --package-dir; expected it inside one of them");
+  }
+  return found.string();
+}
+
+}  // namespace
+
 std::string find_mesh(const std::string& name, const RobotFiles& files) {
-  namespace fs = std::filesystem;
   constexpr std::string_view package = "package://", file = "file://";
-  if (name.starts_with(file)) return name.substr(file.size());
+  if (name.starts_with(file)) return confined(name.substr(file.size()), name, files, false);
   std::string rest = name, wanted;
   if (name.starts_with(package)) {
     rest = name.substr(package.size());
     wanted = rest.substr(0, rest.find('/'));
+  } else if (fs::path(name).is_absolute()) {
+    return confined(name, name, files, false);
   } else if (files.text.empty()) {
     const fs::path beside = fs::path(files.urdf).parent_path() / name;
-    if (fs::is_regular_file(beside)) return beside.string();
+    if (fs::is_regular_file(beside)) return confined(beside, name, files, true);
+  }
+  // Below, the path grows shorter from its beginning: each part must be a name.
+  const fs::path parts(rest);
+  if (parts.is_absolute() || rest.find("//") != std::string::npos ||
+      std::find(parts.begin(), parts.end(), "..") != parts.end()) {
+    throw InputError(files.urdf + ": mesh '" + name +
+                     "' leads out of its package; expected a path of names, without '..' and '//'");
   }
   std::string looked;
   for (const std::string& entry : files.package_dirs) {
     const std::size_t equals = entry.find('=');
-    const bool named = equals != std::string::npos;
-    if (named && entry.substr(0, equals) != wanted) continue;
-    const fs::path folder = named ? entry.substr(equals + 1) : entry;
+    if (equals != std::string::npos && entry.substr(0, equals) != wanted) continue;
+    const fs::path folder = folder_of(entry);
     looked += (looked.empty() ? "" : ", ") + folder.string();
     for (std::string part = rest;;) {
       if (fs::is_regular_file(folder / part)) return (folder / part).string();

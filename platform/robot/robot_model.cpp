@@ -64,9 +64,6 @@ class TreeBuilder {
   }
 
   void add(const urdf::Joint& joint) {
-    if (robot_.tree.joint_count >= k_robot_joints_max) {
-      throw InputError(path_ + ": more than " + std::to_string(k_robot_joints_max) + " joints");
-    }
     TreeJoint& to = robot_.tree.joints[static_cast<std::size_t>(robot_.tree.joint_count++)];
     to.T_parent_joint = pose_of(joint.parent_to_joint_origin_transform);
     to.parent_link = link_[joint.parent_link_name];

@@ -1,21 +1,26 @@
 #include "platform/robot/urdf_file.hpp"
 
 #include <console_bridge/console.h>
-#include <tinyxml.h>
+#include <tinyxml2.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <string_view>
 
+#include "kernels/robot/joint_tree.hpp"
 #include "platform/input_error.hpp"
+#include "platform/printable.hpp"
 
 namespace glint {
 namespace {
 
 constexpr std::uintmax_t k_urdf_bytes_max = 16u << 20;
-constexpr int k_nesting_max = 64;  // the XML reader calls itself for every level
+constexpr int k_nesting_max = 64;     // XML parsers recurse for every level; a URDF has five
+constexpr int k_attributes_max = 64;  // of one element
 
 // What urdfdom complains of, in place of its lines on stderr.
 class Complaints : public console_bridge::OutputHandler {
@@ -47,63 +52,113 @@ std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-void check_nesting(const std::string& text, const std::string& path) {
-  int depth = 0, line = 1;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '\n') ++line;
-    if (text.compare(i, 4, "<!--") == 0) {
-      const std::size_t end = text.find("-->", i);
-      if (end == std::string::npos) break;
-      i = end;
-    } else if (text[i] == '<' && i + 1 < text.size()) {
-      if (text[i + 1] == '/')
-        --depth;
-      else if (text[i + 1] != '?' && text[i + 1] != '!')
-        ++depth;
-    } else if (text[i] == '/' && i + 1 < text.size() && text[i + 1] == '>') {
-      --depth;
-    }
-    if (depth > k_nesting_max) {
-      throw InputError(path + ":" + std::to_string(line) + ": elements nested more than " +
-                       std::to_string(k_nesting_max) + " deep; expected a URDF");
-    }
+[[noreturn]] void refuse(const std::string& path, int line, const std::string& found) {
+  throw InputError(path + ":" + std::to_string(line) + ": " + found + "; expected a URDF");
+}
+
+[[noreturn]] void refuse_nesting(const std::string& path, int line) {
+  refuse(path, line, "elements nested more than " + std::to_string(k_nesting_max) + " deep");
+}
+
+// tinyxml2 limits the depth itself while it reads (XML_ELEMENT_DEPTH_EXCEEDED).
+void parse(const std::string& text, const std::string& path, tinyxml2::XMLDocument& document) {
+  const tinyxml2::XMLError error = document.Parse(text.data(), text.size());
+  if (error == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED) {
+    refuse_nesting(path, document.ErrorLineNum());
+  }
+  if (error != tinyxml2::XML_SUCCESS) {
+    refuse(path, document.ErrorLineNum(), std::string("no XML: ") + document.ErrorName());
   }
 }
 
-std::vector<std::string> joints_of(const std::string& text, const std::string& path) {
-  TiXmlDocument document;
-  document.Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);
-  if (document.Error()) {
-    throw InputError(path + ":" + std::to_string(document.ErrorRow()) + ": " +
-                     document.ErrorDesc() + "; expected a URDF");
+// As XML 1.0, 3.3.3 has it for an attribute's value.
+std::string blanks_for_breaks(std::string value) {
+  for (char& c : value) c = c == '\t' || c == '\n' || c == '\r' ? ' ' : c;
+  return value;
+}
+
+bool is_plain_name(std::string_view name) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const auto later = [&](char c) {
+    return letter(c) || (c >= '0' && c <= '9') || std::string_view("_:.-").find(c) < 4;
+  };
+  return !name.empty() && (letter(name[0]) || name[0] == '_') &&
+         std::all_of(name.begin(), name.end(), later);
+}
+
+// The elements and attributes alone, written anew. urdfdom's own parser takes other characters for
+// tags than tinyxml2 does (in comments, CDATA, a DOCTYPE, attributes) and recurses without a limit:
+// in this text both find the same elements.
+class PlainCopy : public tinyxml2::XMLVisitor {
+ public:
+  explicit PlainCopy(const std::string& path) : path_(path) {}
+
+  bool VisitEnter(const tinyxml2::XMLElement& element,
+                  const tinyxml2::XMLAttribute* attribute) override {
+    if (++depth_ > k_nesting_max) refuse_nesting(path_, element.GetLineNum());
+    check_name(element.Name(), element);
+    text_.append(1, '<').append(element.Name());
+    for (int count = 0; attribute != nullptr; attribute = attribute->Next()) {
+      // urdfdom's parser compares each with all before.
+      if (++count > k_attributes_max) {
+        refuse(path_, element.GetLineNum(),
+               "an element with more than " + std::to_string(k_attributes_max) + " attributes");
+      }
+      check_name(attribute->Name(), element);
+      text_.append(1, ' ').append(attribute->Name());
+      text_.append("=\"").append(printable_markup(blanks_for_breaks(attribute->Value())));
+      text_.append(1, '"');
+    }
+    text_.append(">\n");
+    return true;
   }
-  const TiXmlElement* robot = document.FirstChildElement("robot");
-  if (robot == nullptr) throw InputError(path + ": no <robot> element; expected a URDF");
+  bool VisitExit(const tinyxml2::XMLElement& element) override {
+    --depth_;
+    text_.append("</").append(element.Name()).append(">\n");
+    return true;
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  void check_name(const char* name, const tinyxml2::XMLElement& element) const {
+    if (!is_plain_name(name)) {
+      refuse(path_, element.GetLineNum(), "the name '" + std::string(name).substr(0, 40) + "'");
+    }
+  }
+
+  const std::string& path_;
+  std::string text_;
+  int depth_ = 0;
+};
+
+std::vector<std::string> joints_of(const tinyxml2::XMLElement& robot, const std::string& path) {
   std::vector<std::string> joints;
-  for (const TiXmlElement* joint = robot->FirstChildElement("joint"); joint != nullptr;
+  for (const auto* joint = robot.FirstChildElement("joint"); joint != nullptr;
        joint = joint->NextSiblingElement("joint")) {
+    if (joints.size() == static_cast<std::size_t>(k_robot_joints_max)) {
+      throw InputError(path + ":" + std::to_string(joint->GetLineNum()) + ": more than " +
+                       std::to_string(k_robot_joints_max) + " joints");
+    }
     const char* name = joint->Attribute("name");
-    joints.emplace_back(name == nullptr ? "" : name);
+    joints.push_back(name == nullptr ? "" : printable(blanks_for_breaks(name)));
   }
   return joints;
 }
 
-// Each link hangs on one joint at most, and going up ends at a link that hangs on none. Told by
-// the file alone: urdfdom takes the last of two parents and says nothing.
-void check_tree(const std::string& text, const std::string& path) {
-  TiXmlDocument document;
-  document.Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);
+// Each link is the child of one joint at most, and the way up from it ends at the root. Checked in
+// the file itself: of two parents urdfdom keeps the last without an error.
+void check_tree(const tinyxml2::XMLElement& robot, const std::string& path) {
   std::map<std::string, std::string> parent, by;
-  for (const TiXmlElement* joint = document.FirstChildElement("robot")->FirstChildElement("joint");
-       joint != nullptr; joint = joint->NextSiblingElement("joint")) {
-    const TiXmlElement* from = joint->FirstChildElement("parent");
-    const TiXmlElement* to = joint->FirstChildElement("child");
+  for (const auto* joint = robot.FirstChildElement("joint"); joint != nullptr;
+       joint = joint->NextSiblingElement("joint")) {
+    const auto* from = joint->FirstChildElement("parent");
+    const auto* to = joint->FirstChildElement("child");
     const char* from_link = from == nullptr ? nullptr : from->Attribute("link");
     const char* to_link = to == nullptr ? nullptr : to->Attribute("link");
     const char* name = joint->Attribute("name");
     if (from_link == nullptr || to_link == nullptr || name == nullptr) continue;
     if (parent.count(to_link) != 0) {
-      throw InputError(path + ":" + std::to_string(joint->Row()) + ": link '" + to_link +
+      throw InputError(path + ":" + std::to_string(joint->GetLineNum()) + ": link '" + to_link +
                        "' is the child of joint '" + by[to_link] + "' and of '" + name +
                        "'; expected a tree, not a loop");
     }
@@ -127,13 +182,18 @@ void check_tree(const std::string& text, const std::string& path) {
 UrdfFile read_urdf(const std::string& path) { return read_urdf_text(text_of(path), path); }
 
 UrdfFile read_urdf_text(const std::string& text, const std::string& from) {
-  check_nesting(text, from);
+  tinyxml2::XMLDocument document;
+  parse(text, from, document);
+  const tinyxml2::XMLElement* robot = document.FirstChildElement("robot");
+  if (robot == nullptr) throw InputError(from + ": no <robot> element; expected a URDF");
+  PlainCopy copy(from);
+  robot->Accept(&copy);
   UrdfFile file;
-  file.joints = joints_of(text, from);
-  check_tree(text, from);
+  file.joints = joints_of(*robot, from);
+  check_tree(*robot, from);
   Complaints complaints;
   try {
-    file.model = urdf::parseURDF(text);
+    file.model = urdf::parseURDF(copy.text());
   } catch (const std::exception& error) {
     throw InputError(from + ": " + error.what());
   }

@@ -98,6 +98,66 @@ TEST(MeshFile, RefusesFilesThatAreNotWhatTheySay) {
                      {"e.step", ".stl"});
 }
 
+// Without limits the description of a robot that came over DDS read any file.
+TEST(FindMesh, StaysInThePackageFolders) {
+  const Files files;
+  const std::string secret = files.write("secret.stl", "x"), part = files.write("p/m/a.stl", "x");
+  const std::string package = files.folder() + "/p";
+  const RobotFiles robot{"/robot_description", {package}, Geometry::collision, "text"};
+  const auto refused = [&](const std::string& name) {
+    expect_input_error([&] { (void)find_mesh(name, robot); }, {"/robot_description", "mesh '"});
+  };
+  EXPECT_EQ(find_mesh("package://arm/m/a.stl", robot), part);
+  EXPECT_EQ(find_mesh("file://" + part, robot), part);
+  EXPECT_EQ(find_mesh("file://" + package + "/m/../m/./a.stl", robot), part);
+  refused("package://x/../secret.stl");
+  refused("package://../secret.stl");
+  refused("package://x/m/../../secret.stl");
+  refused("package://x/" + secret);  // two slashes
+  refused("package://" + secret);
+  refused("file://" + secret);
+  refused("file://" + package + "/../secret.stl");
+  refused("file://" + package + "x/../secret.stl");
+  refused(secret);
+  refused("../secret.stl");
+}
+
+TEST(FindMesh, OfAFileStaysInItsFolderAndThePackageFolders) {
+  const Files files;
+  const std::string urdf = files.write("u/arm.urdf", ""), beside = files.write("u/a.stl", "x");
+  const std::string other = files.write("m/b.stl", "x");
+  EXPECT_EQ(find_mesh("a.stl", {urdf, {}}), beside);
+  expect_input_error(
+      [&] {
+        (void)find_mesh("../m/b.stl", {urdf, {}});
+      },
+      {"arm.urdf", "'../m/b.stl' lies outside", "--package-dir"});
+  EXPECT_EQ(find_mesh("../m/b.stl", {urdf, {"arm=" + files.folder() + "/m/"}}), other);
+}
+
+// `from` of the Collada file above as `to`, and the file read: assimp 5.2.5 crashed on the first
+// two, and filled the memory by the others.
+void expect_outlived(const std::string& from, const std::string& to, const char* message) {
+  const Files files;
+  std::string text = collada("0.001", "Z_UP");
+  ASSERT_NE(text.find(from), std::string::npos) << from;
+  text.replace(text.find(from), from.size(), to);
+  const std::string path = files.write("damaged.dae", text);
+  expect_input_error([&] { (void)read_mesh(path, k_one); }, {"damaged.dae", message});
+}
+
+TEST(MeshFile, OutlivesACrashOfTheLibrary) {
+  expect_outlived("stride='3'", "stride='3' offset='99999999'", "fails on it");
+  expect_outlived("instance_geometry url='#g'", "instance_node url='#n'", "fails on it");
+}
+
+#ifndef GLINT_SANITIZED  // sanitizers reserve more addresses than any limit
+TEST(MeshFile, BoundsTheMemoryOfTheLibrary) {
+  expect_outlived("count='9'", "count='4294967295'", "1024 MB of memory");
+  expect_outlived("triangles count='1'", "triangles count='4294967295'", "1024 MB of memory");
+}
+#endif
+
 TEST(MeshFile, ReadsOrRefusesTheAwkwardOnes) {
   const char* data = std::getenv("GLINT_TEST_DATA");
   const std::string folder = std::string(data == nullptr ? "" : data) + "/hostile/assimp_stl/";
