@@ -87,7 +87,8 @@ std::optional<CandumpRecord> parse_candump(std::string_view line) {
   std::int64_t microseconds = 0;
   const std::string_view fraction = line.substr(dot + 1, close - dot - 1);
   if (!read(line.substr(1, dot - 1), seconds, 10) || fraction.size() != 6 ||
-      !read(fraction, microseconds, 10) || seconds < 0 || seconds > INT64_MAX / k_second_ns - 1)
+      !read(fraction, microseconds, 10) || seconds < 0 || microseconds < 0 ||
+      seconds > INT64_MAX / k_second_ns - 1)
     return {};
   line.remove_prefix(close + 2);
   const auto space = line.find(' ');

@@ -136,6 +136,12 @@ void CellParser::read_camera(const toml::table* table) {
   if (carried == nullptr) {
     cell.camera = with_ray_table(cell.camera, cell.ray_table);
   } else if (carried->rays != nullptr) {
+    const std::size_t expected = static_cast<std::size_t>(cell.camera.model.width) *
+                                 static_cast<std::size_t>(cell.camera.model.height) * 3;
+    if (carried->rays->size() != expected) {
+      throw InputError(cell.file + ": rays.f32 has " + std::to_string(carried->rays->size()) +
+                       " numbers; expected " + std::to_string(expected) + ", 3 for each pixel");
+    }
     cell.camera.table = carried->rays;
     cell.camera.model.lens = Lens::lut;
     cell.camera.model.table = {cell.camera.model.width, cell.camera.model.height,

@@ -1,12 +1,17 @@
 #include "platform/cells/toml_reader.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 
 #include "platform/input_error.hpp"
+#include "platform/printable.hpp"
 
 namespace glint {
 namespace {
+
+constexpr const char* k_text_expected = "a text in quotes, of printable UTF-8";
 
 std::string place(const std::string& file, const toml::source_region& region) {
   return file + ":" + std::to_string(region.begin.line);
@@ -26,6 +31,31 @@ std::string shown(const toml::node& node) {
   return node.is_array() ? "an array" : node.is_table() ? "a table" : "a date or time";
 }
 
+struct BrokenState {};
+
+bool breaks_the_parser(std::string_view text) {
+  try {
+    (void)toml::parse(text);
+  } catch (const BrokenState&) {
+    return true;
+  } catch (const toml::parse_error&) {
+  }
+  return false;
+}
+
+// The first line with which the text from its beginning breaks the parser: from there on it always
+// does, since the parser reads forwards.
+std::size_t line_that_breaks(const std::string& text) {
+  std::vector<std::size_t> ends;  // of lines
+  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) {
+    ends.push_back(at + 1);
+  }
+  const auto first = std::partition_point(ends.begin(), ends.end(), [&](std::size_t end) {
+    return !breaks_the_parser(std::string_view(text).substr(0, end));
+  });
+  return static_cast<std::size_t>(first - ends.begin()) + 1;
+}
+
 }  // namespace
 
 std::string read_text(const std::string& file) {
@@ -36,12 +66,17 @@ std::string read_text(const std::string& file) {
   return text.str();
 }
 
+void refuse_toml_state() { throw BrokenState(); }
+
 toml::table parse_toml(const std::string& text, const std::string& file) {
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
     throw InputError(place(file, error.source()) + ": " + std::string(error.description()) +
                      "; expected TOML");
+  } catch (const BrokenState&) {
+    throw InputError(file + ":" + std::to_string(line_that_breaks(text)) +
+                     ": text that the parser cannot read; expected TOML");
   }
 }
 
@@ -90,7 +125,7 @@ std::string TomlReader::text(const char* key, const std::string& otherwise) {
   const toml::node* node = find(key);
   if (node == nullptr) return otherwise;
   const auto value = node->value_exact<std::string>();
-  if (!value) complain(*node, key, "a text in quotes");
+  if (!value || printable(*value) != *value) complain(*node, key, k_text_expected);
   return *value;
 }
 
@@ -136,7 +171,7 @@ std::vector<std::string> TomlReader::texts(const char* key) {
   if (array == nullptr) complain(*node, key, "a list of texts in [ ]");
   for (const toml::node& item : *array) {
     const auto value = item.value_exact<std::string>();
-    if (!value) complain(item, key, "a list of texts in [ ]");
+    if (!value || printable(*value) != *value) complain(item, key, k_text_expected);
     values.push_back(*value);
   }
   return values;

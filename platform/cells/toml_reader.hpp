@@ -8,12 +8,24 @@
 #include <string>
 #include <vector>
 
+namespace glint {
+// Throws what parse_toml catches.
+[[noreturn]] void refuse_toml_state();
+}  // namespace glint
+
+// toml++ 3.3.0 guards its state by assertions alone, and some files break them: `[`, line feed,
+// `d`. It then aborts, or with NDEBUG goes on with undefined behaviour. Here they throw in every
+// build.
 #define TOML_ENABLE_FORMATTERS 0
+#define TOML_ASSERT(state) (static_cast<bool>(state) ? void() : ::glint::refuse_toml_state())
+#pragma push_macro("NDEBUG")
+#undef NDEBUG
 #include <toml++/toml.h>
+#pragma pop_macro("NDEBUG")
 
 namespace glint {
 
-// Throws InputError: file:line:column: the parser's words.
+// Throws InputError: file:line: the parser's words.
 [[nodiscard]] toml::table parse_toml(const std::string& text, const std::string& file);
 // Throws InputError where the file cannot be read.
 [[nodiscard]] std::string read_text(const std::string& file);
@@ -28,6 +40,7 @@ class TomlReader {
   [[nodiscard]] std::int64_t integer(const char* key, std::int64_t otherwise, std::int64_t low,
                                      std::int64_t high);
   [[nodiscard]] bool boolean(const char* key, bool otherwise);
+  // Names and paths: refuses characters that are not printable (platform/printable.hpp).
   [[nodiscard]] std::string text(const char* key, const std::string& otherwise);
   // Whether `key` is there and a text: for a key that takes a file's name or a table.
   [[nodiscard]] bool is_text(const char* key) const { return table_[key].is_string(); }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "platform/input_error.hpp"
+#include "platform/printable.hpp"
 
 namespace glint {
 namespace {
@@ -52,7 +53,7 @@ ToolSet tools_of(const json& tools, const std::string& path) {
   for (const json& item : tools) {
     if (set.count == k_tools_max) throw InputError(path + ": tools.json holds too many tools");
     Tool& tool = set.items[static_cast<std::size_t>(set.count++)];
-    const std::string name = item.at("name");
+    const std::string name = printable(item.at("name").get<std::string>());
     std::copy_n(name.begin(), std::min(name.size(), tool.name.size() - 1), tool.name.begin());
     for (const json& marker : item.at("markers_m")) {
       if (tool.marker_count == k_markers_per_tool_max) break;
@@ -112,13 +113,6 @@ Cell recorded_cell(RecordingReader& reader, const std::string& path) {
     files.named[key] = {named.data.begin(), named.data.end()};
   }
   Cell cell = cell_from_text({text.data.begin(), text.data.end()}, path + ":cell.toml", &files);
-  const CameraModel& model = cell.camera.model;
-  if (model.lens == Lens::lut && files.rays->size() != static_cast<std::size_t>(model.width) *
-                                                           static_cast<std::size_t>(model.height) *
-                                                           3) {
-    throw InputError(path + ": attachment rays.f32 has " + std::to_string(files.rays->size()) +
-                     " numbers; expected 3 for each pixel");
-  }
   if (!cell.ray_table.empty() && files.rays == nullptr) {
     throw InputError(path +
                      ": no attachment rays.f32; expected the calibration that the cell names");

@@ -54,7 +54,8 @@ class Line {
   [[nodiscard]] std::int64_t stamp() {
     if (!commas_) {
       const double seconds = number();
-      if (!(std::abs(seconds) < 9e9)) fail("time stamp out of range");
+      // Half of what int64 nanoseconds hold: two stamps are subtracted.
+      if (!(std::abs(seconds) < 4e9)) fail("a time stamp beyond 4e9 s");
       return static_cast<std::int64_t>(std::floor(seconds * 1e9 + 0.5));
     }
     const std::string_view text = word();

@@ -64,6 +64,10 @@ TEST(TrajectoryFile, RefusesBackwardAndEqualStamps) {
   expect_refused("1 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 1\n", "pen.txt:2:", "stamp");
 }
 
+TEST(TrajectoryFile, RefusesStampsWhoseDifferenceOverflows) {
+  expect_refused("-8e9 1 2 3 0 0 0 1\n8e9 1 2 3 0 0 0 1\n", "pen.txt:1:", "stamp");
+}
+
 TEST(TrajectoryFile, RefusesMissingColumns) {
   expect_refused("0 1 2 3 0 0 0\n1 1 2 3 0 0 0 1\n", "pen.txt:1:", "column 8");
   expect_refused("0,1,2,3,1,0,0\n", "pen.txt:1:", "column 8");
