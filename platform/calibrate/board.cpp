@@ -8,6 +8,7 @@
 
 #include "platform/calibrate/say.hpp"
 #include "platform/input_error.hpp"
+#include "platform/sensors/read_picture.hpp"
 
 namespace glint {
 namespace {
@@ -30,8 +31,8 @@ cv::Mat eight_bits(const cv::Mat& picture) {
 }
 
 cv::Mat load(const std::string& path, const cv::Size& size) {
-  const cv::Mat picture = cv::imread(path, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH);
-  if (picture.empty()) throw InputError(path + ": cannot be read; expected a PNG or PGM picture");
+  const cv::Mat picture =
+      read_picture(path, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH, "a PNG or PGM picture");
   if (size.area() > 0 && picture.size() != size) {
     throw InputError(path + ": " + std::to_string(picture.cols) + " x " +
                      std::to_string(picture.rows) + " pixels; expected " +

@@ -3,12 +3,13 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "platform/input_error.hpp"
+#include "platform/sensors/read_picture.hpp"
 
 namespace glint {
 
 DepthFrame read_depth_png(const std::string& path) {
-  const cv::Mat image = cv::imread(path, cv::IMREAD_UNCHANGED);
-  if (image.empty() || image.type() != CV_16UC1) {
+  const cv::Mat image = read_picture(path, cv::IMREAD_UNCHANGED, "a PNG with one plane of 16 bits");
+  if (image.type() != CV_16UC1) {
     throw InputError(path + ": is no PNG with one plane of 16 bits; expected depth in millimetres");
   }
   if (image.cols > k_depth_side_max || image.rows > k_depth_side_max) {

@@ -10,6 +10,7 @@
 #include "platform/input_error.hpp"
 #include "platform/mapping/cloud_files.hpp"
 #include "platform/sensors/npy.hpp"
+#include "platform/sensors/read_picture.hpp"
 
 namespace glint {
 namespace {
@@ -45,17 +46,7 @@ NpyNumbers npy_picture(const std::string& path, const CameraModel& camera) {
 }
 
 cv::Mat png_picture(const std::string& path, const CameraModel& camera) {
-  std::error_code failed;
-  if (!std::filesystem::is_regular_file(path, failed)) {
-    throw InputError(path + ": cannot be opened; expected a PNG picture");
-  }
-  cv::Mat picture;
-  try {
-    picture = cv::imread(path, cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception&) {
-    picture.release();
-  }
-  if (picture.empty()) throw InputError(path + ": no picture; expected PNG");
+  cv::Mat picture = read_picture(path, cv::IMREAD_UNCHANGED, "a PNG picture");
   check_size(path, static_cast<std::size_t>(picture.cols), static_cast<std::size_t>(picture.rows),
              camera);
   return picture;

@@ -66,7 +66,8 @@ TEST(DepthSequence, RefusesAFolderWithoutPicturesOrAPictureWithoutPose) {
   folder.write("camera-intrinsics.txt", k_pinhole);
   EXPECT_NE(complaint_about(folder).find("0 depth pictures"), std::string::npos);
   folder.write("a.depth.png", "no picture");
-  EXPECT_NE(complaint_about(folder).find("is no PNG with one plane of 16 bits"), std::string::npos);
+  EXPECT_NE(complaint_about(folder).find("expected a PNG with one plane of 16 bits"),
+            std::string::npos);
   std::filesystem::remove(folder.path("a.depth.png"));
   folder.write("a.depth.npy", flat_picture(8, 8, 1));
   EXPECT_NE(complaint_about(folder).find("a.pose.txt: is no file"), std::string::npos);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
 
 #include "platform/mapping/cloud_files.hpp"
 #include "platform/reference/scene.hpp"
@@ -46,6 +47,18 @@ TEST(DepthPicture, RefusesAnotherSizeNoDepthAndUnknownKinds) {
                      {"a.png", "PNG"});
   expect_input_error([&] { (void)read_mask(files.folder() + "/m.png", camera(2, 1)); },
                      {"m.png", "cannot be opened"});
+}
+
+// OpenCV takes memory for every pixel that the head of a file names.
+TEST(DepthPicture, RefusesAPngThatSaysItIsEnormous) {
+  const Files files;
+  for (const std::string size :
+       {std::string("\0\0\xEA\x60\0\0\0\1", 8), std::string("\0\0\x27\x10\0\0\x27\x10", 8)}) {
+    const std::string head = std::string("\x89PNG\r\n\x1A\n\0\0\0\x0D", 12) + "IHDR" + size;
+    const std::string path = files.write("a.png", head + std::string("\x10\0\0\0\0", 5));
+    expect_input_error([&] { (void)read_depth(path, camera(2, 1)); },
+                       {"a.png:byte 16", "0 x ", "pixels; expected at most"});
+  }
 }
 
 TEST(SceneFrame, TakesPointsThatAreFewerThanThePicturesPixels) {
