@@ -40,8 +40,8 @@ function(glint_precompile folder)
     get_target_property(type ${target} TYPE)
     get_target_property(sources ${target} SOURCES)
     get_target_property(options ${target} COMPILE_OPTIONS)
-    foreach(list options common)  # a warning: it changes nothing that was read
-      list(REMOVE_ITEM ${list} "${GLINT_TOGETHER_OPTIONS}")
+    foreach(list options common)  # a warning, and what code is made: neither changes what was read
+      list(REMOVE_ITEM ${list} "${GLINT_TOGETHER_OPTIONS}" "${GLINT_COVERAGE_OPTIONS}")
     endforeach()
     if(NOT options STREQUAL common)  # some of its own: what was read without them does not hold
       continue()
