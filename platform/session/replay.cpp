@@ -52,8 +52,7 @@ class Replayer {
     configure(cell, *output_);
   }
 
-  // Messages are missing here. The tracker lacks the frames among them, so its records are no
-  // longer those of the run.
+  // Messages are missing: from here on the tracker's records are no longer those of the run.
   void on_gap() {
     gap_ = true;
     head_since_gap_ = choice_since_gap_ = false;
@@ -123,8 +122,7 @@ class Replayer {
  private:
   using Record = std::vector<std::uint8_t>;
 
-  // Behind a gap a frame's choice tells its number; the first frame may lack its choice or head
-  // pose.
+  // Behind a gap the choice tells the frame's number; the first frame may lack its inputs.
   [[nodiscard]] bool has_all_inputs() {
     if (!gap_) return true;
     if (!head_since_gap_ || !choice_since_gap_) {
@@ -262,8 +260,7 @@ class Replayer {
   }
 
   void compare() {
-    if (gap_) return;
-    while (!decided_.empty() && !recorded_.empty()) {
+    while (!gap_ && !decided_.empty() && !recorded_.empty()) {
       ++result_.records_compared;
       if (decided_.front() != recorded_.front()) {
         if (result_.mismatches++ == 0) result_.first_mismatch = compared_;
@@ -307,12 +304,6 @@ void resend(const OutputMessage& message, Sha256& hash, ReplayResult& result) {
   ++result.records_compared;
 }
 
-void add_losses(const RecordingLosses& found, RecordingLosses& losses) {
-  const std::int64_t without_inputs = losses.frames;
-  losses = found;
-  losses.frames += without_inputs;
-}
-
 Time time_of(const RecordedMessage& message, Time otherwise) {
   if (const auto* choice = std::get_if<ChoiceRecord>(&message)) return choice->nominal;
   return otherwise;
@@ -325,9 +316,8 @@ ReplayResult replay(const std::string& file, const ReplayOptions& options) {
   const Cell cell = recorded_cell(reader, file);
   ReplayResult result;
   result.level = std::string(name_of(reader.level()));
-  if (const auto it = reader.facts().find("output_sha256"); it != reader.facts().end()) {
+  if (const auto it = reader.facts().find("output_sha256"); it != reader.facts().end())
     result.recorded_sha256 = it->second;
-  }
   const bool only_outputs = reader.level() == RecordingLevel::outputs;
   Replayer replayer(cell, reader.nominal_tick(), options.workers, result);
   Sha256 resent;
@@ -346,7 +336,9 @@ ReplayResult replay(const std::string& file, const ReplayOptions& options) {
     std::visit([&](const auto& item) { replayer.on(item); }, *message);
   }
   replayer.finish();
-  add_losses(reader.losses(), result.losses);
+  const std::int64_t frames_without_inputs = result.losses.frames;
+  result.losses = reader.losses();
+  result.losses.frames += frames_without_inputs;
   if (result.records == 0 && result.records_recorded == 0)
     throw InputError(file + ": nothing to replay: " + std::to_string(result.frames) +
                      " frames and " + std::to_string(result.ticks) +
