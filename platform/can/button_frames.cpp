@@ -23,8 +23,8 @@ std::optional<CanFrame> frame_of_socketcan(std::span<const std::uint8_t> bytes) 
   return frame;
 }
 
-ButtonFrames::ButtonFrames(std::uint32_t identifier, OnButton on_button)
-    : identifier_(identifier), on_button_(std::move(on_button)) {}
+ButtonFrames::ButtonFrames(std::uint32_t identifier, OnButton on_button, Duration timeout)
+    : identifier_(identifier), on_button_(std::move(on_button)), timeout_(timeout) {}
 
 void ButtonFrames::hear(const std::optional<CanFrame>& frame, Time arrived) {
   if (!frame || frame->extended || frame->identifier != identifier_ || frame->length == 0) {
@@ -32,6 +32,7 @@ void ButtonFrames::hear(const std::optional<CanFrame>& frame, Time arrived) {
     return;
   }
   heard_.fetch_add(1, std::memory_order_relaxed);
+  last_ = arrived;
   for (std::size_t i = 0; i < held_.size(); ++i) {
     const bool now = (frame->data[0] >> i & 1U) != 0;
     if (now == held_[i]) continue;
@@ -40,8 +41,19 @@ void ButtonFrames::hear(const std::optional<CanFrame>& frame, Time arrived) {
   }
 }
 
+void ButtonFrames::release_if_silent(Time now) {
+  if (now - last_ <= timeout_) return;
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    if (!held_[i]) continue;
+    held_[i] = false;
+    released_.fetch_add(1, std::memory_order_relaxed);
+    if (on_button_) on_button_({now, static_cast<Button>(i), false});
+  }
+}
+
 ButtonFrameCounts ButtonFrames::counts() const noexcept {
-  return {heard_.load(std::memory_order_relaxed), refused_.load(std::memory_order_relaxed)};
+  return {heard_.load(std::memory_order_relaxed), refused_.load(std::memory_order_relaxed),
+          released_.load(std::memory_order_relaxed)};
 }
 
 }  // namespace glint

@@ -25,8 +25,9 @@ namespace glint {
 [[nodiscard]] std::optional<CanFrame> frame_of_socketcan(std::span<const std::uint8_t> bytes);
 
 struct ButtonFrameCounts {
-  std::uint64_t heard = 0;    // frames that said which buttons are held
-  std::uint64_t refused = 0;  // frames that did not
+  std::uint64_t heard = 0;     // frames that said which buttons are held
+  std::uint64_t refused = 0;   // frames that did not
+  std::uint64_t released = 0;  // buttons whose sender fell silent
   [[nodiscard]] bool any() const { return heard + refused > 0; }
 };
 
@@ -35,11 +36,15 @@ class ButtonFrames {
   using OnButton = std::function<void(const ButtonEvent&)>;
 
   // `on_button` may be empty; before the first frame no button is held.
-  ButtonFrames(std::uint32_t identifier, OnButton on_button);
+  ButtonFrames(std::uint32_t identifier, OnButton on_button, Duration timeout = k_button_timeout);
 
   // From one thread: calls `on_button` for each button that this frame, arrived at that time, says
   // to be otherwise than the last did. A frame that is none or no buttons' is refused.
   void hear(const std::optional<CanFrame>& frame, Time arrived);
+
+  // From the same thread: releases what is held if the last frame of buttons is older than the
+  // timeout, with an event at `now` for each.
+  void release_if_silent(Time now);
 
   // From any thread.
   [[nodiscard]] ButtonFrameCounts counts() const noexcept;
@@ -47,8 +52,10 @@ class ButtonFrames {
  private:
   std::uint32_t identifier_;
   OnButton on_button_;
+  Duration timeout_;
+  Time last_;
   std::array<bool, k_button_count> held_{};
-  std::atomic<std::uint64_t> heard_{0}, refused_{0};
+  std::atomic<std::uint64_t> heard_{0}, refused_{0}, released_{0};
 };
 
 }  // namespace glint

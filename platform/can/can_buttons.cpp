@@ -13,38 +13,50 @@
 #include <utility>
 
 #include "platform/can/socketcan_socket.hpp"
+#include "platform/rt/clock.hpp"
 
 namespace glint {
 namespace {
 
 constexpr Duration k_look_again = milliseconds(20);
-constexpr int k_takes_max = 256;  // a wake-up
+constexpr int k_takes_max = 256;                       // a wake-up
+constexpr Duration k_wait_max = milliseconds(10'000);  // of a frame in the socket's queue
 constexpr std::string_view k_socketcan = "socketcan:";
 
-Time unix_time(const timespec& time) {
+Time time_of(const timespec& time) {
   return Time{std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec};
 }
 
-// When the kernel received the message, by the Unix clock; now, where it does not say.
-Time unix_arrival(msghdr& message) {
+Time unix_time() {
   timespec time{};
+  ::clock_gettime(CLOCK_REALTIME, &time);
+  return time_of(time);
+}
+
+// When the kernel received the message, by the Unix clock; `otherwise` if it has no stamp.
+Time unix_stamp(msghdr& message, Time otherwise) {
   for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr;
        part = CMSG_NXTHDR(&message, part)) {
     if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SCM_TIMESTAMPNS) continue;
+    timespec time{};
     std::memcpy(&time, CMSG_DATA(part), sizeof time);
-    return unix_time(time);
+    return time_of(time);
   }
-  ::clock_gettime(CLOCK_REALTIME, &time);
-  return unix_time(time);
+  return otherwise;
 }
 
 }  // namespace
 
+Time board_arrival(Time unix_stamp, Time unix_now, Time board_now) noexcept {
+  const Duration age = unix_now - unix_stamp;
+  return age < Duration{} || age > k_wait_max ? board_now : board_now - age;
+}
+
 CanButtons::CanButtons(Descriptor socket, std::uint32_t identifier, Duration unix_minus_board,
-                       ButtonFrames::OnButton on_button)
+                       ButtonFrames::OnButton on_button, Duration timeout)
     : socket_(std::move(socket)),
-      unix_minus_board_(unix_minus_board),
-      frames_(identifier, std::move(on_button)) {
+      board_minus_monotonic_(unix_offset() - unix_minus_board),
+      frames_(identifier, std::move(on_button), timeout) {
   const int on = 1;
   ::setsockopt(socket_.get(), SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
 }
@@ -67,9 +79,11 @@ void CanButtons::stop() {
 
 int CanButtons::read(Duration limit) {
   pollfd waiting{socket_.get(), POLLIN, 0};
-  if (::poll(&waiting, 1, static_cast<int>(limit.nanoseconds / 1'000'000)) <= 0) return 0;
+  const bool ready = ::poll(&waiting, 1, static_cast<int>(limit.nanoseconds / 1'000'000)) > 0;
   int taken = 0;
-  while (taken < k_takes_max && take()) ++taken;
+  while (ready && taken < k_takes_max && take()) ++taken;
+  frames_.release_if_silent(board_now());
+  if (!ready) return 0;
   // An interface that went away is always ready, with nothing to take.
   if (taken == 0) std::this_thread::sleep_for(std::chrono::nanoseconds(limit.nanoseconds));
   return taken;
@@ -86,18 +100,21 @@ bool CanButtons::take() {
   message.msg_controllen = control.size();
   const ssize_t size = ::recvmsg(socket_.get(), &message, MSG_DONTWAIT);
   if (size < 0) return false;
+  const Time unix_now = unix_time();
   frames_.hear(frame_of_socketcan({bytes.data(), static_cast<std::size_t>(size)}),
-               unix_arrival(message) - unix_minus_board_);
+               board_arrival(unix_stamp(message, unix_now), unix_now, board_now()));
   return true;
 }
 
+Time CanButtons::board_now() const { return monotonic_now() + board_minus_monotonic_; }
+
 std::unique_ptr<CanButtons> open_can_buttons(const std::string& specification,
                                              std::uint32_t identifier, Duration unix_minus_board,
-                                             ButtonFrames::OnButton on_button) {
+                                             ButtonFrames::OnButton on_button, Duration timeout) {
   if (!specification.starts_with(k_socketcan)) return nullptr;
   auto buttons = std::make_unique<CanButtons>(
       open_socketcan(specification.substr(k_socketcan.size()), CanFormat::classic, identifier),
-      identifier, unix_minus_board, std::move(on_button));
+      identifier, unix_minus_board, std::move(on_button), timeout);
   buttons->start();
   return buttons;
 }

@@ -13,13 +13,19 @@
 
 namespace glint {
 
+// When a message arrived, on the board's clock: the kernel's stamp lies before `unix_now` by as
+// much as the arrival lies before `board_now`, both read together. If that is not between 0 and
+// 10 s, the Unix clock was set meanwhile and the arrival is now.
+[[nodiscard]] Time board_arrival(Time unix_stamp, Time unix_now, Time board_now) noexcept;
+
 class CanButtons {
  public:
   // `socket` gives one frame a read, as a CAN socket does. Events are in the board's time:
-  // when the kernel received the frame, where it says so, else when it was read. `on_button` is
-  // called from the reading thread.
+  // when the kernel received the frame, where it says so, else when it was read. The Unix clock is
+  // read once, here: a later step of it moves no event. `on_button` is called from the reading
+  // thread, also with the release of a button whose sender has been silent for `timeout`.
   CanButtons(Descriptor socket, std::uint32_t identifier, Duration unix_minus_board,
-             ButtonFrames::OnButton on_button);
+             ButtonFrames::OnButton on_button, Duration timeout = k_button_timeout);
   ~CanButtons();  // stop()
   CanButtons(const CanButtons&) = delete;
   CanButtons& operator=(const CanButtons&) = delete;
@@ -35,9 +41,10 @@ class CanButtons {
 
  private:
   bool take();
+  [[nodiscard]] Time board_now() const;
 
   Descriptor socket_;
-  Duration unix_minus_board_;
+  Duration board_minus_monotonic_;
   ButtonFrames frames_;
   std::atomic<bool> stopping_{false};
   std::thread thread_;
@@ -47,6 +54,7 @@ class CanButtons {
 [[nodiscard]] std::unique_ptr<CanButtons> open_can_buttons(const std::string& specification,
                                                            std::uint32_t identifier,
                                                            Duration unix_minus_board,
-                                                           ButtonFrames::OnButton on_button);
+                                                           ButtonFrames::OnButton on_button,
+                                                           Duration timeout = k_button_timeout);
 
 }  // namespace glint

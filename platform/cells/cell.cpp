@@ -180,6 +180,12 @@ void read_sinks(TomlReader& root, Cell& cell) {
     cell.dds.on = reader.boolean("on", cell.dds.on);
     cell.dds.interface = reader.text("interface", cell.dds.interface);
     cell.dds.domain = static_cast<int>(reader.integer("domain", cell.dds.domain, 0, 232));
+    cell.dds.tool_changes = reader.boolean("tool_changes", cell.dds.tool_changes);
+    reader.done();
+  }
+  if (const toml::table* table = root.table("buttons")) {
+    TomlReader reader(*table, cell.file, "buttons.");
+    cell.button_timeout = from_ms(reader.real("timeout_ms", 10'000, 100, 3'600'000));
     reader.done();
   }
   if (const toml::table* table = root.table("files")) {

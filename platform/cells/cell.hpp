@@ -19,6 +19,7 @@
 #include "kernels/units.hpp"
 #include "platform/cells/named_file.hpp"
 #include "platform/cells/tool_changes.hpp"
+#include "platform/record/button_event.hpp"
 #include "platform/sensors/camera.hpp"
 
 namespace glint {
@@ -37,6 +38,7 @@ struct DdsCellSettings {
   bool on = true;
   std::string interface = "lo";
   int domain = 0;
+  bool tool_changes = false;  // by other participants: rt/glint/tool_add, tool_remove
 };
 
 struct RecordSettings {
@@ -140,6 +142,7 @@ struct Cell {
   std::optional<MappingSettings> mapping;        // nothing: its slices have nothing to do
   CanSettings can;
   DdsCellSettings dds;
+  Duration button_timeout = k_button_timeout;  // of a held button that its sender does not repeat
   RecordSettings record;
   FileSettings files;
   Method method = Method::glint;    // chosen on the command line

@@ -99,6 +99,29 @@ void latency_row(const char* name, const ordered_json& item) {
   row(name, text);
 }
 
+ordered_json tool_orders(const Cell& cell, const SessionResult& result) {
+  ordered_json list = ordered_json::array();
+  for (std::size_t t = 0; t < result.tool_orders.size(); ++t) {
+    const auto [added, removed] = result.tool_orders[t];
+    const std::string tool = cell.tools.items[t].name.data();
+    if (added + removed > 0)
+      list.push_back({{"tool", tool}, {"added", added}, {"removed", removed}});
+  }
+  return {{"allowed", cell.dds.tool_changes}, {"by_tool", list}};
+}
+
+void tool_order_rows(const ordered_json& orders) {
+  for (const auto& one : orders.at("by_tool")) {
+    row("tool changed over DDS", one.at("tool").get<std::string>() + ": added " +
+                                     one.at("added").dump() + " times, removed " +
+                                     one.at("removed").dump());
+  }
+}
+
+std::string released_text(std::uint64_t released) {
+  return released == 0 ? "" : "; " + std::to_string(released) + " released, their sender gone";
+}
+
 }  // namespace
 
 ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResult& result) {
@@ -174,6 +197,9 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
       {"best_effort", best_effort(result)},
       {"refused", result.refused},
       {"budget", budget_of(plan, result)}};
+  summary["can_heard"]["released"] = result.can_heard.released;
+  summary["dds_heard"]["released"] = result.heard.released;
+  summary["dds_tool_changes"] = tool_orders(cell, result);
   if (result.background) summary["background"] = as_json(*result.background);
   return summary;
 }
@@ -255,7 +281,8 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
                         fixed(100 * result.can_bus_load, 1, "%, computed)"));
   if (const ButtonFrameCounts& heard = result.can_heard; heard.any()) {
     row("heard over CAN", std::to_string(heard.heard) + " frames of buttons; " +
-                              std::to_string(heard.refused) + " refused");
+                              std::to_string(heard.refused) + " refused" +
+                              released_text(heard.released));
   }
   if (!result.can_not_heard.empty()) row("not heard over CAN", result.can_not_heard);
   if (result.key_events > 0) row("buttons by key", std::to_string(result.key_events) + " changes");
@@ -271,8 +298,10 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
         std::to_string(heard.joints) + " joint states, " + std::to_string(heard.descriptions) +
             " descriptions, " + std::to_string(heard.guesses) + " guesses, " +
             std::to_string(heard.buttons) + " buttons, " + std::to_string(heard.tools) +
-            " tools; " + std::to_string(heard.refused) + " refused");
+            " tools; " + std::to_string(heard.refused) + " refused" +
+            released_text(heard.released));
   }
+  tool_order_rows(summary.at("dds_tool_changes"));
   row("output_sha256", result.output_sha256);
   print_files(result, 0);
   for (const auto& notice : summary.at("notices")) row("this cell", notice.get<std::string>());

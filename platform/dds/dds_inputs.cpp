@@ -27,13 +27,14 @@ constexpr std::size_t k_button_bytes = 64;
 constexpr std::size_t k_tool_bytes = 128;  // a name has 31 at most
 
 constexpr Duration k_look_again = milliseconds(20);
-constexpr int k_takes_max = 256;  // of one topic before the others have their turn
+constexpr int k_takes_max = 256;           // of one topic before the others have their turn
+constexpr std::size_t k_senders_max = 64;  // of one button, looked through for the one that held it
 
 constexpr const char* k_button_names[k_button_count] = {"button", "button_delete", "button_undo",
                                                         "button_finish"};
 
 // Takes what waits in a reader. A message is unpacked only where it is no larger than `most` bytes;
-// `use` says whether it makes sense. Gives how many were refused.
+// `use(message, sender)` says whether it makes sense. Gives how many were refused.
 template <class Message, class Use>
 std::uint64_t take_bounded(dds_entity_t reader, const TopicType& type, std::size_t most, Use use) {
   std::uint64_t refused = 0;
@@ -45,7 +46,8 @@ std::uint64_t take_bounded(dds_entity_t reader, const TopicType& type, std::size
       Message message{};
       bool taken = false;
       if (ddsi_serdata_size(packed[0]) <= most) {
-        taken = ddsi_serdata_to_sample(packed[0], &message, nullptr, nullptr) && use(message);
+        taken = ddsi_serdata_to_sample(packed[0], &message, nullptr, nullptr) &&
+                use(message, info.publication_handle);
         dds_sample_free(&message, type.descriptor, DDS_FREE_CONTENTS);
       }
       if (!taken) ++refused;
@@ -76,6 +78,7 @@ DdsInputs::DdsInputs(std::shared_ptr<Participant> participant, const DdsSettings
       board_minus_steady_(Time{dds_time()} - unix_minus_board_ - steady_now()),
       on_button_(std::move(on_button)),
       on_tool_(std::move(on_tool)),
+      button_timeout_(settings.button_timeout),
       tool_names_(settings.tool_names),
       waitset_(participant_->waitset()),
       joints_(std::make_unique<graph::TripleBuffer<HeardJoints>>()),
@@ -84,13 +87,14 @@ DdsInputs::DdsInputs(std::shared_ptr<Participant> participant, const DdsSettings
   joints_reader_ = add_reader(joint_state_type(), k_joint_states_topic, k_joints);
   description_reader_ = add_reader(text_type(), k_robot_description_topic, k_description);
   guess_reader_ = add_reader(pose_covariance_type(), k_initial_pose_topic, k_guess);
-  for (std::size_t i = 0; i < buttons_.size(); ++i) {
-    buttons_[i].reader =
-        add_reader(bool_type(), topic_under(settings.topic_prefix, k_button_names[i]), k_button);
-  }
   const std::string& prefix = settings.topic_prefix;
-  add_reader_ = add_reader(text_type(), topic_under(prefix, k_tool_add_name), k_tool);
-  remove_reader_ = add_reader(text_type(), topic_under(prefix, k_tool_remove_name), k_tool);
+  if (settings.hears_tool_changes) {
+    add_reader_ = add_reader(text_type(), topic_under(prefix, k_tool_add_name), k_tool);
+    remove_reader_ = add_reader(text_type(), topic_under(prefix, k_tool_remove_name), k_tool);
+  }
+  for (std::size_t i = 0; i < buttons_.size(); ++i) {
+    buttons_[i].reader = add_reader(bool_type(), topic_under(prefix, k_button_names[i]), k_button);
+  }
 }
 
 DdsInputs::~DdsInputs() {
@@ -98,7 +102,7 @@ DdsInputs::~DdsInputs() {
   for (const ButtonReader& button : buttons_) dds_delete(button.reader);
   for (const dds_entity_t entity : {remove_reader_, add_reader_, guess_reader_, description_reader_,
                                     joints_reader_, waitset_}) {
-    dds_delete(entity);
+    if (entity != 0) dds_delete(entity);
   }
 }
 
@@ -128,13 +132,17 @@ void DdsInputs::read(Duration limit) {
   take_joints();
   take_descriptions();
   take_guesses();
-  for (int i = 0; i < k_button_count; ++i) take_button(static_cast<Button>(i));
+  for (int i = 0; i < k_button_count; ++i) {
+    take_button(static_cast<Button>(i));
+    release_if_gone(static_cast<Button>(i));
+  }
+  if (remove_reader_ == 0) return;
   take_tools(remove_reader_, false);
   take_tools(add_reader_, true);
 }
 
 void DdsInputs::take_joints() {
-  const auto use = [this](const JointStateMessage& message) {
+  const auto use = [this](const JointStateMessage& message, dds_instance_handle_t) {
     if (!hear(message, unix_minus_board_, now(), joints_->write_slot())) return false;
     joints_->publish(count_up(joints_count_), now().nanoseconds);
     return true;
@@ -144,7 +152,7 @@ void DdsInputs::take_joints() {
 }
 
 void DdsInputs::take_descriptions() {
-  const auto use = [this](const TextMessage& message) {
+  const auto use = [this](const TextMessage& message, dds_instance_handle_t) {
     if (!hear(message, description_->write_slot())) return false;
     description_->publish(count_up(description_count_), now().nanoseconds);
     return true;
@@ -154,7 +162,7 @@ void DdsInputs::take_descriptions() {
 }
 
 void DdsInputs::take_guesses() {
-  const auto use = [this](const PoseCovarianceMessage& message) {
+  const auto use = [this](const PoseCovarianceMessage& message, dds_instance_handle_t) {
     if (!hear(message, unix_minus_board_, now(), guess_->write_slot())) return false;
     guess_->publish(count_up(guess_count_), now().nanoseconds);
     return true;
@@ -166,19 +174,37 @@ void DdsInputs::take_guesses() {
 // A driver may say at a steady rate whether the button is down: only changes are events.
 void DdsInputs::take_button(Button button) {
   ButtonReader& one = buttons_[static_cast<std::size_t>(button)];
-  const auto use = [&](const BoolMessage& message) {
+  const auto use = [&](const BoolMessage& message, dds_instance_handle_t sender) {
     count_up(button_count_);
+    one.sender = sender;
+    one.last = now();
     if (message.data == one.pressed) return true;
     one.pressed = message.data;
-    if (on_button_) on_button_({now(), button, one.pressed});
+    if (on_button_) on_button_({one.last, button, one.pressed});
     return true;
   };
   count_up(refused_, take_bounded<BoolMessage>(one.reader, bool_type(), k_button_bytes, use));
 }
 
+// The sender left the domain (a killed one when its lease ends), or hangs, or its cable is cut.
+void DdsInputs::release_if_gone(Button button) {
+  ButtonReader& one = buttons_[static_cast<std::size_t>(button)];
+  if (!one.pressed) return;
+  std::array<dds_instance_handle_t, k_senders_max> senders{};
+  const int count = dds_get_matched_publications(one.reader, senders.data(), senders.size());
+  const auto end = senders.begin() + std::clamp(count, 0, static_cast<int>(senders.size()));
+  const bool left = count <= static_cast<int>(senders.size()) &&
+                    std::find(senders.begin(), end, one.sender) == end;
+  const Time time = now();
+  if (!left && time - one.last <= button_timeout_) return;
+  one.pressed = false;
+  count_up(released_);
+  if (on_button_) on_button_({time, button, false});
+}
+
 // A name that no tool of the run has is refused.
 void DdsInputs::take_tools(dds_entity_t reader, bool there) {
-  const auto use = [&](const TextMessage& message) {
+  const auto use = [&](const TextMessage& message, dds_instance_handle_t) {
     const auto found = std::find(tool_names_.begin(), tool_names_.end(), message.data);
     if (found == tool_names_.end()) return false;
     count_up(tool_count_);
@@ -198,6 +224,7 @@ HeardCounts DdsInputs::counts() const noexcept {
   counts.buttons = button_count_.load(std::memory_order_relaxed);
   counts.tools = tool_count_.load(std::memory_order_relaxed);
   counts.refused = refused_.load(std::memory_order_relaxed);
+  counts.released = released_.load(std::memory_order_relaxed);
   return counts;
 }
 

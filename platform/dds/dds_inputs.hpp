@@ -3,7 +3,9 @@
 //
 // Values of which the newest counts are handed over in triple buffers, as Latest<> reads them; a
 // button's changes go one by one to whoever records them, for each of them counts, and so do tools
-// that are named to be there or not. Every message is bounded before it is unpacked; what is too
+// that are named to be there or not, if the settings allow it. A held button is released when the
+// participant that said so leaves the domain, cleanly or by its lease, or is silent for the
+// settings' timeout. Every message is bounded before it is unpacked; what is too
 // large or makes no sense is refused and counted.
 #pragma once
 
@@ -27,6 +29,7 @@ struct HeardCounts {
   // Messages taken.
   std::uint64_t joints = 0, descriptions = 0, guesses = 0, buttons = 0, tools = 0;
   std::uint64_t refused = 0;
+  std::uint64_t released = 0;  // buttons whose sender left or fell silent
   [[nodiscard]] bool any() const {
     return joints + descriptions + guesses + buttons + tools + refused > 0;
   }
@@ -65,6 +68,8 @@ class DdsInputs {
   struct ButtonReader {
     dds_entity_t reader = 0;
     bool pressed = false;
+    dds_instance_handle_t sender = 0;  // of the last message
+    Time last;                         // its arrival
   };
 
   dds_entity_t add_reader(const TopicType& type, const std::string& topic, const Quality& quality);
@@ -72,6 +77,7 @@ class DdsInputs {
   void take_descriptions();
   void take_guesses();
   void take_button(Button button);
+  void release_if_gone(Button button);
   void take_tools(dds_entity_t reader, bool there);
   [[nodiscard]] Time now() const;
 
@@ -80,6 +86,7 @@ class DdsInputs {
   Duration board_minus_steady_;  // a step of Unix time moves no arrival
   OnButton on_button_;
   OnTool on_tool_;
+  Duration button_timeout_;
   std::vector<std::string> tool_names_;
   dds_entity_t waitset_ = 0, joints_reader_ = 0, description_reader_ = 0, guess_reader_ = 0;
   dds_entity_t add_reader_ = 0, remove_reader_ = 0;
@@ -89,7 +96,7 @@ class DdsInputs {
   std::unique_ptr<graph::TripleBuffer<HeardDescription>> description_;
   using Counter = std::atomic<std::uint64_t>;
   Counter joints_count_{0}, description_count_{0}, guess_count_{0}, button_count_{0},
-      tool_count_{0}, refused_{0};
+      tool_count_{0}, refused_{0}, released_{0};
   std::atomic<bool> stopping_{false};
   std::thread thread_;
 };

@@ -6,6 +6,7 @@
 
 #include "kernels/geometry.hpp"
 #include "kernels/units.hpp"
+#include "platform/record/button_event.hpp"
 #include "platform/rt/followed_robot.hpp"
 #include "platform/rt/loss_counters.hpp"
 #include "platform/rt/overrun_counters.hpp"
@@ -34,9 +35,12 @@ struct DdsSettings {
   FrameNames frames;
   std::vector<StaticTransform> static_transforms;  // all of tf_static
   Duration tick_period = milliseconds(4);
-  Duration actuation_delay;                  // a pose is valid this long after its tick
-  Duration unix_minus_board;                 // added to a PoseSample's times to stamp messages
-  Duration poll_period = microseconds(500);  // of the ring, by the sink's thread
+  Duration actuation_delay;  // a pose is valid this long after its tick
+  // Another participant's message may add and remove the tools named above.
+  bool hears_tool_changes = false;
+  Duration button_timeout = k_button_timeout;  // of a held button that nobody repeats
+  Duration unix_minus_board;                   // added to a PoseSample's times to stamp messages
+  Duration poll_period = microseconds(500);    // of the ring, by the sink's thread
   // What /diagnostics says beside the tools: what this machine spoils (empty: nothing), and the
   // overruns so far (null: not counted; it outlives the sink).
   std::string best_effort;

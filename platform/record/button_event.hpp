@@ -15,6 +15,9 @@ enum class Button : std::uint8_t {
 };
 inline constexpr int k_button_count = 4;
 
+// Default of a cell's buttons.timeout_ms.
+inline constexpr Duration k_button_timeout = milliseconds(10'000);
+
 struct ButtonEvent {
   Time time;
   Button button = Button::draw;

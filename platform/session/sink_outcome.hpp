@@ -20,13 +20,19 @@ struct SinkOptions {
   std::vector<std::string> best_effort;  // what this machine spoils: said in every output
 };
 
+// Messages of other DDS participants that named a tool.
+struct ToolOrders {
+  std::uint64_t added = 0, removed = 0;
+};
+
 struct SinkOutcome {
   CanSinkCounts can;
   double can_bus_load = 0;      // computed, of the bus that the cell declares
   ButtonFrameCounts can_heard;  // frames of buttons
   std::string can_not_heard;    // why none can come, where the cell names one
   DdsCounts dds;
-  HeardCounts heard;  // over DDS
+  HeardCounts heard;                    // over DDS
+  std::vector<ToolOrders> tool_orders;  // by tool; empty: no DDS
   ReaderResult dds_reader;
   bool dds_was_read = false;
   std::string dds_not_read;      // why the reader process has no result, where there was one

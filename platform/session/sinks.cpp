@@ -50,6 +50,8 @@ DdsSettings dds_settings(const Cell& cell, std::int64_t unix_offset_ns) {
   settings.domain = cell.dds.domain;
   settings.interface = cell.dds.interface;
   settings.tool_names = names_of(cell.tools);
+  settings.hears_tool_changes = cell.dds.tool_changes;
+  settings.button_timeout = cell.button_timeout;
   settings.tick_period = tick_period(cell);
   settings.actuation_delay = cell.actuation_delay;
   settings.unix_minus_board = {unix_offset_ns};
@@ -97,8 +99,9 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
   if (cell.can.buttons) {
     // Without real time nobody's hand could keep up with a run.
     if (cell.realtime) {
-      buttons_ = open_can_buttons(cell.can.sink, *cell.can.buttons, {unix_offset_ns},
-                                  [this](const ButtonEvent& event) { offer_button(event); });
+      buttons_ = open_can_buttons(
+          cell.can.sink, *cell.can.buttons, {unix_offset_ns},
+          [this](const ButtonEvent& event) { offer_button(event); }, cell.button_timeout);
     }
     if (buttons_ == nullptr) {
       can_not_heard_ = std::string("can.buttons: ") +
@@ -119,7 +122,12 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
       reader_ = std::make_unique<ReaderProcess>(settings, in_folder(out_, "dds_reader.json"));
     }
     const auto record_button = [this](const ButtonEvent& event) { offer_button(event); };
-    const auto hand_on = [this](int tool, bool there) { tool_requests_.ask(tool, there); };
+    tool_orders_.resize(settings.tool_names.size());
+    const auto hand_on = [this](int tool, bool there) {
+      ToolOrders& orders = tool_orders_[static_cast<std::size_t>(tool)];
+      ++(there ? orders.added : orders.removed);
+      tool_requests_.ask(tool, there);
+    };
     inputs_ = std::make_unique<DdsInputs>(dds_->participant(), settings, record_button, hand_on);
     inputs_->start();
     dds_->start();
@@ -153,6 +161,7 @@ void Sinks::close(SinkOutcome& result) {
   if (inputs_ != nullptr) {
     inputs_->stop();
     result.heard = inputs_->counts();
+    result.tool_orders = tool_orders_;
     inputs_.reset();  // the sink leaves the domain when nobody else holds it
   }
   if (files_ != nullptr) {

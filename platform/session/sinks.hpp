@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "platform/can/can_buttons.hpp"
 #include "platform/can/can_sink.hpp"
@@ -67,6 +68,7 @@ class Sinks {
   LossCounters losses_;
   FollowedRobotNotes robot_notes_;
   ToolRequests tool_requests_;
+  std::vector<ToolOrders> tool_orders_;  // by tool; of the thread that reads from DDS
   std::mutex one_button_;  // the lane of inputs and what is held are for one thread at a time
   HeldButtons held_buttons_;
   std::unique_ptr<Recorder> recorder_;  // outlives those whose threads offer to it

@@ -53,6 +53,23 @@ TEST(ButtonFrames, SayEachChangeOfEachButtonOnce) {
   EXPECT_EQ(heard.events.back(), (ButtonEvent{{50}, Button::undo, true}));
 }
 
+TEST(ButtonFrames, ReleaseWhatASilentSenderHeld) {
+  Heard heard;
+  heard.frames.hear(held(0b1001), {0});
+  heard.frames.hear(held(0b1001), {5'000'000'000});  // again: the timeout starts anew
+  heard.frames.release_if_silent(Time{5'000'000'000} + k_button_timeout);
+  EXPECT_EQ(heard.events.size(), 2u) << "released before its timeout";
+  const Time late = Time{5'000'000'001} + k_button_timeout;
+  heard.frames.release_if_silent(late);
+  heard.frames.release_if_silent(late + milliseconds(1));
+  ASSERT_EQ(heard.events.size(), 4u);
+  EXPECT_EQ(heard.events[2], (ButtonEvent{late, Button::draw, false}));
+  EXPECT_EQ(heard.events[3], (ButtonEvent{late, Button::finish, false}));
+  EXPECT_EQ(heard.frames.counts().released, 2u);
+  heard.frames.hear(held(0b0001), late + milliseconds(2));  // the sender is back
+  EXPECT_EQ(heard.events.back(), (ButtonEvent{late + milliseconds(2), Button::draw, true}));
+}
+
 TEST(ButtonFrames, LookAtNothingBeyondTheFourBits) {
   Heard heard;
   CanFrame frame = held(0xF0);

@@ -30,7 +30,8 @@ Time board_now() {
 // One end hears, the other is the pen.
 class Pair {
  public:
-  explicit Pair(ButtonFrames::OnButton on_button) : Pair(made(), std::move(on_button)) {}
+  explicit Pair(ButtonFrames::OnButton on_button, Duration timeout = k_button_timeout)
+      : Pair(made(), std::move(on_button), timeout) {}
 
   void send(std::uint8_t bits, std::uint32_t flags = 0) const {
     can_frame raw{};
@@ -60,9 +61,10 @@ class Pair {
     EXPECT_EQ(::socketpair(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0, ends), 0);
     return {Descriptor(ends[0]), Descriptor(ends[1])};
   }
-  Pair(Ends ends, ButtonFrames::OnButton on_button)
+  Pair(Ends ends, ButtonFrames::OnButton on_button, Duration timeout)
       : pen_(std::move(ends.pen)),
-        buttons_(std::move(ends.here), k_buttons, k_unix_minus_board, std::move(on_button)) {}
+        buttons_(std::move(ends.here), k_buttons, k_unix_minus_board, std::move(on_button),
+                 timeout) {}
 
   Descriptor pen_;
   CanButtons buttons_;
@@ -86,8 +88,34 @@ TEST(CanButtons, StampAFrameWhenItArrivedNotWhenItWasRead) {
   std::this_thread::sleep_for(std::chrono::milliseconds(5));
   EXPECT_EQ(pair.buttons().read(milliseconds(1000)), 1);
   ASSERT_EQ(events.size(), 1u);
-  EXPECT_GE(events[0].time, before);
-  EXPECT_LE(events[0].time, after);
+  EXPECT_GE(events[0].time, before - milliseconds(1));  // the clocks are compared twice
+  EXPECT_LE(events[0].time, after + milliseconds(1));
+}
+
+// The kernel stamps by the Unix clock, which may be set while a frame waits or before it comes.
+TEST(CanButtons, StampAFrameOnTheBoardsClockWhateverTheUnixClockDoes) {
+  const Time board_now{10'000'000'000}, unix_then{1'700'000'000'000'000'000};
+  const Duration hour = milliseconds(3'600'000), age = milliseconds(7);
+  for (const Duration step : {Duration{}, hour, Duration{} - hour}) {
+    // The step came before the frame: stamp and clock have it alike.
+    EXPECT_EQ(board_arrival(unix_then + step - age, unix_then + step, board_now), board_now - age);
+  }
+  for (const Duration step : {hour, Duration{} - hour}) {
+    EXPECT_EQ(board_arrival(unix_then - age, unix_then + step, board_now), board_now);
+  }
+}
+
+TEST(CanButtons, ReleaseAHeldButtonWhoseSenderFellSilent) {
+  std::vector<ButtonEvent> events;
+  const Duration timeout = milliseconds(30);
+  Pair pair([&](const ButtonEvent& event) { events.push_back(event); }, timeout);
+  pair.send(1);
+  for (int look = 0; events.size() < 2 && look < 5'000; ++look)
+    pair.buttons().read(milliseconds(2));
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_FALSE(events[1].pressed);
+  EXPECT_GT(events[1].time - events[0].time, timeout);
+  EXPECT_EQ(pair.buttons().counts().released, 1u);
 }
 
 // Each frame taken brings the next: the queue is never empty until 600 were sent.

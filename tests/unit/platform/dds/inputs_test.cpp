@@ -2,7 +2,11 @@
 #include "platform/dds/dds_inputs.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -124,10 +128,86 @@ TEST_F(Inputs, GiveEachChangeOfAButtonOnce) {
   EXPECT_EQ(undone, 1);
 }
 
+// A button down, as this participant says it.
+void hold(Peer& peer, const char* topic) {
+  const dds_entity_t writer =
+      peer.writer(bool_type(), topic, Reliability::reliable, Durability::volatile_data, 64);
+  ASSERT_TRUE(found(writer));
+  const BoolMessage pressed{true};
+  ASSERT_EQ(dds_write(writer, &pressed), DDS_RETCODE_OK);
+}
+
+TEST_F(Inputs, ReleaseAButtonWhoseParticipantLeaves) {
+  Ends ends;
+  auto leaving = std::make_unique<Peer>(test_settings(), 201);
+  hold(*leaving, "rt/glint/button");
+  hold(ends.peer, "rt/glint/button_undo");
+  ASSERT_TRUE(ends.read_until([&] { return ends.events.size() == 2; }));
+  leaving.reset();
+  ASSERT_TRUE(ends.read_until([&] { return ends.events.size() == 3; }));
+  EXPECT_EQ(ends.events[2].button, Button::draw);
+  EXPECT_FALSE(ends.events[2].pressed);
+  EXPECT_EQ(ends.inputs.counts().released, 1u) << "the other participant holds its button";
+}
+
+// Another participant on the same topic, which never held the button, does not keep it held.
+TEST_F(Inputs, ReleaseAButtonWhoseParticipantLeavesBesideAnotherOnItsTopic) {
+  Ends ends;
+  ASSERT_TRUE(found(ends.peer.writer(bool_type(), "rt/glint/button", Reliability::reliable,
+                                     Durability::volatile_data, 64)));
+  auto leaving = std::make_unique<Peer>(test_settings(), 201);
+  hold(*leaving, "rt/glint/button");
+  ASSERT_TRUE(ends.read_until([&] { return ends.events.size() == 1; }));
+  leaving.reset();
+  EXPECT_TRUE(ends.read_until([&] { return ends.events.size() == 2; }));
+}
+
+// Killed, it takes no leave: its lease ends. Before any thread of this process, for it forks.
+TEST_F(Inputs, ReleaseAButtonWhoseParticipantWasKilled) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    Peer peer(test_settings(), 201, "<LeaseDuration>500ms</LeaseDuration>");
+    hold(peer, "rt/glint/button");
+    ::pause();
+  }
+  ASSERT_GT(child, 0);
+  std::vector<ButtonEvent> events;
+  DdsInputs inputs(std::make_shared<Participant>(test_settings()), test_settings(),
+                   [&](const ButtonEvent& event) { events.push_back(event); });
+  const auto read_until = [&](std::size_t count) {
+    return comes_true([&] {
+      inputs.read(milliseconds(2));
+      return events.size() == count;
+    });
+  };
+  EXPECT_TRUE(read_until(1));
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  EXPECT_TRUE(read_until(2));
+  EXPECT_EQ(inputs.counts().released, 1u);
+}
+
+TEST_F(Inputs, ReleaseAButtonThatNobodyRepeatsWithinTheTimeout) {
+  DdsSettings settings = test_settings();
+  settings.button_timeout = milliseconds(40);
+  std::vector<ButtonEvent> events;
+  DdsInputs inputs(std::make_shared<Participant>(settings), settings,
+                   [&](const ButtonEvent& event) { events.push_back(event); });
+  Peer peer(settings);
+  hold(peer, "rt/glint/button");
+  ASSERT_TRUE(comes_true([&] {
+    inputs.read(milliseconds(2));
+    return events.size() == 2;
+  }));
+  EXPECT_FALSE(events[1].pressed);
+  EXPECT_GT(events[1].time - events[0].time, settings.button_timeout);
+}
+
 TEST_F(Inputs, SayWhichToolsAreNamedToBeThereOrNot) {
   std::vector<std::pair<int, bool>> named;
   DdsSettings settings = test_settings();
   settings.tool_names = {"pen", "spare pen"};
+  settings.hears_tool_changes = true;
   DdsInputs inputs(std::make_shared<Participant>(settings), settings, {},
                    [&](int tool, bool there) { named.emplace_back(tool, there); });
   Peer peer(settings);

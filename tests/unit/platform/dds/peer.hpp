@@ -45,14 +45,18 @@ template <class Done>
 
 class Peer {
  public:
-  explicit Peer(const DdsSettings& settings) : settings_(settings) {
+  // Of several in one process each needs an `own_id`: of its Cyclone domain; on the wire it is the
+  // sink's. `discovery`: further elements of Cyclone's configuration.
+  explicit Peer(const DdsSettings& settings, dds_domainid_t own_id = 200,
+                const std::string& discovery = "")
+      : settings_(settings) {
     std::string text = cyclone_configuration(settings);
     const std::string before = "<Discovery>";
-    text.insert(text.find(before) + before.size(),
-                "<ExternalDomainId>" + std::to_string(settings.domain) + "</ExternalDomainId>");
+    text.insert(
+        text.find(before) + before.size(),
+        "<ExternalDomainId>" + std::to_string(settings.domain) + "</ExternalDomainId>" + discovery);
     const std::size_t internal = text.find("<Internal>"), behind = text.find("</Internal>");
     text.erase(internal, behind + std::string("</Internal>").size() - internal);  // Glint's limits
-    constexpr dds_domainid_t own_id = 200;  // of this Cyclone domain; on the wire the sink's
     domain_ = dds_create_domain(own_id, text.c_str());
     participant_ = dds_create_participant(own_id, nullptr, nullptr);
   }

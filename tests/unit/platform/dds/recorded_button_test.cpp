@@ -56,9 +56,10 @@ TEST_F(RecordedButton, StandsInARunsRecordingAtItsTime) {
   EXPECT_LE(events[1].time, after);
 }
 
-TEST_F(RecordedButton, AToolNamedOverDdsReachesARunsRoster) {
+TEST_F(RecordedButton, AToolNamedOverDdsReachesARunsRosterWhereTheCellAllowsIt) {
   const TemporaryFolder folder;
-  const Cell cell = default_cell();
+  Cell cell = default_cell();
+  cell.dds.tool_changes = true;
   SinkOptions options;
   options.out = folder.file("");
   options.with_reader = false;
@@ -78,6 +79,31 @@ TEST_F(RecordedButton, AToolNamedOverDdsReachesARunsRoster) {
   SinkOutcome outcome;
   sinks.close(outcome);
   EXPECT_EQ(outcome.heard.tools, 1u);
+  ASSERT_EQ(outcome.tool_orders.size(), 1u);
+  EXPECT_EQ(outcome.tool_orders[0].removed, 1u);
+  EXPECT_EQ(outcome.tool_orders[0].added, 0u);
+}
+
+// The run's button readers are announced after those of tools, so that whoever found the last one
+// found all.
+TEST_F(RecordedButton, NobodyReadsToolNamesUnlessTheCellAllowsIt) {
+  const TemporaryFolder folder;
+  SinkOptions options;
+  options.out = folder.file("");
+  options.with_reader = false;
+  Sinks sinks(default_cell(), options, k_board_start.nanoseconds);
+  Peer peer(test_settings());
+  const auto writer = [&](const TopicType& type, const char* topic) {
+    return peer.writer(type, topic, Reliability::reliable, Durability::volatile_data, 64);
+  };
+  const dds_entity_t add = writer(text_type(), "rt/glint/tool_add");
+  const dds_entity_t remove = writer(text_type(), "rt/glint/tool_remove");
+  const dds_entity_t finish = writer(bool_type(), "rt/glint/button_finish");
+  ASSERT_TRUE(comes_true([&] { return has_reader(finish); }));
+  EXPECT_FALSE(has_reader(add));
+  EXPECT_FALSE(has_reader(remove));
+  SinkOutcome outcome;
+  sinks.close(outcome);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ inline DdsSettings test_settings() {
   DdsSettings settings;
   settings.tick_period = k_period;
   settings.unix_minus_board = k_board_start;
+  settings.button_timeout = milliseconds(3'600'000);  // never by itself
   return settings;
 }
 
