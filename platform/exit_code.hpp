@@ -6,10 +6,51 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <string>
+#include <vector>
 
 #include "platform/input_error.hpp"
+#include "platform/nearest_name.hpp"
 
 namespace glint {
+
+// The innermost command of the line: its words, and itself.
+struct GivenCommand {
+  std::string path;
+  const CLI::App* app;
+};
+[[nodiscard]] inline GivenCommand given_command(const CLI::App& app, const char* program) {
+  GivenCommand given{program, &app};
+  while (!given.app->get_subcommands().empty()) {
+    given.app = given.app->get_subcommands().front();
+    given.path += " " + given.app->get_name();
+  }
+  return given;
+}
+
+// The first word that the command line cannot place, with the nearest known one; "" if every word
+// has its place.
+[[nodiscard]] inline std::string unknown_word_text(const CLI::App& app, const CLI::App& command) {
+  const std::vector<std::string> left_over = app.remaining(true);
+  if (left_over.empty()) return "";
+  const std::string word = left_over.front().substr(0, left_over.front().find('='));
+  const bool is_option = word.starts_with('-');
+  const auto commands = command.get_subcommands([](const CLI::App*) { return true; });
+  std::vector<std::string> known;
+  std::string list;
+  if (is_option) {
+    for (const CLI::Option* option : command.get_options()) {
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    }
+  } else {
+    for (const CLI::App* one : commands) {
+      known.push_back(one->get_name());
+      list += (list.empty() ? "; expected one of " : ", ") + one->get_name();
+    }
+  }
+  const char* kind = is_option ? "option" : commands.empty() ? "argument" : "command";
+  return std::string("unknown ") + kind + " " + word + nearest_name_text(word, known) + list;
+}
 
 // body(): parses by `app`, does the work and gives the program's own verdict.
 template <class Body>
@@ -26,7 +67,13 @@ template <class Body>
     return std::max(code, 1);
   } catch (const CLI::ParseError& error) {
     // Help asked for is success; anything else is bad use, whatever CLI11 numbers it.
-    return app.exit(error) == 0 ? 0 : 2;
+    if (error.get_exit_code() == 0) return app.exit(error);
+    const GivenCommand given = given_command(app, program);
+    std::string wrong = unknown_word_text(app, *given.app);
+    if (wrong.empty()) wrong = error.what();
+    std::fprintf(stderr, "%s: %s; see %s --help\n", given.path.c_str(), one_line(wrong).c_str(),
+                 given.path.c_str());
+    return 2;
   } catch (const InputError& error) {
     return fails(error, 2);
   } catch (const MissingDevice& error) {

@@ -104,7 +104,7 @@ int run(const Arguments& arguments) {
 int main(int argc, char** argv) {
   glint::Arguments arguments;
   CLI::App app{"Glint on a board: frames from memory, poses to CAN and DDS"};
-  app.add_option("--cell", arguments.cell_file, "cell file; default: the built-in cell");
+  app.add_option("--config,--cell", arguments.cell_file, "cell file; default: the built-in cell");
   app.add_option("--board", arguments.board,
                  "costs, a built-in board or a board file: overruns are then noticed ahead");
   app.add_option("--can", arguments.can, "socketcan:IF or log:FILE, in place of the cell's");

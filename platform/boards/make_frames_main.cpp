@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
   glint::Arguments arguments;
   CLI::App app{"Renders a loop of frames for glint_board"};
   app.add_option("file", arguments.file, "the loop to make")->required();
-  app.add_option("--cell", arguments.cell_file, "cell file; default: the built-in cell");
+  app.add_option("--config,--cell", arguments.cell_file, "cell file; default: the built-in cell");
   app.add_option("--frames", arguments.frames, "how many")->check(CLI::PositiveNumber);
   app.add_option("--first", arguments.first, "the first one's number in the scenario");
   app.add_option("--worst-every", arguments.worst_every,

@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
   glint::Arguments arguments;
   CLI::App app{"Renders depth pictures with a robot for glint_board's background"};
   app.add_option("folder", arguments.folder, "where they go")->required();
-  app.add_option("--cell", arguments.cell_file,
+  app.add_option("--config,--cell", arguments.cell_file,
                  "cell file: scenario, where its [robot] stands, the joints of its [mapping]")
       ->required();
   app.add_option("--urdf", arguments.robot.urdf, "the robot's description")->required();
@@ -101,7 +101,7 @@ int main(int argc, char** argv) {
   app.add_option("--first", arguments.first, "the first one's frame in the scenario");
   app.add_option("--every", arguments.every, "frames from one to the next")
       ->check(CLI::PositiveNumber);
-  app.footer("Example: glint_board_pictures pictures --cell cell.toml --urdf arm.urdf");
+  app.footer("Example: glint_board_pictures pictures --config cell.toml --urdf arm.urdf");
   return glint::exit_code_of(app, "glint_board_pictures", [&] {
     app.parse(argc, argv);
     return glint::make(arguments);

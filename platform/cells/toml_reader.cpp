@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "platform/input_error.hpp"
+#include "platform/nearest_name.hpp"
 #include "platform/printable.hpp"
 
 namespace glint {
@@ -227,6 +228,7 @@ void TomlReader::done() const {
     std::string list;
     for (const std::string& known : known_) list += (list.empty() ? "" : ", ") + known;
     throw InputError(place(file_, node.source()) + ": unknown key " + section_ + name +
+                     nearest_name_text(name, {known_.begin(), known_.end()}) +
                      "; expected one of " + list);
   }
 }

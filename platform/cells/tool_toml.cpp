@@ -1,12 +1,14 @@
 #include <algorithm>
-#include <array>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "platform/cells/depth_bias_table.hpp"
 #include "platform/cells/toml_reader.hpp"
 #include "platform/cells/tool_file.hpp"
 #include "platform/cells/tool_formats.hpp"
 #include "platform/input_error.hpp"
+#include "platform/nearest_name.hpp"
 
 namespace glint {
 namespace {
@@ -65,11 +67,12 @@ std::string text_at(const toml::node& node, const char* key, const std::string& 
 }
 
 void refuse_unknown_keys(const toml::table& table, const std::string& path) {
-  constexpr std::array known = {"name", "markers_mm", "radius_mm", "tip_mm", "shape", "depth_bias"};
+  const std::vector<std::string> known = {"name",   "markers_mm", "radius_mm",
+                                          "tip_mm", "shape",      "depth_bias"};
   for (const auto& [key, node] : table) {
     if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
     throw InputError(path + ":" + std::to_string(key.source().begin.line) + ": unknown key " +
-                     std::string(key.str()) +
+                     std::string(key.str()) + nearest_name_text(key.str(), known) +
                      "; expected name, markers_mm, radius_mm, tip_mm, shape or depth_bias");
   }
 }

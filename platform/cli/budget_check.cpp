@@ -1,4 +1,5 @@
 // glint budget check: what a plan is worth on a board, before it runs.
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,8 @@
 #include "platform/budget/expected_board.hpp"
 #include "platform/budget/task_model_of.hpp"
 #include "platform/cli/budget_commands.hpp"
+#include "platform/cli/cell_option.hpp"
+#include "platform/cli/measure_request.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
@@ -35,7 +38,7 @@ void add_scale(const std::string& text, CheckOptions& options) {
 }
 
 int run_check(const CheckArguments& arguments) {
-  const Cell cell = arguments.cell.empty() ? default_cell() : load_cell(arguments.cell);
+  const Cell cell = cell_or_default(arguments.cell);
   const Board board = load_board(arguments.board, expected_board(), BoardUse::analyse);
   CheckOptions options = arguments.options;
   for (const std::string& scale : arguments.scale) add_scale(scale, options);
@@ -49,6 +52,12 @@ int run_check(const CheckArguments& arguments) {
 
   const CheckResult result = check(input, options);
   std::fputs(printable_lines(check_table(input, result)).c_str(), stdout);
+  const auto observed = [](const std::string& fail) {
+    return fail.find(": observed ") != std::string::npos;
+  };
+  if (std::any_of(result.fails.begin(), result.fails.end(), observed)) {
+    std::fputs(advice_above_bound(board.counter, board.provenance.command).c_str(), stdout);
+  }
   nlohmann::ordered_json json = check_json(input, options, result);
   json["plan"] = arguments.plan;
   write_json(arguments.json, json);
@@ -62,7 +71,7 @@ void add_budget_check(CLI::App& budget, int& exit_code) {
   CheckOptions& options = arguments->options;
   CLI::App* command =
       budget.add_subcommand("check", "responses, chains, bus and slack of a plan on a board");
-  command->add_option("--cell", arguments->cell, "cell file; the built-in one where left out");
+  add_cell_option(*command, arguments->cell);
   command->add_option("--board", arguments->board, "board file, or a built-in board's name")
       ->required();
   command->add_option("--plan", arguments->plan, "plan file of `glint budget schedule`")

@@ -68,6 +68,9 @@ int draw_curve(const CurveCommand& command) {
                 row.holds() ? "" : "  ABOVE ITS BOUND");
     holds = holds && row.holds();
   }
+  if (!holds) {
+    std::fputs(advice_above_bound(board.counter, board.provenance.command).c_str(), stdout);
+  }
   write_json(command.json, as_json(rows, board, unit));
   if (!command.out.empty()) {
     write_text(command.out + "/cost_against_strays.svg", strays_plot(rows, unit));

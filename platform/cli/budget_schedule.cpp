@@ -10,6 +10,7 @@
 #include "platform/budget/task_model_of.hpp"
 #include "platform/budget/typical_load.hpp"
 #include "platform/cli/budget_commands.hpp"
+#include "platform/cli/cell_option.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
@@ -26,7 +27,7 @@ struct ScheduleArguments {
 };
 
 int schedule(const ScheduleArguments& arguments) {
-  const Cell cell = arguments.cell.empty() ? default_cell() : load_cell(arguments.cell);
+  const Cell cell = cell_or_default(arguments.cell);
   const Board board = load_board(arguments.board, expected_board(), BoardUse::analyse);
   const Limits limits = limits_of(cell);
   TaskModel model = task_model_of(cell, board.table(), board.system, limits);
@@ -86,7 +87,7 @@ void add_budget_schedule(CLI::App& budget, int& exit_code) {
   auto arguments = std::make_shared<ScheduleArguments>();
   CLI::App* command = budget.add_subcommand(
       "schedule", "which core runs which node, in which order and at which priority");
-  command->add_option("--cell", arguments->cell, "cell file; the built-in one where left out");
+  add_cell_option(*command, arguments->cell);
   command->add_option("--board", arguments->board, "board file, or a built-in board's name")
       ->required();
   command->add_option("--cores", arguments->cores, "1, 2 or 4")

@@ -5,6 +5,7 @@
 #include "platform/calibrate/depth.hpp"
 #include "platform/calibrate/say.hpp"
 #include "platform/cli/calibrate_commands.hpp"
+#include "platform/cli/cell_option.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {
@@ -93,7 +94,7 @@ void add_calibrate_depth(CLI::App& calibrate, int& exit_code) {
   command->add_option("--blobs", arguments->samples, "blobs instead (CSV)");
   command->add_option("--tool", arguments->tool,
                       "the tool (.toml, .rom, .ini, or a recorded tool's name), or pen (built in)");
-  command->add_option("--config", arguments->config, "cell file of the camera that saw the blobs");
+  add_cell_option(*command, arguments->config, "cell file of the camera that saw the blobs");
   command->add_flag("--no-brightness", arguments->no_brightness,
                     "leave dim_mm at 0: the bias by range alone");
   add_output_options(*command, arguments->output);

@@ -10,6 +10,7 @@
 #include "nodes/tracker.hpp"
 #include "platform/cells/cell.hpp"
 #include "platform/cells/tool_file.hpp"
+#include "platform/cli/cell_option.hpp"
 #include "platform/cli/commands.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/input_error.hpp"
@@ -90,7 +91,7 @@ nlohmann::ordered_json tool_json(const Tool& tool, const Track& track) {
 int inspect_frame(const InspectArguments& arguments) {
   const FrameFileLayout layout = frame_file_layout_of(arguments.layout);
   const FrameBuffer pixels = load_frame(arguments.frame, layout);
-  Cell cell = arguments.config.empty() ? default_cell() : load_cell(arguments.config);
+  Cell cell = cell_or_default(arguments.config);
   if (arguments.config.empty()) set_camera(cell, camera_for(layout, pixels));
   if (arguments.threshold > 0) {
     cell.camera.threshold = static_cast<std::uint16_t>(arguments.threshold);
@@ -163,7 +164,7 @@ void add_inspect(CLI::App& app, int& exit_code) {
                       "adi: depth u16, confidence u8, brightness u16 planes; ahat: depth and "
                       "brightness u16 planes; pgm: NAME.pgm beside NAME_ab.pgm");
   command->add_option("--tool", arguments->tools, "tool files, or pen (built in)");
-  command->add_option("--config", arguments->config, "a cell file, for its camera and tools");
+  add_cell_option(*command, arguments->config, "cell file with camera and tools");
   command->add_option("--threshold", arguments->threshold, "reflectivity of a marker, raw counts")
       ->check(CLI::Range(1, 65534));
   command->add_option("--out", arguments->out, "folder of the picture")->capture_default_str();

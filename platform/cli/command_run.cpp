@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "platform/cells/cell.hpp"
+#include "platform/cli/cell_option.hpp"
 #include "platform/cli/commands.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/planned_run.hpp"
@@ -47,7 +48,7 @@ struct RunArguments {
 };
 
 Cell cell_of(const RunArguments& arguments) {
-  Cell cell = arguments.config.empty() ? default_cell() : load_cell(arguments.config);
+  Cell cell = cell_or_default(arguments.config);
   if (!arguments.can.empty()) cell.can.sink = arguments.can;
   if (!arguments.level.empty()) cell.record.level = arguments.level;
   if (arguments.duration_s > 0) cell.simulator.duration_s = arguments.duration_s;
@@ -144,7 +145,7 @@ void add_run(CLI::App& app, int& exit_code) {
       "  glint run --keys && glint path out/run.mcap --csv path.csv\n"
       "Tools that this sensor cannot tell apart are refused; of those that it may confuse, and of\n"
       "a tool's markers that may pass for others of its own, the table warns: `this cell`.");
-  command->add_option("--config", arguments->config, "a cell file; without it the built-in one");
+  add_cell_option(*command, arguments->config);
   command->add_option("--out", arguments->out, "folder of all files written")
       ->capture_default_str();
   command->add_option("--json", arguments->json, "write the table's figures here");

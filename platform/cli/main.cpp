@@ -1,10 +1,13 @@
 // glint COMMAND: frames in, poses out, and what they are worth.
+#include "platform/cli/cell_option.hpp"
 #include "platform/cli/commands.hpp"
+#include "platform/cli/version.hpp"
 #include "platform/exit_code.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app{"Glint: the pose of a pen with reflective markers, from a headset's camera"};
   app.require_subcommand(1);
+  app.set_version_flag("--version", glint::version_text(), "version and commit");
   app.footer("Example: glint run --out out --json out/summary.json");
   int exit_code = 0;
   glint::add_run(app, exit_code);
@@ -17,6 +20,7 @@ int main(int argc, char** argv) {
   glint::add_path(app, exit_code);
   glint::add_inspect(app, exit_code);
   glint::add_budget(app, exit_code);
+  glint::add_cell_check(app);
   return glint::exit_code_of(app, "glint", [&] {
     app.parse(argc, argv);
     return exit_code;

@@ -8,6 +8,12 @@
 
 namespace glint {
 
+std::string advice_above_bound(CostCounter counter, const std::string& made_by) {
+  if (counter != CostCounter::time || made_by.find("--cache cold") != std::string::npos) return "";
+  return "next     costs of warm caches bound no call that finds them cold; a board that bounds "
+         "both:\n         glint budget measure --count time --cache cold --write BOARD.toml\n";
+}
+
 MeasureRequest measure_request(const MeasureTarget& target) {
   MeasureRequest request;
   const bool own = target.arch == k_own_arch;

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "platform/budget/board_file.hpp"
 #include "platform/budget/measure/observations.hpp"
 
 namespace glint {
@@ -20,6 +21,10 @@ struct MeasureTarget {
   std::string arch = k_own_arch;
   int jobs = 0;  // counted at a time; 0: one a core
 };
+
+// The next step for times above a board's bounds; "" for instructions, and if `made_by`, the
+// command that measured the costs, evicted the caches already.
+[[nodiscard]] std::string advice_above_bound(CostCounter counter, const std::string& made_by);
 
 // Throws InputError where an emulator would have to tell the time.
 [[nodiscard]] MeasureRequest measure_request(const MeasureTarget& target);

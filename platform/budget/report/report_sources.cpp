@@ -28,10 +28,12 @@ void expect_key(const JsonView& view, const char* key, const char* command) {
 
 }  // namespace
 
+bool ReportSources::run_was_live() const {
+  return summary && summary->text_or("frame_to_can_kind", "observed") == "observed";
+}
+
 double ReportSources::observed_frame_to_can_us() const {
-  if (!summary || !summary->has("frame_to_can_us")) return -1;
-  // A run that keeps no real time computes its latencies; no clock saw them.
-  if (summary->text_or("frame_to_can_kind", "observed") != "observed") return -1;
+  if (!run_was_live() || !summary->has("frame_to_can_us")) return -1;
   return summary->at("frame_to_can_us").number("max");
 }
 

@@ -30,6 +30,8 @@ struct ReportSources {
   std::string run_folder;
   std::vector<ReportInput> inputs;
 
+  // A summary of a run that kept real time: a clock measured its latencies.
+  [[nodiscard]] bool run_was_live() const;
   // The largest frame to CAN that the run's summary saw, in microseconds; negative: none.
   [[nodiscard]] double observed_frame_to_can_us() const;
   // What it is held against: the run's own bound, else the checked chain of that name; negative:

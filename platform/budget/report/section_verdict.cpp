@@ -57,6 +57,9 @@ Headline bound_headline(const ReportSources& sources) {
 Headline observed_headline(const ReportSources& sources) {
   Headline headline{NumberKind::observed, "not given", "Frame to CAN, high-water mark", ""};
   const double most = sources.observed_frame_to_can_us();
+  if (sources.summary && !sources.run_was_live()) {
+    headline.provenance = "the run in " + sources.run_folder + " was not live";
+  }
   if (most < 0) return headline;
   headline.value = us_text(most) + " \u00b5s";
   const JsonView times = sources.summary->at("frame_to_can_us");
@@ -119,6 +122,13 @@ void judge(const ReportSources& sources, Document& document) {
          "which sees caches, interrupts and preemption as well",
          Tone::plain});
   }
+  const bool not_live = sources.summary && !sources.run_was_live();
+  if (not_live) {
+    reasons.push_back({"The run in " + sources.run_folder +
+                           " was not live: its latencies are nominal, no clock measured them; "
+                           "expected a run in real time (realtime = true, no --fast)",
+                       Tone::bad});
+  }
   const std::vector<std::string> best_effort = sources.best_effort();
   if (!best_effort.empty()) {
     reasons.push_back(
@@ -148,7 +158,9 @@ void judge(const ReportSources& sources, Document& document) {
     document.verdict_text =
         "Every chain's bound meets its deadline with the margin asked for (" +
         percent_text(sources.check->number_or("margin_percent", 0)) + ")" +
-        (observed > 0 ? ", and nothing observed lies above its bound." : ". No run was given.");
+        (observed > 0 ? ", and nothing observed lies above its bound."
+         : not_live   ? ". The run that was given was not live, so nothing was observed."
+                      : ". No run was given.");
   }
 }
 

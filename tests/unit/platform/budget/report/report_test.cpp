@@ -77,7 +77,12 @@ TEST_F(BudgetReport, CallsNoLatencyObservedThatNoClockSaw) {
   const Document document = report({.real_time = false});
   EXPECT_EQ(document.headlines.back().kind, NumberKind::observed);
   EXPECT_EQ(document.headlines.back().value, "not given");
-  EXPECT_NE(report({}).headlines.back().value, "not given");
+  EXPECT_EQ(document.headlines.back().provenance, "the run in " + path("run") + " was not live");
+  EXPECT_TRUE(some_reason_has(document, "was not live: its latencies are nominal"));
+  EXPECT_NE(document.verdict_text.find("was not live"), std::string::npos);
+  const Document live = report({});
+  EXPECT_NE(live.headlines.back().value, "not given");
+  EXPECT_FALSE(some_reason_has(live, "was not live"));
 }
 
 TEST_F(BudgetReport, FailsWhereTheCheckFailed) {
