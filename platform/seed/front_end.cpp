@@ -37,7 +37,10 @@ cv::Mat borrowed(const void* pixels, const cv::Size& size, int type) {
 }  // namespace
 
 SeedFrontEnd::SeedFrontEnd(const Camera& camera, const SeedSettings& settings)
-    : size_(camera.model.width, camera.model.height),
+    : model_(camera.model),
+      threshold_16_(camera.threshold),
+      size_(camera.model.width, camera.model.height),
+      undistorted_(size_, CV_8U),
       detector_(make_detector(settings.max_blob_area_px)) {
   if (camera.reflectivity_bits == 16) scale_to_8_bits_ = k_seed_threshold / camera.threshold;
   cv::Mat x(size_, CV_32F), y(size_, CV_32F);
@@ -54,17 +57,70 @@ SeedFrontEnd::SeedFrontEnd(const Camera& camera, const SeedSettings& settings)
   cv::convertMaps(x, y, map_, map_fraction_, CV_16SC2);
 }
 
+cv::Mat SeedFrontEnd::raw(const Frame& frame) const {
+  return frame.reflectivity_8.empty() ? borrowed(frame.reflectivity_16.pixels, size_, CV_16U)
+                                      : borrowed(frame.reflectivity_8.pixels, size_, CV_8U);
+}
+
 void SeedFrontEnd::undistort(const Frame& frame) {
-  cv::Mat source;
-  if (!frame.reflectivity_8.empty()) {
-    source = borrowed(frame.reflectivity_8.pixels, size_, CV_8U);
-  } else {
+  cv::Mat source = raw(frame);
+  if (source.depth() == CV_16U) {
     // Half the cost of a remap in 16 bits, and nothing is lost: what follows is binary.
-    borrowed(frame.reflectivity_16.pixels, size_, CV_16U)
-        .convertTo(eight_bits_, CV_8U, scale_to_8_bits_);
+    source.convertTo(eight_bits_, CV_8U, scale_to_8_bits_);
     source = eight_bits_;
   }
   cv::remap(source, undistorted_, map_, map_fraction_, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+}
+
+void SeedFrontEnd::undistort_roi(const Frame& frame, const cv::Rect& roi) {
+  const cv::Rect area = roi & whole();
+  if (area.empty()) return;
+  const cv::Mat source = raw(frame);
+  cv::Mat target = undistorted_(area);
+  if (source.depth() == CV_8U) {
+    cv::remap(source, target, map_(area), map_fraction_(area), cv::INTER_LINEAR,
+              cv::BORDER_CONSTANT);
+  } else {
+    cv::remap(source, part_, map_(area), map_fraction_(area), cv::INTER_LINEAR,
+              cv::BORDER_CONSTANT);
+    part_.convertTo(target, CV_8U, scale_to_8_bits_);
+  }
+}
+
+void SeedFrontEnd::threshold_raw(const Frame& frame, const cv::Rect& roi) {
+  // A lens is monotonous enough that the corners and the sides' middles enclose all between.
+  cv::Rect area = whole();
+  if (roi != whole()) {
+    double left = size_.width, top = size_.height, right = 0, bottom = 0;
+    for (const double x : {0.0, 0.5, 1.0}) {
+      for (const double y : {0.0, 0.5, 1.0}) {
+        const Vector2 at = raw_pixel({roi.x + x * roi.width, roi.y + y * roi.height});
+        left = std::min(left, at.x()), right = std::max(right, at.x());
+        top = std::min(top, at.y()), bottom = std::max(bottom, at.y());
+      }
+    }
+    const int x0 = static_cast<int>(left) & ~1, y0 = static_cast<int>(top) & ~1;
+    area &=
+        {x0, y0, (static_cast<int>(right) + 2 - x0) & ~1, (static_cast<int>(bottom) + 2 - y0) & ~1};
+  }
+  roi_ = area;
+  const cv::Mat source = raw(frame);
+  if (roi_.empty()) {
+    binary_.release();
+  } else if (source.depth() == CV_8U) {
+    cv::threshold(source(roi_), binary_, k_seed_threshold, 255, cv::THRESH_BINARY);
+  } else {
+    cv::compare(source(roi_), threshold_16_, binary_, cv::CMP_GT);
+  }
+}
+
+void SeedFrontEnd::undistort_blobs() {
+  for (SeedBlob& blob : blobs_) {
+    const Result<Vector3> ray = unproject(model_, blob.centre_px);
+    if (!ray || !(ray.value.z() > 0)) continue;
+    blob.centre_px = {model_.fx * ray.value.x() / ray.value.z() + model_.cx,
+                      model_.fy * ray.value.y() / ray.value.z() + model_.cy};
+  }
 }
 
 void SeedFrontEnd::threshold(const cv::Rect& roi) {

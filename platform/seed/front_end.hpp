@@ -32,16 +32,27 @@ class SeedFrontEnd {
   void halve();
   void detect();
 
+  // In place of the first: the ROI alone, which is all that may be searched then.
+  void undistort_roi(const Frame& frame, const cv::Rect& roi);
+  // In place of the first two: the raw frame, in the rectangle about the ROI's raw pixels.
+  void threshold_raw(const Frame& frame, const cv::Rect& roi);
+  // After a raw search: the blobs' centres, to undistorted pixels.
+  void undistort_blobs();
+
   [[nodiscard]] std::span<const SeedBlob> blobs() const { return blobs_; }
   [[nodiscard]] cv::Rect whole() const { return {0, 0, size_.width, size_.height}; }
   // Where an undistorted pixel was in the frame.
   [[nodiscard]] Vector2 raw_pixel(const Vector2& undistorted) const;
 
  private:
+  [[nodiscard]] cv::Mat raw(const Frame& frame) const;
+
+  CameraModel model_;
+  double threshold_16_ = 0;
   cv::Size size_;
   double scale_to_8_bits_ = 1;  // brings the 16-bit threshold to k_seed_threshold
   cv::Mat map_, map_fraction_;
-  cv::Mat eight_bits_, undistorted_, binary_, half_;
+  cv::Mat eight_bits_, part_, undistorted_, binary_, half_;
   cv::Rect roi_;
   cv::Ptr<cv::SimpleBlobDetector> detector_;
   std::vector<cv::KeyPoint> key_points_;

@@ -7,7 +7,15 @@
 
 namespace glint {
 
+// Where a frame is undistorted. The last two are ours: what OpenCV can do at best.
+enum class SeedUndistortion : std::uint8_t {
+  whole_frame,  // as published, ROI or not
+  roi,          // its pixels alone are remapped
+  points,       // the raw ROI is thresholded, the blobs' centres are undistorted: less work
+};
+
 struct SeedSettings {
+  SeedUndistortion undistortion = SeedUndistortion::whole_frame;
   // Two distances are equal if they differ by less. Twice the range noise of 1.5 mm a marker gives
   // a distance 2.1 mm (1 sigma); wider than 3 sigma of that, narrower than the 8 mm by which the
   // sides of a well-made tool differ.

@@ -24,17 +24,17 @@ SeedResult SeedTracker::process(const Frame& frame, const HeadPose& head) {
     result.reason = Reason::frame_late;
     return result;
   }
-  front_end_.undistort(frame);
+  if (settings_.undistortion == SeedUndistortion::whole_frame) front_end_.undistort(frame);
   const cv::Rect roi = predicted_roi(frame, head);
   result.from_roi = !roi.empty();
   SeedMatch found;
   if (result.from_roi) {
-    search(roi);
+    search(frame, roi);
     found = match(frame);
   }
   if (found.reason != Reason::none) {
     result.from_roi = false;
-    search(front_end_.whole());
+    search(frame, front_end_.whole());
     found = match(frame);
   }
   result.reason = found.reason;
@@ -62,14 +62,22 @@ Result<Pose> SeedTracker::pose_at(Time time) const {
 
 std::span<const SeedBlob> SeedTracker::front_end(const Frame& frame) {
   front_end_.undistort(frame);
-  search(front_end_.whole());
+  front_end_.threshold(front_end_.whole());
+  front_end_.halve();
+  front_end_.detect();
   return front_end_.blobs();
 }
 
-void SeedTracker::search(const cv::Rect& roi) {
-  front_end_.threshold(roi);
+void SeedTracker::search(const Frame& frame, const cv::Rect& roi) {
+  if (settings_.undistortion == SeedUndistortion::points) {
+    front_end_.threshold_raw(frame, roi);
+  } else {
+    if (settings_.undistortion == SeedUndistortion::roi) front_end_.undistort_roi(frame, roi);
+    front_end_.threshold(roi);
+  }
   front_end_.halve();
   front_end_.detect();
+  if (settings_.undistortion == SeedUndistortion::points) front_end_.undistort_blobs();
 }
 
 // m = (Z x / f, Z y / f, Z), then a sphere's centre a radius further along the ray.

@@ -44,7 +44,7 @@ class SeedTracker {
   std::span<const SeedBlob> front_end(const Frame& frame);
 
  private:
-  void search(const cv::Rect& roi);
+  void search(const Frame& frame, const cv::Rect& roi);
   SeedMatch match(const Frame& frame);
   [[nodiscard]] cv::Rect predicted_roi(const Frame& frame, const HeadPose& head) const;
   [[nodiscard]] double blob_depth(const Frame& frame, const SeedBlob& blob);

@@ -67,6 +67,26 @@ TEST_P(SeedOnBothCameras, LooksAroundThePredictionAndThenEverywhere) {
   EXPECT_FALSE(third.from_roi);
 }
 
+TEST_P(SeedOnBothCameras, GivesTheSamePoseWhereverItUndistorts) {
+  const Pose pose = turned(0.4, -0.3, 1.1, {-0.15, 0.12, 0.45});  // where the lens bends
+  const FrameBuffer buffer = painted_frame(camera, tool, pose);
+  for (const auto undistortion : {SeedUndistortion::roi, SeedUndistortion::points}) {
+    SeedSettings settings;
+    settings.undistortion = undistortion;
+    SeedTracker variant(camera, tool, settings);
+    for (int i = 1; i <= 2; ++i) {
+      const SeedResult result =
+          variant.process(buffer.view(Time{i * 20'000'000}, {}, 0), no_head());
+      ASSERT_EQ(result.reason, Reason::none);
+      EXPECT_EQ(result.marker_count, 5);
+      EXPECT_EQ(result.from_roi, i == 2);
+      EXPECT_LT((result.T_camera_tool.translation - pose.translation).norm(), 0.0015);
+      EXPECT_LT(result.T_camera_tool.rotation.angularDistance(pose.rotation),
+                1.0 * k_radians_per_degree);
+    }
+  }
+}
+
 TEST(Seed, PredictsAcrossTheHeadsOwnMotion) {
   const Camera camera = hololens1_short_throw();
   SeedTracker tracker(camera, small_tool());
