@@ -111,7 +111,8 @@ void add_replay(CLI::App& app, int& exit_code) {
       "markers.csv: time_s,x_m,y_m,z_m, one unlabelled marker a row.");
   command->add_option("recording", arguments->recording, "a recording of `glint run`");
   command->add_option("--points", arguments->points, "marker positions without images (CSV)");
-  command->add_option("--tool", arguments->tool, "the tool to find in them (.toml, .rom, .ini)");
+  command->add_option("--tool", arguments->tool,
+                      "the tool to find in them (.toml, .rom, .ini), or pen (built in)");
   command->add_option("--workers", arguments->workers, "threads: 1 or 2, the same bytes")
       ->check(CLI::Range(1, 2));
   command->add_flag("--allow-truncated", arguments->tolerance.truncated,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "platform/cells/cell.hpp"
+#include "platform/cli/cell_option.hpp"
 #include "platform/cli/commands.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/progress.hpp"
@@ -14,6 +15,7 @@
 #include "platform/printable.hpp"
 #include "platform/record/recording_writer.hpp"
 #include "platform/record/trajectory_files.hpp"
+#include "platform/sensors/frame_files.hpp"
 #include "platform/session/recorded_cell.hpp"
 #include "platform/session/scenario_of.hpp"
 #include "platform/sim/simulator.hpp"
@@ -25,6 +27,7 @@ struct SimulateArguments {
   std::string config, out = "out", json;
   double duration_s = 0;
   bool without_pixels = false;
+  int file_every = 0;  // frames; 0: no frame is a file
 };
 
 // One body's poses as TUM text.
@@ -50,7 +53,7 @@ class PoseFile {
 };
 
 int simulate(const SimulateArguments& arguments) {
-  Cell cell = arguments.config.empty() ? default_cell() : load_cell(arguments.config);
+  Cell cell = cell_or_default(arguments.config);
   if (arguments.duration_s > 0) cell.simulator.duration_s = arguments.duration_s;
   const sim::Simulator simulator(scenario_of(cell));
   make_folder(arguments.out);
@@ -71,6 +74,7 @@ int simulate(const SimulateArguments& arguments) {
   PoseFile pen_truth(in_folder("truth_tool.tum")), pen_reference(in_folder("reference_tool.tum"));
   sim::SimFrame frame;
   std::vector<std::uint8_t> pixels;
+  std::vector<std::string> files;
   for (int i = 0; i < simulator.frame_count(); ++i) {
     if (recording == nullptr) {
       simulator.describe(i, frame);
@@ -82,6 +86,12 @@ int simulate(const SimulateArguments& arguments) {
       recording->write_head_pose(frame.head);
       recording->write_frame({layout, pixels});
     }
+    if (arguments.file_every > 0 && i % arguments.file_every == 0) {
+      char name[32];
+      std::snprintf(name, sizeof name, "frame_%05d.bin", i);
+      write_text(in_folder(name), ahat_bytes(frame.view(), "--frame-files"));
+      files.push_back(in_folder(name));
+    }
     head_truth.add(frame.truth.mid_exposure, frame.truth.T_world_camera);
     if (frame.head.valid) head.add(frame.head.time, frame.head.T_world_camera);
     if (!frame.truth.T_world_tool.empty()) {
@@ -91,7 +101,6 @@ int simulate(const SimulateArguments& arguments) {
     progress.show(i, simulator.frame_count());
   }
   progress.clear();
-  std::vector<std::string> files;
   for (PoseFile* file : {&head_truth, &head, &pen_truth, &pen_reference}) {
     files.push_back(file->close());
   }
@@ -119,10 +128,14 @@ void add_simulate(CLI::App& app, int& exit_code) {
       "Example: glint simulate --duration 5 --out sim\n"
       "Writes frames.mcap and, as TUM text, the truth of head and first tool, the headset's own\n"
       "localisation, and the reference tracker's poses.");
-  command->add_option("--config", arguments->config, "a cell file; without it the built-in one");
+  add_cell_option(*command, arguments->config);
   command->add_option("--duration", arguments->duration_s, "seconds, instead of the cell's")
       ->check(CLI::Range(0.1, 3600.0));
   command->add_flag("--no-frames", arguments->without_pixels, "only the trajectories");
+  command
+      ->add_option("--frame-files", arguments->file_every,
+                   "each so-manieth frame is a file, too: glint inspect --layout ahat")
+      ->check(CLI::PositiveNumber);
   command->add_option("--out", arguments->out, "folder of all files written")
       ->capture_default_str();
   command->add_option("--json", arguments->json, "write the list of files here");

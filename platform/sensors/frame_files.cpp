@@ -97,6 +97,23 @@ FrameBuffer load_pgm_pair(const std::string& path) {
 
 }  // namespace
 
+std::string ahat_bytes(const Frame& frame, const std::string& what) {
+  if (frame.width() != k_side || frame.height() != k_side || frame.reflectivity_16.empty()) {
+    throw InputError(what + ": " + std::to_string(frame.width()) + " x " +
+                     std::to_string(frame.height()) +
+                     " pixels; expected 512 x 512 with 16 bits of brightness (hololens2_ahat)");
+  }
+  std::string bytes(4 * k_pixels, '\0');
+  for (std::size_t i = 0; i < k_pixels; ++i) {
+    const std::uint16_t values[] = {frame.depth.pixels[i], frame.reflectivity_16.pixels[i]};
+    for (std::size_t plane = 0; plane < 2; ++plane) {
+      bytes[2 * (plane * k_pixels + i)] = static_cast<char>(values[plane] & 0xFF);
+      bytes[2 * (plane * k_pixels + i) + 1] = static_cast<char>(values[plane] >> 8);
+    }
+  }
+  return bytes;
+}
+
 FrameFileLayout frame_file_layout_of(const std::string& name) {
   if (name == "adi") return FrameFileLayout::adi;
   if (name == "ahat") return FrameFileLayout::ahat;

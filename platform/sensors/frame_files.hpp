@@ -24,4 +24,8 @@ enum class FrameFileLayout { adi, ahat, pgm };
 // Throws InputError naming the file, the place, what was found and expected.
 [[nodiscard]] FrameBuffer load_frame(const std::string& path, FrameFileLayout layout);
 
+// The file's bytes in layout ahat. Throws InputError, beginning with `what`, for a camera of
+// another size.
+[[nodiscard]] std::string ahat_bytes(const Frame& frame, const std::string& what);
+
 }  // namespace glint

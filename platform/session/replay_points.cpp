@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "nodes/tracker.hpp"
 #include "platform/cells/tool_file.hpp"
@@ -19,7 +20,8 @@ PointsResult replay_points(const std::string& points_file, const std::string& to
   const std::vector<PointFrame> frames = load_points(points_file);
   ToolSet set;
   set.count = 1;
-  set.items[0] = as_points(load_tool(tool_file));
+  const std::optional<Tool> built_in = built_in_tool(tool_file);
+  set.items[0] = as_points(built_in ? *built_in : load_tool(tool_file));
 
   auto tracker = std::make_unique<MarkerTracker>();
   tracker->for_each<Correspond>([](Correspond& node) { node.settings = settings_for_points(); });
