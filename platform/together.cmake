@@ -1,5 +1,6 @@
-# Several files compiled as one read their headers once. CMAKE_UNITY_BUILD does it to every target,
-# GLINT_TOGETHER to tests and commands alone: what is measured keeps its machine code.
+# Several files compiled as one read their headers once. CMAKE_UNITY_BUILD does it to every target;
+# GLINT_TOGETHER to the platform and the tests: the core's files keep the machine code whose cost
+# was measured.
 set(GLINT_TOGETHER_OPTIONS "")
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # takes such a file for a header
   set(GLINT_TOGETHER_OPTIONS $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
@@ -8,9 +9,11 @@ if(CMAKE_UNITY_BUILD)
   add_compile_options(${GLINT_TOGETHER_OPTIONS})
 endif()
 
-function(glint_together target)
-  if(GLINT_TOGETHER)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
-    target_compile_options(${target} PRIVATE ${GLINT_TOGETHER_OPTIONS})
+# For the targets that follow in this folder and below.
+macro(glint_together)
+  if(GLINT_TOGETHER AND NOT CMAKE_UNITY_BUILD)
+    set(CMAKE_UNITY_BUILD ON)
+    set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
+    add_compile_options(${GLINT_TOGETHER_OPTIONS})
   endif()
-endfunction()
+endmacro()

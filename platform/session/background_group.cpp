@@ -8,6 +8,8 @@
 #include "platform/session/choices.hpp"
 
 namespace glint {
+
+template class GroupRunner<Background>;
 namespace {
 
 // How long the end of a session may go unseen.

@@ -27,6 +27,8 @@
 
 namespace glint {
 
+extern template class GroupRunner<Background>;  // in background_group.cpp, once
+
 struct BackgroundCounts {
   std::uint64_t slices = 0;
   std::uint64_t late = 0;            // of them: ended after the next one was due

@@ -7,6 +7,8 @@
 #include "platform/session/pipeline.hpp"
 
 namespace glint {
+
+template class GroupRunner<Tracker>;
 namespace {
 
 // The first node of a kind, by its number in the order of execution.

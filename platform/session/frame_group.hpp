@@ -17,6 +17,8 @@
 
 namespace glint {
 
+extern template class GroupRunner<Tracker>;  // in frame_group.cpp, once
+
 using Clock = std::function<Time()>;
 
 class FrameGroup {

@@ -11,6 +11,8 @@
 
 namespace glint {
 
+template class GroupRunner<Output>;
+
 TickGroup::TickGroup(const Cell& cell, graph::TripleBuffer<Estimates>& estimates,
                      graph::TripleBuffer<RobotFrame>& robot,
                      graph::TripleBuffer<PenButtons>& buttons, Clock now, TickSinks sinks,

@@ -21,6 +21,8 @@
 
 namespace glint {
 
+extern template class GroupRunner<Output>;  // in tick_group.cpp, once
+
 // Whoever listens; each may be null.
 struct TickSinks {
   CanSink* can = nullptr;
