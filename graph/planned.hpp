@@ -2,10 +2,10 @@
 //
 // A node begins when every node whose data it reads has ended, which each node says by storing the
 // activation's number. Nodes of one worker need no such look: the plan's order holds the data's.
-// The bytes are Serial's. Worst input: a part that comes late. Its reader goes on waiting, since
-// nobody else has the data, and counts one overrun beyond `spins_max` spins; worker 0 asks the
-// boundary meanwhile, so that a watched activation ends at its deadline and the output need not
-// wait. Whoever is still inside a node then is waited for by settle(), after the output has left.
+// The bytes are Serial's. Worst input: a part that comes late. Its reader goes on waiting
+// (rest.hpp), since nobody else has the data, and counts one overrun; worker 0 asks the boundary
+// meanwhile, so that a watched activation ends at its deadline and the output need not wait. A
+// worker that is still inside a node then is waited for by settle(), after the output has left.
 #pragma once
 
 #include <array>
@@ -15,20 +15,20 @@
 #include "graph/executor.hpp"
 #include "graph/plan_tables.hpp"
 #include "graph/port.hpp"
+#include "graph/rest.hpp"
 #include "graph/watch.hpp"
 
 namespace glint::graph {
 
-// Pause is called at each spin, from any worker.
-template <class G, class Pause>
+template <class G, Rest R>
 class Planned {
  public:
-  // The tables were checked: plan_fault() found none.
-  Planned(const PlanTables<G>& tables, std::uint32_t spins_max, Pause pause = {}) noexcept
-      : tables_(tables), spins_max_(spins_max), pause_(pause) {
+  // The tables were checked: plan_fault() found none. `rest` outlives this.
+  Planned(const PlanTables<G>& tables, R& rest) noexcept : tables_(tables), rest_(&rest) {
     for (int node = 0; node < G::node_count; ++node) {
       const auto i = static_cast<std::size_t>(node);
       foreign_[i] = needs<G>[i] & ~tables_.nodes_of(tables_.worker[i]);
+      awaited_ |= foreign_[i];
     }
   }
 
@@ -50,6 +50,7 @@ class Planned {
       run_node(graph, node, trace);
     }
     finished_[w].at.store(activation_, std::memory_order_release);
+    rest_->report_progress();
   }
 
   // Worker 0. Gives how far the graph's order has run without a gap: its last node where all have
@@ -71,7 +72,7 @@ class Planned {
     }
     for (int worker = 1; worker < tables_.workers; ++worker) {
       const Mark& mark = finished_[static_cast<std::size_t>(worker)];
-      if (!spin(0, goes_on, [&] { return is_now(mark); })) return abandon();
+      if (!wait(0, goes_on, [&] { return is_now(mark); })) return abandon();
     }
     return G::node_count - 1;
   }
@@ -82,12 +83,13 @@ class Planned {
   void settle(G& graph) noexcept {
     for (int worker = 1; worker < tables_.workers; ++worker) {
       const Mark& mark = finished_[static_cast<std::size_t>(worker)];
-      while (!is_now(mark)) pause_();
+      (void)wait(
+          0, [] { return true; }, [&] { return is_now(mark); });
     }
     if (is_now(abandoned_)) graph.abandon_activation();
   }
 
-  // Waits that took more than spins_max spins, of all workers since the start.
+  // Waits that were longer than rest.hpp allows, of all workers since the start.
   [[nodiscard]] std::uint64_t overruns() const noexcept {
     std::uint64_t sum = 0;
     for (const Mark& mark : overruns_) sum += mark.at.load(std::memory_order_relaxed);
@@ -116,6 +118,7 @@ class Planned {
   void run_node(G& graph, int node, T& trace) noexcept {
     graph.call_number(node, trace);
     done_[static_cast<std::size_t>(node)].at.store(activation_, std::memory_order_release);
+    if ((awaited_ >> node & 1u) != 0) rest_->report_progress();
   }
 
   // False: the activation was abandoned while this worker waited, or before.
@@ -125,48 +128,34 @@ class Planned {
     const NodeSet foreign = foreign_[static_cast<std::size_t>(node)];
     for (int other = 0; other < G::node_count; ++other) {
       if ((foreign >> other & 1u) == 0) continue;
-      if (!spin(worker, goes_on, [&] { return has_run(other); })) return false;
+      if (!wait(worker, goes_on, [&] { return has_run(other); })) return false;
     }
     return true;
   }
   template <class GoesOn, class There>
-  [[nodiscard]] bool spin(int worker, const GoesOn& goes_on, const There& there) noexcept {
-    std::uint32_t spins = 0;
-    std::uint32_t since_look = 0;
-    while (!there()) {
-      if (worker != 0 && is_now(abandoned_)) return false;
-      if (spins < spins_max_ && ++spins == spins_max_) {
-        overruns_[static_cast<std::size_t>(worker)].at.fetch_add(1, std::memory_order_relaxed);
-      }
-      pause_();
-      if (++since_look == k_spins_a_look) {
-        since_look = 0;
-        if (!goes_on()) return false;
-      }
-    }
-    return true;
+  [[nodiscard]] bool wait(int worker, const GoesOn& goes_on, const There& there) noexcept {
+    return wait_for(*rest_, overruns_[static_cast<std::size_t>(worker)].at, there,
+                    [&] { return !(worker != 0 && is_now(abandoned_)) && goes_on(); });
   }
 
   // What the others may have done by now does not count as all: the feedback will be undone.
   int abandon() noexcept {
     abandoned_.at.store(activation_, std::memory_order_release);
+    rest_->report_progress();
     int last = 0;
     while (last + 2 < G::node_count && has_run(last + 1)) ++last;
     return last;
   }
 
-  // A look at the clock costs some 20 ns; a spin between 1 and 40.
-  static constexpr std::uint32_t k_spins_a_look = 16;
-
   PlanTables<G> tables_;
   std::array<NodeSet, static_cast<std::size_t>(G::node_count)> foreign_{};
+  NodeSet awaited_ = 0;           // nodes that another worker waits for
   std::uint64_t activation_ = 0;  // counts from 1; written by worker 0 before it releases others
   std::array<Mark, static_cast<std::size_t>(G::node_count)> done_{};
   std::array<Mark, k_plan_workers_max> finished_{};
   std::array<Mark, k_plan_workers_max> overruns_{};
   Mark abandoned_;
-  std::uint32_t spins_max_;
-  [[no_unique_address]] Pause pause_;
+  R* rest_;
 };
 
 }  // namespace glint::graph

@@ -1,10 +1,10 @@
 // The parallel executor: W workers run one graph together and give the same bytes as Serial.
 //
 // Copy i of a split runs on worker i % W, every other node on worker 0: a rule, not a guess, so
-// that a plan can be made of it. Workers meet at a spin barrier before and after each level that
-// has a split. Threads, their release and how a spin rests are the host's business. Worst input: a
-// part that comes late. Its reader goes on waiting, since nobody else has the data, and counts one
-// overrun when `spins_max` spins were not enough.
+// that a plan can be made of it. Workers meet at a barrier before and after each level that has a
+// split. The host provides the threads, releases them and provides their rest (rest.hpp). Worst
+// input: a part that comes late. Its reader goes on waiting, since nobody else has the data, and
+// counts one overrun.
 #pragma once
 
 #include <array>
@@ -13,6 +13,7 @@
 
 #include "graph/executor.hpp"
 #include "graph/port.hpp"
+#include "graph/rest.hpp"
 #include "graph/type_list.hpp"
 
 namespace glint::graph {
@@ -30,17 +31,16 @@ inline constexpr bool wide = [] {
 
 }  // namespace detail
 
-// Pause is called at each spin, from any worker: a CPU's pause instruction, or a yield where there
-// are no real-time rights. Trace sees the nodes of all workers, each node from one of them.
-template <int W, class Pause, Trace T = NoTrace>
+// Trace sees the nodes of all workers, each node from one of them.
+template <int W, Rest R, Trace T = NoTrace>
 class Workers {
   static_assert(W >= 1, "someone has to do the work");
 
  public:
   static constexpr int count = W;
 
-  explicit Workers(std::uint32_t spins_max, Pause pause = {}, T trace = {}) noexcept
-      : spins_max_(spins_max), pause_(pause), trace_(trace) {}
+  // `rest` outlives this.
+  explicit Workers(R& rest, T trace = {}) noexcept : rest_(&rest), trace_(trace) {}
 
   // Worker 0, before it releases the others for an activation.
   template <class G>
@@ -62,7 +62,7 @@ class Workers {
     if constexpr (detail::wide<G, G::level_count - 1>) meet(worker);
   }
 
-  // Waits that took more than spins_max spins, of all workers since the start.
+  // Waits that were longer than rest.hpp allows, of all workers since the start.
   [[nodiscard]] std::uint64_t overruns() const noexcept {
     std::uint64_t sum = 0;
     for (const Own& own : own_) sum += own.overruns.load(std::memory_order_relaxed);
@@ -81,16 +81,14 @@ class Workers {
   // so no worker can mistake one meeting for the next.
   void meet(int worker) noexcept {
     Own& own = own_[static_cast<std::size_t>(worker)];
-    ++own.meetings;
-    arrived_.fetch_add(1, std::memory_order_acq_rel);
-    std::uint32_t spins = 0;
-    while (arrived_.load(std::memory_order_acquire) < own.meetings * W) {
-      if (spins < spins_max_) {
-        ++spins;
-        if (spins == spins_max_) own.overruns.fetch_add(1, std::memory_order_relaxed);
-      }
-      pause_();
+    const std::uint64_t all = ++own.meetings * W;
+    if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == all) {
+      rest_->report_progress();
+      return;
     }
+    (void)wait_for(
+        *rest_, own.overruns, [&] { return arrived_.load(std::memory_order_acquire) >= all; },
+        [] { return true; });
   }
 
   struct alignas(k_cache_line) Own {
@@ -99,8 +97,7 @@ class Workers {
   };
   alignas(k_cache_line) std::atomic<std::uint64_t> arrived_{0};
   std::array<Own, W> own_{};
-  std::uint32_t spins_max_;
-  [[no_unique_address]] Pause pause_;
+  R* rest_;
   [[no_unique_address]] T trace_;
 };
 

@@ -89,12 +89,12 @@ bool written(const std::function<void()>& write, SessionResult& result) {
 int report(const Cell& cell, const SessionOptions& options, const std::string& json_file,
            SessionResult& result) {
   const auto write_summary = [&] { write_json(json_file, summary_of(cell, options.plan, result)); };
-  const bool saved = written(write_summary, result);
+  (void)written(write_summary, result);
   print_table(summary_of(cell, options.plan, result), result);
   const std::size_t printed = result.files.size();
   const bool plotted = written([&] { draw_plots(options.out, result); }, result);
   print_files(result, printed);
-  if (saved && !plotted) (void)written(write_summary, result);
+  if (!plotted) (void)written(write_summary, result);
   const std::vector<std::string> failures = failures_of(result);
   std::fflush(stdout);
   for (const std::string& line : failures) std::fprintf(stderr, "glint: %s\n", line.c_str());

@@ -3,11 +3,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "platform/input_error.hpp"
 
@@ -27,17 +25,12 @@ void make_folder_of(const std::string& path) {
 void write_text(const std::string& path, const std::string& text) {
   make_folder_of(path);
   const std::string partial = path + ".part";
-  std::string why;
   {
     std::ofstream out(partial, std::ios::binary);
     out << text;
-    if (!out.flush()) why = std::generic_category().message(errno);
+    if (!out.flush()) throw InputError(partial + ": cannot be written; expected a file there");
   }
   std::error_code error;
-  if (!why.empty()) {
-    std::filesystem::remove(partial, error);
-    throw InputError(path + ": cannot be written: " + why + "; expected a file there");
-  }
   std::filesystem::rename(partial, path, error);
   if (error) throw InputError(path + ": " + error.message() + "; expected a place for a file");
 }

@@ -7,16 +7,21 @@
 
 #include "graph/planned.hpp"
 #include "platform/rt/worker_pool.hpp"
+#include "platform/rt/worker_rest.hpp"
 
 namespace glint {
 
 template <class G>
 class PlannedExecutor {
  public:
-  // `others` has one entry for each worker of the plan beyond the first.
+  // `others` has one entry for each worker of the plan beyond the first. A worker with a core and
+  // real-time rights spins `spins_max` times before it sleeps.
   PlannedExecutor(const graph::PlanTables<G>& plan, const std::vector<ThreadSettings>& others,
                   std::uint32_t spins_max)
-      : pool_(checked(plan, others)), planned_(plan, spins_max, Pause::granted(pool_.reports())) {}
+      : pool_(checked(plan, others)), rest_(pool_.reports(), spins_max), planned_(plan, rest_) {}
+  ~PlannedExecutor() { pool_.stop(); }  // a worker may still report its last progress
+  PlannedExecutor(const PlannedExecutor&) = delete;
+  PlannedExecutor& operator=(const PlannedExecutor&) = delete;
 
   // One trace a worker. Gives the last node that ran; settle() has to follow.
   template <graph::Trace T, graph::Boundary B>
@@ -53,7 +58,8 @@ class PlannedExecutor {
   G* graph_ = nullptr;
   void* traces_ = nullptr;
   WorkerPool pool_;
-  graph::Planned<G, Pause> planned_;
+  WorkerRest rest_;
+  graph::Planned<G, WorkerRest> planned_;
 };
 
 }  // namespace glint

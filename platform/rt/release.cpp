@@ -1,34 +1,12 @@
-// A semaphore on the futex itself: POSIX's timed wait follows the settable clock, and the one of
-// the C++ library does not promise which system calls it makes.
 #include "platform/rt/release.hpp"
 
-#include <linux/futex.h>
-#include <sys/syscall.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <ctime>
+#include "platform/rt/futex.hpp"
 
 namespace glint {
-namespace {
-
-static_assert(sizeof(std::atomic<std::uint32_t>) == sizeof(std::uint32_t),
-              "the kernel looks at the counter's bits");
-
-// False only when the deadline has passed.
-bool sleep_while_zero(std::atomic<std::uint32_t>& count, const timespec* deadline) noexcept {
-  const long result =
-      syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&count),
-              FUTEX_WAIT_BITSET | FUTEX_PRIVATE_FLAG, 0, deadline, nullptr, FUTEX_BITSET_MATCH_ANY);
-  return !(result == -1 && errno == ETIMEDOUT);
-}
-
-}  // namespace
 
 void Release::post() noexcept {
   count_.fetch_add(1, std::memory_order_release);
-  syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&count_), FUTEX_WAKE | FUTEX_PRIVATE_FLAG, 1,
-          nullptr, nullptr, 0);
+  futex_wake(count_, 1);
 }
 
 bool Release::take() noexcept {
@@ -43,13 +21,8 @@ bool Release::take() noexcept {
 }
 
 bool Release::wait_for(const Time* deadline) noexcept {
-  timespec until{};
-  if (deadline != nullptr) {
-    until.tv_sec = static_cast<time_t>(deadline->nanoseconds / 1'000'000'000);
-    until.tv_nsec = static_cast<long>(deadline->nanoseconds % 1'000'000'000);
-  }
   while (!take()) {
-    if (!sleep_while_zero(count_, deadline != nullptr ? &until : nullptr)) return false;
+    if (!futex_sleep(count_, 0, deadline)) return false;
   }
   return true;
 }

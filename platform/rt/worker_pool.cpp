@@ -14,7 +14,7 @@ WorkerPool::WorkerPool(const std::vector<ThreadSettings>& settings) {
   }
 }
 
-WorkerPool::~WorkerPool() {
+void WorkerPool::stop() noexcept {
   stop_.store(true);
   for (auto& release : releases_) release->post();
   for (auto& thread : threads_) thread->join();

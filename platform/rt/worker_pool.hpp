@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "graph/workers.hpp"
-#include "platform/rt/pause.hpp"
 #include "platform/rt/real_time_thread.hpp"
 #include "platform/rt/release.hpp"
+#include "platform/rt/worker_rest.hpp"
 
 namespace glint {
 
@@ -22,13 +22,16 @@ class WorkerPool {
 
   // One thread for each entry; they are workers 1, 2, ...
   explicit WorkerPool(const std::vector<ThreadSettings>& settings);
-  ~WorkerPool();
+  ~WorkerPool() { stop(); }
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
   // Lets every thread call job(context, worker) once. Before the next release the caller makes sure
   // that all of them have begun, for instance by meeting them in the job.
   void release(Job job, void* context) noexcept;
+
+  // Returns when no thread runs any more; nothing may be released after it.
+  void stop() noexcept;
 
   [[nodiscard]] std::vector<ThreadReport> reports() const;
 
@@ -46,9 +49,13 @@ class WorkerPool {
 template <int W>
 class ParallelExecutor {
  public:
-  // `others` has W - 1 entries; a wait of more than `spins_max` spins counts as an overrun.
+  // `others` has W - 1 entries. A worker with a core and real-time rights spins `spins_max` times
+  // before it sleeps.
   ParallelExecutor(const std::vector<ThreadSettings>& others, std::uint32_t spins_max)
-      : pool_(checked(others)), workers_(spins_max, Pause::granted(pool_.reports())) {}
+      : pool_(checked(others)), rest_(pool_.reports(), spins_max), workers_(rest_) {}
+  ~ParallelExecutor() { pool_.stop(); }  // a worker may still report its last progress
+  ParallelExecutor(const ParallelExecutor&) = delete;
+  ParallelExecutor& operator=(const ParallelExecutor&) = delete;
 
   template <class G>
   void execute(G& graph) noexcept {
@@ -77,7 +84,8 @@ class ParallelExecutor {
 
   void* graph_ = nullptr;
   WorkerPool pool_;
-  graph::Workers<W, Pause> workers_;
+  WorkerRest rest_;
+  graph::Workers<W, WorkerRest> workers_;
 };
 
 }  // namespace glint

@@ -44,7 +44,7 @@ struct SessionResult : SinkOutcome {
   double duration_s = 0;  // of the session's clock, to the last tick
   std::uint64_t heap_allocations_after_start = 0;
   bool heap_counted = false;
-  std::uint64_t worker_overruns = 0;  // waits for another worker beyond their declared spins
+  std::uint64_t worker_overruns = 0;  // waits for another worker beyond some milliseconds
   OverrunCounts frame_overruns, tick_overruns;
   std::optional<BackgroundCounts> background;  // where the cell has one
   std::uint64_t page_faults_after_start = 0;   // of the frame and tick threads

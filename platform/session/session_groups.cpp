@@ -24,7 +24,10 @@ RunnerSettings<G> runner_settings(const GroupPlan<G>& plan, std::uint8_t group, 
   settings.bounds_ns = plan.bounds_ns;
   settings.trace = trace;
   for (std::size_t w = 1; w < plan.cores.size(); ++w) {
-    settings.others.push_back({"glint-worker", plan.cores[w], plan.priority});
+    // Without real time worker 0 is a normal thread on any core: so are the others.
+    settings.others.push_back(cell.realtime
+                                  ? ThreadSettings{"glint-worker", plan.cores[w], plan.priority}
+                                  : ThreadSettings{"glint-worker"});
   }
   const bool is_tick = group == k_tick_group;
   for (const Injection& injection : options.injections) {

@@ -17,7 +17,6 @@
 #include "platform/budget/task_model_of.hpp"
 #include "platform/report/statistics.hpp"
 #include "platform/rt/cycle_clock.hpp"
-#include "platform/rt/pause.hpp"
 #include "platform/rt/planned_executor.hpp"
 #include "platform/session/run_plan.hpp"
 #include "rounds.hpp"
@@ -123,8 +122,8 @@ class Awake {
       : thread_({"awake", core, 0}, [this] {
           const sched_param least{};
           (void)sched_setscheduler(0, SCHED_IDLE, &least);
-          const Pause pause(false);
-          while (!stop_.load(std::memory_order_relaxed)) pause();
+          const WorkerRest rest({}, 0);
+          while (!stop_.load(std::memory_order_relaxed)) rest.spin();
         }) {}
   ~Awake() { stop_.store(true, std::memory_order_relaxed); }
   Awake(const Awake&) = delete;

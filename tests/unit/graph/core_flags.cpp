@@ -1,16 +1,14 @@
 // Compiled without exceptions and type information: every template that a board instantiates.
 #include "small_graph.hpp"
+#include "yielding_rest.hpp"
 
 namespace glint::test {
-
-struct NoPause {
-  void operator()() const noexcept {}
-};
 
 int total_with_core_flags() {
   static SmallGraph graph;
   static RateGroup<SmallGraph> group(graph, 1);
-  static Workers<1, NoPause> workers(1);
+  static YieldingRest rest;
+  static Workers<1, YieldingRest> workers(rest);
   static Ring<Total, 4> ring;
   graph.latest<Scale>().set({2}, 1, 0);
   graph.input<Row>().numbers = {1, 2, 3, 4, 5, 6, 7, 8};

@@ -2,19 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <memory>
 #include <random>
 #include <thread>
 #include <vector>
 
 #include "wide_graph.hpp"
+#include "yielding_rest.hpp"
 
 namespace glint::test {
 namespace {
-
-struct Yield {
-  void operator()() const noexcept { std::this_thread::yield(); }
-};
 
 using Tables = PlanTables<WideGraph>;
 
@@ -37,7 +35,7 @@ Tables random_plan(int workers, std::mt19937& random) {
 }
 
 template <class B>
-int run_once(WideGraph& graph, Planned<WideGraph, Yield>& planned, B& boundary) {
+int run_once(WideGraph& graph, Planned<WideGraph, YieldingRest>& planned, B& boundary) {
   NoTrace trace;
   planned.begin(graph);
   std::vector<std::thread> others;
@@ -69,7 +67,8 @@ TEST(Planned, GivesTheSameBytesAsTheSerialExecutorByAnyValidPlan) {
       const Tables tables = random_plan(workers, random);
       ASSERT_FALSE(plan_fault(tables).found());
       auto graph = std::make_unique<WideGraph>();
-      Planned<WideGraph, Yield> planned(tables, 1'000'000);
+      YieldingRest rest;
+      Planned<WideGraph, YieldingRest> planned(tables, rest);
       NoBoundary always;
       for (const double sum : sums) {
         EXPECT_EQ(run_once(*graph, planned, always), WideGraph::node_count - 1);
@@ -122,7 +121,8 @@ TEST(Planned, LeavesNoTraceOfAnAbandonedActivationInWhatIsFedBack) {
   for (const int workers : {1, 2, 4}) {
     auto expected = std::make_unique<WideGraph>();
     auto graph = std::make_unique<WideGraph>();
-    Planned<WideGraph, Yield> planned(plan_by_rule<WideGraph>(workers), 1'000'000);
+    YieldingRest rest;
+    Planned<WideGraph, YieldingRest> planned(plan_by_rule<WideGraph>(workers), rest);
     NoTrace trace;
     for (int i = 0; i < 12; ++i) {
       NoBoundary always;
@@ -141,7 +141,8 @@ TEST(Planned, LeavesNoTraceOfAnAbandonedActivationInWhatIsFedBack) {
 
 TEST(Planned, KeepsTheFeedbackOfAnActivationThatWasLateOnlyAfterItsLastNode) {
   auto graph = std::make_unique<WideGraph>();
-  Planned<WideGraph, Yield> planned(plan_by_rule<WideGraph>(1), 1'000);
+  YieldingRest rest;
+  Planned<WideGraph, YieldingRest> planned(plan_by_rule<WideGraph>(1), rest);
   for (const double sum : serial_sums(4)) {
     StopAfter stop{WideGraph::node_count - 1};
     EXPECT_EQ(run_once(*graph, planned, stop), WideGraph::node_count - 1);
@@ -151,15 +152,16 @@ TEST(Planned, KeepsTheFeedbackOfAnActivationThatWasLateOnlyAfterItsLastNode) {
 
 // Goes on for a number of looks and then never again: a deadline that passes while worker 0 waits.
 struct Patience {
-  int looks;
-  bool go_on(int) noexcept { return looks-- > 0; }
+  std::uint64_t looks;
+  bool go_on(int) noexcept { return looks > 0 && looks-- > 0; }
 };
 
 TEST(Planned, EndsAtItsDeadlineWhileAnotherWorkerIsLateAndWaitsForItOnlyAfterwards) {
   auto graph = std::make_unique<WideGraph>();
-  Planned<WideGraph, Yield> planned(plan_by_rule<WideGraph>(2), 10);
+  YieldingRest rest{10};
+  Planned<WideGraph, YieldingRest> planned(plan_by_rule<WideGraph>(2), rest);
   NoTrace trace;
-  Patience patience{20};
+  Patience patience{k_sleeps_max + 10};
   planned.begin(*graph);
   const int last = planned.lead(*graph, trace, patience);  // worker 1 was never released
   EXPECT_EQ(last, 1) << "Make and the first Spread ran, the second is worker 1's";

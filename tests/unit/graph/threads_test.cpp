@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "small_graph.hpp"
+#include "yielding_rest.hpp"
 
 namespace glint::test {
 namespace {
@@ -73,17 +74,14 @@ TEST(Threads, PassEveryItemThroughTheRingOrCountIt) {
   EXPECT_EQ(received + ring->dropped(), k_items);
 }
 
-struct Yield {
-  void operator()() const noexcept { std::this_thread::yield(); }
-};
-
 // Two workers over many activations, released by a counter as a pool would do it.
 TEST(Threads, ShareAGraphActivationAfterActivation) {
   constexpr int k_activations = 500;
   static SmallGraph graph;
   graph.latest<Scale>().set({1}, 1, 0);
   graph.input<Row>().numbers = {1, 2, 3, 4, 5, 6, 7, 8};
-  Workers<2, Yield> workers(1000);
+  YieldingRest rest;
+  Workers<2, YieldingRest> workers(rest);
   std::atomic<int> released{0};
   std::jthread other([&] {
     for (int activation = 1; activation <= k_activations; ++activation) {

@@ -1,22 +1,25 @@
+#include "graph/workers.hpp"
+
 #include <gtest/gtest.h>
 
+#include <array>
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <thread>
 #include <vector>
 
 #include "wide_graph.hpp"
+#include "yielding_rest.hpp"
 
 namespace glint::test {
 namespace {
 
-struct Yield {
-  void operator()() const noexcept { std::this_thread::yield(); }
-};
-
 // Hosts the workers in threads that live for one activation: slow, but nothing to go wrong.
 template <int W>
 struct Threads {
-  Workers<W, Yield> workers{1'000'000};
+  YieldingRest rest;
+  Workers<W, YieldingRest> workers{rest};
   template <class G>
   void execute(G& graph) noexcept {
     workers.begin(graph);
@@ -66,7 +69,8 @@ TEST(Workers, TakeTheCopiesOfTheirNumberAndLeaveTheRestToTheFirst) {
   static_assert(WideGraph::node_count == 10);
   std::array<std::thread::id, 10> threads{};
   auto graph = std::make_unique<WideGraph>();
-  Workers<2, Yield, Whereabouts> workers(1'000'000, {}, Whereabouts{&threads});
+  YieldingRest rest;
+  Workers<2, YieldingRest, Whereabouts> workers(rest, Whereabouts{&threads});
   workers.begin(*graph);
   std::thread other([&] { workers.run(*graph, 1); });
   const std::thread::id second = other.get_id();
@@ -78,38 +82,45 @@ TEST(Workers, TakeTheCopiesOfTheirNumberAndLeaveTheRestToTheFirst) {
   EXPECT_EQ(threads, expected);  // Make, Spread x5, SumUp x3, Merge
 }
 
-TEST(Workers, CountOneOverrunForAWaitBeyondItsSpins) {
-  struct Pause {
-    std::atomic<bool>* late;
-    void operator()() const noexcept {
-      late->store(true);
-      std::this_thread::yield();
-    }
-  };
-  std::atomic<bool> late{false};
+// Counts what the waiting workers do.
+struct CountingRest : YieldingRest {
+  std::atomic<std::uint32_t> spun{0}, slept{0}, reported{0};
+  void spin() noexcept { ++spun; }
+  [[nodiscard]] bool sleep(std::uint32_t /*seen*/) noexcept {
+    ++slept;
+    std::this_thread::yield();
+    return false;
+  }
+  void report_progress() noexcept { ++reported; }
+};
+
+// Worker 1 starts only when worker 0 has slept as often as a wait may last.
+TEST(Workers, SleepAfterTheirSpinsAndCountOneOverrunAWait) {
+  CountingRest rest;
+  rest.spins = 3;
   auto graph = std::make_unique<WideGraph>();
-  Workers<2, Pause> workers(1, Pause{&late});
+  Workers<2, CountingRest> workers(rest);
   workers.begin(*graph);
-  // Worker 1 sets out only when worker 0 has already spun once.
   std::thread other([&] {
-    while (!late.load()) std::this_thread::yield();
+    while (rest.slept.load() < k_sleeps_max) std::this_thread::yield();
     workers.run(*graph, 1);
   });
   workers.run(*graph, 0);
   other.join();
+  EXPECT_LE(rest.spun.load(), 9u) << "three waits of three spins";
+  EXPECT_EQ(rest.reported.load(), 3u) << "whoever arrives last wakes the other";
   EXPECT_GE(workers.overruns(), 1u);
-  EXPECT_LE(workers.overruns(), 6u) << "two workers meet three times: at most one each";
+  EXPECT_LE(workers.overruns(), 3u) << "two workers meet three times, and one of them waits";
 }
 
 TEST(Workers, NeverWaitAlone) {
-  struct Fail {
-    void operator()() const noexcept { ADD_FAILURE() << "a single worker has nobody to wait for"; }
-  };
+  CountingRest rest;
   auto graph = std::make_unique<WideGraph>();
-  Workers<1, Fail> workers(1);
+  Workers<1, CountingRest> workers(rest);
   workers.begin(*graph);
   workers.run(*graph, 0);
   EXPECT_EQ(workers.overruns(), 0u);
+  EXPECT_EQ(rest.spun.load() + rest.slept.load(), 0u);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <fstream>
 #include <string>
+#include <thread>
 
 #include "platform/input_error.hpp"
 #include "platform/record/growing_file.hpp"
@@ -38,8 +39,9 @@ void record_past_the_end(const std::string& path) {
       recorder.frame_lane().offer_choice(sample_choice(i));
       EXPECT_TRUE(recorder.frame_lane().offer_frame(buffer.view({1}, {2}, 3), {}));
     }
-    outcome = recorder.close();
+    while (recorder.lost() == 0) std::this_thread::yield();
     lost_while_recording = recorder.lost();
+    outcome = recorder.close();
   }
   EXPECT_TRUE(outcome.ended_early);
   EXPECT_FALSE(outcome.complete());

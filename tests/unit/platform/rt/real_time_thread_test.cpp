@@ -7,7 +7,7 @@
 #include <array>
 
 #include "platform/rt/memory_lock.hpp"
-#include "platform/rt/pause.hpp"
+#include "platform/rt/worker_rest.hpp"
 
 namespace glint {
 namespace {
@@ -63,14 +63,14 @@ TEST(RealTimeThread, GoesOnWithoutACoreThatIsNotThere) {
   EXPECT_EQ(thread.report().refused.substr(0, 12), "core 100000:");
 }
 
-TEST(Pause, YieldsUnlessEveryThreadGotWhatItAskedFor) {
+TEST(WorkerRest, SpinsLongOnlyWhereEveryThreadGotACoreAndRealTimeRights) {
   ThreadReport granted;
   granted.pinned = granted.real_time = true;
   ThreadReport refused = granted;
   refused.real_time = false;
-  EXPECT_FALSE(Pause::granted({granted}).yields());
-  EXPECT_TRUE(Pause::granted({granted, refused}).yields());
-  Pause::granted({granted})();
+  EXPECT_EQ(WorkerRest({granted}, 100'000).spins_max(), 100'000u);
+  EXPECT_EQ(WorkerRest({granted, refused}, 100'000).spins_max(),
+            WorkerRest::k_shared_core_spins_max);
 }
 
 TEST(MemoryLock, SaysWhyWhereItIsRefused) {

@@ -1,7 +1,18 @@
 #include "platform/rt/worker_pool.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/types.h>
+#include <unistd.h>
 
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "platform/rt/clock.hpp"
+#include "platform/rt/planned_executor.hpp"
 #include "tests/unit/graph/small_graph.hpp"
 
 namespace glint::test {
@@ -68,6 +79,53 @@ TEST(ParallelExecutor, LeavesItsThreadsAsleepForAGraphWithoutASplit) {
     graph.activate(two);
     EXPECT_EQ(graph.output<Doubled>().value, 2 * i);
   }
+}
+
+struct Caller {
+  pid_t thread = 0;
+};
+struct Slept {
+  bool value = false;
+};
+// Part 1 ends when the thread of part 0 sleeps, or after a time in which it should have.
+struct AwaitSleep {
+  void operator()(const Caller& caller, Slice slice, Slept& slept) const noexcept {
+    const std::string path = "/proc/self/task/" + std::to_string(caller.thread) + "/stat";
+    const Time limit = monotonic_now() + milliseconds(20'000);
+    while (slice.index == 1 && !slept.value && monotonic_now() < limit) {
+      std::ifstream stat(path);
+      const std::string text{std::istreambuf_iterator<char>(stat), {}};
+      slept.value = text.find(") S ") != std::string::npos;
+    }
+  }
+};
+struct Answer {
+  bool slept = false;
+};
+struct Collect {
+  void operator()(const Parts<Slept, 2>& parts, Answer& answer) const noexcept {
+    answer.slept = parts[1].value;
+  }
+};
+using AwaitGraph = graph::Graph<Inputs<Caller>, Outputs<Answer>, Split<AwaitSleep, 2>, Collect>;
+
+TEST(ParallelExecutor, SleepsWhileItWaitsForAnotherWorker) {
+  ParallelExecutor<2> two({{"worker"}}, 1000);
+  AwaitGraph graph;
+  graph.input<Caller>().thread = gettid();
+  graph.activate(two);
+  EXPECT_TRUE(graph.output<Answer>().slept) << "it kept its core for 20 s";
+}
+
+TEST(PlannedExecutor, SleepsWhileItWaitsForAnotherWorker) {
+  PlannedExecutor<AwaitGraph> two(plan_by_rule<AwaitGraph>(2), {{"worker"}}, 1000);
+  AwaitGraph graph;
+  graph.input<Caller>().thread = gettid();
+  std::array<NoTrace, k_plan_workers_max> none;
+  NoBoundary always;
+  (void)two.execute(graph, std::span<NoTrace>(none), always);
+  two.settle(graph);
+  EXPECT_TRUE(graph.output<Answer>().slept) << "it kept its core for 20 s";
 }
 
 }  // namespace

@@ -1,0 +1,42 @@
+// A thread sleeps until a counter changes: futex(2). POSIX's timed wait follows the settable clock,
+// and the one of the C++ library does not promise which system calls it makes.
+#pragma once
+
+#include <linux/futex.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdint>
+#include <ctime>
+
+#include "kernels/units.hpp"
+
+namespace glint {
+
+static_assert(sizeof(std::atomic<std::uint32_t>) == sizeof(std::uint32_t),
+              "the kernel reads the counter's bits");
+
+// Sleeps while `counter` is `value`; may also return early. False: the deadline (monotonic; null:
+// none) has passed.
+[[nodiscard]] inline bool futex_sleep(std::atomic<std::uint32_t>& counter, std::uint32_t value,
+                                      const Time* deadline) noexcept {
+  constexpr std::int64_t k_second = 1'000'000'000;
+  timespec until{};
+  if (deadline != nullptr) {
+    until.tv_sec = static_cast<time_t>(deadline->nanoseconds / k_second);
+    until.tv_nsec = static_cast<long>(deadline->nanoseconds % k_second);
+  }
+  const long result = syscall(
+      SYS_futex, reinterpret_cast<std::uint32_t*>(&counter), FUTEX_WAIT_BITSET | FUTEX_PRIVATE_FLAG,
+      value, deadline != nullptr ? &until : nullptr, nullptr, FUTEX_BITSET_MATCH_ANY);
+  return !(result == -1 && errno == ETIMEDOUT);
+}
+
+inline void futex_wake(std::atomic<std::uint32_t>& counter, int threads_max) noexcept {
+  syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&counter), FUTEX_WAKE | FUTEX_PRIVATE_FLAG,
+          threads_max, nullptr, nullptr, 0);
+}
+
+}  // namespace glint
