@@ -51,7 +51,7 @@ struct CheckFrame {
 
  private:
   Time newest_;  // of the frames accepted
-  std::uint32_t sequence_ = 0;
+  std::uint64_t sequence_ = 0;
   Time refused_newest_;  // of the frames refused in a row
   int refused_in_row_ = 0;
   FrameVerdict counts_;

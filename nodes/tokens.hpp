@@ -28,7 +28,7 @@ inline constexpr int k_tools_per_slice = (k_tools_max + k_tool_slices - 1) / k_t
 struct FrameStamp {
   Time mid_exposure;
   Time arrival;
-  std::uint32_t sequence = 0;
+  std::uint64_t sequence = 0;
   Reason reason = Reason::none;  // frame_invalid: wrong size, or a plane is missing
 };
 
@@ -37,8 +37,8 @@ struct FrameVerdict {
   FrameStamp stamp;
   Reason reason = Reason::none;  // frame_late, frame_doubled, frame_invalid
   bool resynchronised = false;   // the stamps restarted: older tracks mean nothing any more
-  std::uint32_t accepted = 0;    // counters since the start
-  std::uint32_t late = 0, doubled = 0, invalid = 0, resynchronisations = 0;
+  std::uint64_t accepted = 0;    // counters since the start
+  std::uint64_t late = 0, doubled = 0, invalid = 0, resynchronisations = 0;
   [[nodiscard]] bool usable() const { return reason == Reason::none; }
 };
 
@@ -153,7 +153,7 @@ struct Track {
   Reason reason = Reason::no_frame_yet;  // why this frame gave none
   ReferenceFrame base = ReferenceFrame::camera;
   std::uint8_t marker_mask = 0;
-  std::uint32_t frame_sequence = 0;
+  std::uint64_t frame_sequence = 0;
   std::uint32_t identity = 0;    // of the tool that it is of
   double rms_m = 0;              // of the newest that three markers or more gave
   StampedPose newest, previous;  // T_base_tool
@@ -179,7 +179,7 @@ struct Estimates {
 // The tick's nominal release: the only clock that the output ever sees.
 struct Now {
   Time tick;
-  std::uint32_t number = 0;
+  std::uint64_t number = 0;
   std::int64_t unix_offset_ns = 0;  // added to a Time it gives nanoseconds since 1970 (UTC)
 };
 
@@ -210,6 +210,8 @@ struct PenButtons {
 struct PoseSamples {
   std::array<PoseSample, k_tools_max> items;
   int count = 0;
+  bool any_frame = false;  // the frame group has published estimates
+  Time newest_frame;       // arrival of the frame that they rest on
 };
 
 }  // namespace glint

@@ -24,7 +24,7 @@ struct ImageView {
 struct Frame {
   Time mid_exposure;  // what every measurement's time means
   Time arrival;       // the last byte in memory; only for latency figures
-  std::uint32_t sequence = 0;
+  std::uint64_t sequence = 0;
   ImageView<std::uint8_t> reflectivity_8;
   ImageView<std::uint16_t> reflectivity_16;
   ImageView<std::uint16_t> depth;

@@ -35,6 +35,15 @@ constexpr void put_little_endian(std::span<std::uint8_t> bytes, std::uint64_t va
   return value;
 }
 
+// A message carries the low 32 bits of a count: the count with these bits that is nearest to
+// `near`, the newest one before it. No count is negative.
+[[nodiscard]] constexpr std::uint64_t extended_count(std::uint32_t low,
+                                                     std::uint64_t near) noexcept {
+  const auto step = static_cast<std::int32_t>(low - static_cast<std::uint32_t>(near));
+  const std::uint64_t count = near + static_cast<std::uint64_t>(std::int64_t{step});
+  return step < 0 && count > near ? low : count;
+}
+
 constexpr void put_big_endian(std::span<std::uint8_t> bytes, std::uint64_t value) noexcept {
   for (std::size_t i = bytes.size(); i-- > 0;) {
     bytes[i] = static_cast<std::uint8_t>(value & 0xFFU);

@@ -24,13 +24,15 @@ std::uint64_t marker_count(const PoseSample& sample) {
   return static_cast<std::uint64_t>(std::popcount(sample.marker_mask));
 }
 
-CanFrame classic(std::uint32_t identifier, std::uint64_t word, std::uint32_t tick_number) {
+CanFrame classic(std::uint32_t identifier, std::uint64_t word, std::uint64_t tick_number) {
   CanFrame frame;
   frame.identifier = identifier;
   frame.length = 8;
   const std::span<std::uint8_t> bytes(frame.data.data(), 8);
   put_little_endian(bytes, word);
-  protect_p01(bytes, static_cast<std::uint16_t>(identifier), P01Mode::both, tick_number);
+  // Of all 64 bits: their low half alone would repeat a counter when it starts again.
+  const auto counter = static_cast<unsigned>(tick_number % k_p01_counters);
+  protect_p01(bytes, static_cast<std::uint16_t>(identifier), P01Mode::both, counter);
   return frame;
 }
 
@@ -145,7 +147,8 @@ CanFrame fd(const PoseSample& s, std::uint32_t identifier, std::int64_t unix_off
   put(quantize_or(s.registration_rms_m, 1 / k_can_rms_step_m, k_can_fd_byte_over), 1);
   put(unix_time(s.measurement, unix_offset_ns), 8);
   put(s.frame_sequence, 4);
-  protect_p05(bytes, static_cast<std::uint16_t>(identifier), s.tick_number);
+  const auto counter = static_cast<unsigned>(s.tick_number % k_p05_counters);
+  protect_p05(bytes, static_cast<std::uint16_t>(identifier), counter);
   return frame;
 }
 

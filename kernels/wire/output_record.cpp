@@ -83,8 +83,8 @@ Result<PoseSample> decode(std::span<const std::uint8_t, k_output_record_bytes> r
   PoseSample s;
   s.tick.nanoseconds = static_cast<std::int64_t>(in.integer(8));
   s.measurement.nanoseconds = static_cast<std::int64_t>(in.integer(8));
-  s.tick_number = static_cast<std::uint32_t>(in.integer(4));
-  s.frame_sequence = static_cast<std::uint32_t>(in.integer(4));
+  s.tick_number = in.integer(4);
+  s.frame_sequence = in.integer(4);
   s.tool = in.choice(k_tools_max - 1);
   s.marker_mask = static_cast<std::uint8_t>(in.integer(1));
   s.buttons = static_cast<std::uint8_t>(in.integer(1));

@@ -4,8 +4,8 @@
 //   at  size  field                              at  size  field
 //    0   8    tick, ns                           32  3x8   translation x,y,z, m
 //    8   8    measurement, ns                    56  4x8   rotation x,y,z,w
-//   16   4    tick number                        88  3x8   velocity, m/s
-//   20   4    frame sequence                    112  3x8   angular velocity, rad/s
+//   16   4    tick number *                      88  3x8   velocity, m/s
+//   20   4    frame sequence *                  112  3x8   angular velocity, rad/s
 //   24   1    tool                              136 36x8   covariance, row after row
 //   25   1    marker mask                       424   8    sigma position, m
 //   26   1    buttons                           432   8    sigma orientation, rad
@@ -14,6 +14,7 @@
 //   29   1    reference frame
 //   30   1    reason
 //   31   1    layout, k_output_record_layout
+//   * The low 32 bits: a reader extends them (extended_count in bits.hpp).
 //   Doubles are IEEE 754 binary64; -0.0 is written as +0.0 and what is not finite as +0.0 (the core
 //   makes neither NaN nor infinity; a record could not be compared with one in it).
 //   CAN payloads are not inside, for they follow from a record and the cell file.

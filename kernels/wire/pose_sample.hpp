@@ -20,8 +20,8 @@ inline constexpr unsigned k_buttons_mask = 7;
 struct PoseSample {
   Time tick;         // nominal release of the tick
   Time measurement;  // mid-exposure of the frame the pose rests on
-  std::uint32_t tick_number = 0;
-  std::uint32_t frame_sequence = 0;
+  std::uint64_t tick_number = 0;
+  std::uint64_t frame_sequence = 0;
   std::uint8_t tool = 0;
   std::uint8_t marker_mask = 0;  // bit i: the tool's marker i was used
   std::uint8_t buttons = 0;      // held, see k_buttons_mask

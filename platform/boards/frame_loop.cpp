@@ -111,7 +111,7 @@ const LoopFrame& FrameLoop::entry(std::uint32_t place) const noexcept {
   return *reinterpret_cast<const LoopFrame*>(frame_bytes(place));
 }
 
-Frame FrameLoop::view(std::uint32_t place, Time arrival, std::uint32_t sequence) const noexcept {
+Frame FrameLoop::view(std::uint32_t place, Time arrival, std::uint64_t sequence) const noexcept {
   const int width = static_cast<int>(header_.width), height = static_cast<int>(header_.height);
   const std::byte* const reflectivity = frame_bytes(place) + padded(sizeof(LoopFrame));
   const std::byte* const depth = reflectivity + plane_bytes(header_, header_.reflectivity_bits);

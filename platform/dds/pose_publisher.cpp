@@ -87,8 +87,8 @@ bool PosePublisher::write(const PoseSample& sample) {
   if (sample.frame_sequence != 0 || sample.has_pose()) {
     message.measurement = stamp_message(unix_time(sample.measurement));
   }
-  message.tick_number = sample.tick_number;
-  message.frame_sequence = sample.frame_sequence;
+  message.tick_number = static_cast<std::uint32_t>(sample.tick_number);
+  message.frame_sequence = static_cast<std::uint32_t>(sample.frame_sequence);
   message.state = static_cast<std::uint8_t>(sample.state);
   message.reason = static_cast<std::uint8_t>(sample.reason);
   message.registration = static_cast<std::uint8_t>(sample.registration);
@@ -184,7 +184,7 @@ void PosePublisher::end_streams(Duration limit) {
     StatusMessage message{};
     message.header.frame_id = const_cast<char*>(frame_name(stream.sample.frame));
     message.ends_stream = true;
-    message.tick_number = stream.sample.tick_number + 1;
+    message.tick_number = static_cast<std::uint32_t>(stream.sample.tick_number + 1);
     write_status(stream, stream.newest + settings_.tick_period, message);
   }
   const dds_time_t deadline = dds_time() + limit.nanoseconds;

@@ -11,8 +11,8 @@ struct ReaderResult {
   std::uint64_t missed = 0;           // from gaps in the tick stamps
   std::uint64_t poses_received = 0;   // PoseStamped messages
   std::uint64_t poses_announced = 0;  // status messages that say there is a pose
-  std::uint32_t first_tick = 0;       // tick numbers of the first and last status message
-  std::uint32_t last_tick = 0;
+  std::uint64_t first_tick = 0;       // tick numbers of the first and last status message
+  std::uint64_t last_tick = 0;
   std::uint32_t streams = 0;        // tools asked for
   std::uint32_t streams_ended = 0;  // tools whose sink said that it ends
   // Unix time at which a status was taken, less its tick's: p50 and p99 to 10 us, up to 1 s.

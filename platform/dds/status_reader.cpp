@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "kernels/wire/bits.hpp"
 #include "platform/dds/topic_names.hpp"
 
 namespace glint {
@@ -79,9 +80,9 @@ void StatusReader::count(ToolReader& tool, const StatusMessage& status, Time tak
   tool.counter.add(mark);
   const auto state = static_cast<TrackState>(status.state);
   if (state == TrackState::measured || state == TrackState::predicted) ++result_.poses_announced;
-  if (!any_received_) result_.first_tick = status.tick_number;
+  if (!any_received_) result_.first_tick = result_.last_tick = status.tick_number;
   any_received_ = true;
-  result_.last_tick = status.tick_number;
+  result_.last_tick = extended_count(status.tick_number, result_.last_tick);
   latency_.add(taken - mark.stamp);
 }
 

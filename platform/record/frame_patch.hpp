@@ -17,7 +17,7 @@ inline constexpr int k_patch_rectangles_max = k_tools_max;
 struct FrameLayout {
   Time mid_exposure;
   Time arrival;
-  std::uint32_t sequence = 0;
+  std::uint64_t sequence = 0;
   std::uint16_t width = 0;
   std::uint16_t height = 0;
   std::uint8_t reflectivity_bits = 0;  // 8 or 16; 0: the frame came without that plane

@@ -8,7 +8,7 @@ template <class Stamped>
 void put_stamps(CdrWriter& to, const Stamped& frame) {
   to.put(frame.mid_exposure.nanoseconds);
   to.put(frame.arrival.nanoseconds);
-  to.put(frame.sequence);
+  to.put(static_cast<std::uint32_t>(frame.sequence));  // the low 32 bits: extended_count()
 }
 
 }  // namespace
@@ -139,8 +139,8 @@ void write_output_message(CdrWriter& to, const PoseSample& sample,
   put_header(to, sample.tick + unix_offset, frame_name(sample.frame));
   to.put(sample.tick.nanoseconds);
   to.put(sample.measurement.nanoseconds);
-  to.put(sample.tick_number);
-  to.put(sample.frame_sequence);
+  to.put(static_cast<std::uint32_t>(sample.tick_number));
+  to.put(static_cast<std::uint32_t>(sample.frame_sequence));
   to.put(sample.tool);
   to.put(static_cast<std::uint8_t>(sample.state));
   to.put(static_cast<std::uint8_t>(sample.reason));

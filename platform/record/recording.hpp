@@ -53,7 +53,7 @@ struct RecordingInfo {
 struct DroppedInput {
   Time mid_exposure;
   Time arrival;
-  std::uint32_t sequence = 0;
+  std::uint64_t sequence = 0;
   Reason reason = Reason::none;  // frame_late, frame_doubled, frame_invalid
 };
 
@@ -61,7 +61,7 @@ struct DroppedInput {
 struct MarkerFrame {
   Time mid_exposure;
   Time arrival;
-  std::uint32_t sequence = 0;
+  std::uint64_t sequence = 0;
   Reason reason = Reason::none;  // frame_invalid: its pixels were unusable
   Markers markers;
 };
@@ -70,7 +70,7 @@ struct MarkerFrame {
 struct FrameMessage {
   Time mid_exposure;
   Time arrival;
-  std::uint32_t sequence = 0;
+  std::uint64_t sequence = 0;
   FrameBuffer pixels;
   [[nodiscard]] Frame view() const { return pixels.view(mid_exposure, arrival, sequence); }
 };

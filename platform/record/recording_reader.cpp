@@ -1,7 +1,9 @@
 #include "platform/record/recording_reader.hpp"
 
 #include <charconv>
+#include <variant>
 
+#include "kernels/wire/bits.hpp"
 #include "platform/record/glint_messages.hpp"
 #include "platform/record/mcap_reader.hpp"
 #include "platform/record/recording_format.hpp"
@@ -47,6 +49,17 @@ struct RecordingReader::Body {
     return value;
   }
 
+  // A recording holds the low 32 bits of a frame's number.
+  void extend_sequence(RecordedMessage& message) {
+    const auto extend = [this](auto& item) {
+      if constexpr (requires { item.sequence; }) {
+        const auto low = static_cast<std::uint32_t>(item.sequence);
+        item.sequence = sequence = any_sequence ? extended_count(low, sequence) : low;
+        any_sequence = true;
+      }
+    };
+    std::visit(extend, message);
+  }
   // Nothing: not one of Glint's own messages.
   std::optional<RecordedMessage> decode(const McapMessage& message);
   std::optional<RecordedMessage> decode_frame(const McapMessage& message);
@@ -63,6 +76,8 @@ struct RecordingReader::Body {
   std::map<std::string, std::string> facts;
   RecordingLevel level{};
   Duration nominal_tick, unix_offset;
+  std::uint64_t sequence = 0;  // of the newest frame
+  bool any_sequence = false;
   ImageRows reflectivity, depth;  // the newest; a frame message may refer to them
   std::uint64_t gaps = 0;         // before those images
   std::int64_t frames_without_pixels = 0;
@@ -115,8 +130,12 @@ Duration RecordingReader::unix_offset() const { return body_->unix_offset; }
 const std::map<std::string, std::string>& RecordingReader::facts() const { return body_->facts; }
 
 std::optional<RecordedMessage> RecordingReader::next() {
-  while (const auto message = body_->mcap.next())
-    if (auto decoded = body_->decode(*message)) return decoded;
+  while (const auto message = body_->mcap.next()) {
+    auto decoded = body_->decode(*message);
+    if (!decoded) continue;
+    body_->extend_sequence(*decoded);
+    return decoded;
+  }
   return std::nullopt;
 }
 

@@ -45,7 +45,7 @@ class Row {
   explicit Row(std::string& line) : line_(line) {}
   Row& operator<<(Time time) { return put(next(), time), *this; }
   Row& operator<<(double number) { return put(next(), number), *this; }
-  Row& operator<<(std::uint32_t number) { return next() += std::to_string(number), *this; }
+  Row& operator<<(std::uint64_t number) { return next() += std::to_string(number), *this; }
   Row& operator<<(std::string_view text) { return next() += text, *this; }
 
  private:
@@ -122,10 +122,10 @@ void CsvFile::write(const PoseSample& sample) {
   std::string line;
   Row row(line);
   row << sample.tick << sample.measurement << sample.tick_number << sample.frame_sequence
-      << std::uint32_t{sample.tool} << name_in(k_state_names, sample.state)
+      << std::uint64_t{sample.tool} << name_in(k_state_names, sample.state)
       << name_of(sample.reason) << name_in(k_registration_names, sample.registration)
-      << name_in(k_frame_names, sample.frame) << std::uint32_t{sample.marker_mask}
-      << std::uint32_t{sample.buttons} << sample.registration_rms_m;
+      << name_in(k_frame_names, sample.frame) << std::uint64_t{sample.marker_mask}
+      << std::uint64_t{sample.buttons} << sample.registration_rms_m;
   if (sample.has_pose())
     put_pose_fields(row, sample);
   else

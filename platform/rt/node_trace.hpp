@@ -27,10 +27,10 @@ class NodeTrace {
   }
 
   // `now_ns` by the session's clock, read when the CPU counted `cycles`.
-  void begin_activation(std::uint64_t activation, std::uint32_t frame_sequence, std::int64_t now_ns,
+  void begin_activation(std::uint64_t activation, std::uint64_t frame_sequence, std::int64_t now_ns,
                         std::uint64_t cycles) noexcept {
     span_.activation = activation;
-    span_.frame_sequence = frame_sequence;
+    span_.frame_sequence = static_cast<std::uint32_t>(frame_sequence);
     anchor_ns_ = now_ns;
     anchor_cycles_ = cycles;
   }

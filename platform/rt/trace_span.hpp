@@ -20,9 +20,9 @@ struct TraceSpan {
   std::uint64_t activation = 0;  // counts from 1
   std::int64_t begin_ns = 0;     // monotonic since the session's epoch
   std::int64_t end_ns = 0;
-  std::uint32_t frame_sequence = 0;
-  std::uint8_t group = 0;  // 0 frame, 1 tick, 2 background
-  std::uint8_t node = 0;   // in the graph's order of execution, each copy by itself
+  std::uint32_t frame_sequence = 0;  // the low 32 bits
+  std::uint8_t group = 0;            // 0 frame, 1 tick, 2 background
+  std::uint8_t node = 0;             // in the graph's order of execution, each copy by itself
   std::uint8_t worker = 0;
   std::uint8_t flags = 0;     // TraceFlag
   std::int64_t bound_ns = 0;  // of this node on the board in use; 0: no board

@@ -15,7 +15,7 @@ struct FrameBuffer {
   std::vector<std::uint16_t> reflectivity_16;
   std::vector<std::uint16_t> depth;  // may be empty
 
-  [[nodiscard]] Frame view(Time mid_exposure, Time arrival, std::uint32_t sequence) const {
+  [[nodiscard]] Frame view(Time mid_exposure, Time arrival, std::uint64_t sequence) const {
     Frame frame;
     frame.mid_exposure = mid_exposure;
     frame.arrival = arrival;

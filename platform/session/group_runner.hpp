@@ -37,9 +37,9 @@ struct RunnerSettings {
 // When an activation began.
 struct ActivationStart {
   std::uint64_t activation = 0;
-  std::uint32_t at = 0;  // the frame's sequence number, or the tick's
+  std::uint64_t at = 0;  // the frame's sequence number, or the tick's
   Time nominal, now;     // of the session's clock: the release as planned, and as it came
-  std::uint32_t frame_sequence = 0;
+  std::uint64_t frame_sequence = 0;
 };
 
 struct OverrunCounts {
@@ -51,7 +51,7 @@ struct OverrunCounts {
 template <class G>
 class GroupRunner {
  public:
-  // A wait for another worker beyond this many spins counts: some milliseconds.
+  // Of a worker with a core and real-time rights, before it sleeps: some milliseconds.
   static constexpr std::uint32_t k_spins_max = 100'000;
 
   explicit GroupRunner(RunnerSettings<G> settings = {})

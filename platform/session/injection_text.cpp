@@ -1,6 +1,7 @@
 #include "platform/session/injection_text.hpp"
 
 #include <cstdlib>
+#include <limits>
 #include <map>
 #include <sstream>
 
@@ -13,7 +14,7 @@ namespace glint {
 namespace {
 
 constexpr std::int64_t k_delay_max_us = 10'000'000;
-constexpr std::int64_t k_at_max = 0xFFFFFFFF;
+constexpr std::int64_t k_at_max = std::numeric_limits<std::int64_t>::max();
 
 template <class G>
 int number_of(const std::string& name) {
@@ -79,7 +80,7 @@ Injection injection_of(const std::string& text) {
                      " group; expected one of " +
                      (injection.in_tick ? names<Output>() : names<Tracker>()));
   }
-  injection.at = static_cast<std::uint32_t>(whole_number(text, at_key, values[at_key], k_at_max));
+  injection.at = static_cast<std::uint64_t>(whole_number(text, at_key, values[at_key], k_at_max));
   injection.delay =
       microseconds(whole_number(text, "delay_us", values["delay_us"], k_delay_max_us));
   return injection;

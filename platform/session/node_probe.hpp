@@ -51,7 +51,7 @@ struct Injection {
   std::string node;      // as given: "FindBlobs" or "RoiThreshold#1"
   int number = 0;        // in the graph's order of execution
   bool in_tick = false;  // of the tick group, else of the frame group
-  std::uint32_t at = 0;  // the frame's sequence number, or the tick's
+  std::uint64_t at = 0;  // the frame's sequence number, or the tick's
   Duration delay;
   bool done = false;
 };
@@ -62,7 +62,7 @@ class NodeProbe {
   NodeProbe(ElapsedClock& clock, std::span<Injection> injections, NodeTrace* trace) noexcept
       : clock_(&clock), injections_(injections), trace_(trace) {}
 
-  void begin(std::uint32_t at) noexcept { at_ = at; }
+  void begin(std::uint64_t at) noexcept { at_ = at; }
   void on_node_begin(int node) noexcept {
     if (trace_ != nullptr) trace_->on_node_begin(node);
   }
@@ -83,7 +83,7 @@ class NodeProbe {
   ElapsedClock* clock_;
   std::span<Injection> injections_;
   NodeTrace* trace_;
-  std::uint32_t at_ = 0;
+  std::uint64_t at_ = 0;
 };
 
 }  // namespace glint

@@ -220,7 +220,7 @@ class Replayer {
     }
     // Ticks that were skipped have numbers, too.
     const auto number =
-        static_cast<std::uint32_t>(choice.nominal.nanoseconds / tick_period_.nanoseconds);
+        static_cast<std::uint64_t>(choice.nominal.nanoseconds / tick_period_.nanoseconds);
     output_->input<Now>() = {choice.nominal, number, choice.unix_offset_ns};
     ++result_.ticks;
     const PoseSamples& samples = run_tick(choice);

@@ -31,8 +31,7 @@ PointsResult replay_points(const std::string& points_file, const std::string& to
   Time stamp;
   for (const PointFrame& frame : frames) {
     stamp = stamp + k_apart;
-    tracker->input<FrameStamp>() = {
-        stamp, stamp, static_cast<std::uint32_t>(result.frames.size() + 1), Reason::none};
+    tracker->input<FrameStamp>() = {stamp, stamp, result.frames.size() + 1, Reason::none};
     tracker->input<Markers>() = markers_from_points(frame.points_m);
     tracker->activate();
     const Track& track = tracker->output<Estimates>().tracks[0];

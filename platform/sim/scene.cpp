@@ -18,7 +18,7 @@ double presence(const Interval& during, Time time) {
 }
 
 // Moves the image by the blob's pixel error at unchanged range, and sets its range error.
-void disturb(const Scenario& scenario, std::uint32_t sequence, Reflector& reflector) {
+void disturb(const Scenario& scenario, std::uint64_t sequence, Reflector& reflector) {
   const NoiseSettings& noise = scenario.noise;
   const RandomKey key{
       scenario.seed, Stream::blob,
@@ -38,7 +38,7 @@ struct Moments {
   Pose before, middle, after;  // begin, middle and end of the exposure
 };
 
-void add_tool(const Scenario& scenario, int index, std::uint32_t sequence, const Moments& seen,
+void add_tool(const Scenario& scenario, int index, std::uint64_t sequence, const Moments& seen,
               Scene& out) {
   const ToolBody& body = scenario.tools[static_cast<std::size_t>(index)];
   for (int i = 0; i < body.tool.marker_count; ++i) {
@@ -104,7 +104,7 @@ Vector3 middle_of(const Tool& tool) {
   return tool.marker_count > 0 ? Vector3(sum / tool.marker_count) : sum;
 }
 
-void build_scene(const Scenario& scenario, Time mid_exposure, std::uint32_t sequence, Scene& out) {
+void build_scene(const Scenario& scenario, Time mid_exposure, std::uint64_t sequence, Scene& out) {
   const Duration half{scenario.camera.exposure.nanoseconds / 2};
   const Time times[3] = {mid_exposure - half, mid_exposure, mid_exposure + half};
   out.T_world_camera = scenario.head->pose(mid_exposure);

@@ -38,6 +38,6 @@ struct Scene {
 [[nodiscard]] Vector3 middle_of(const Tool& tool);
 
 // sequence: chooses the blobs' own errors.
-void build_scene(const Scenario& scenario, Time mid_exposure, std::uint32_t sequence, Scene& out);
+void build_scene(const Scenario& scenario, Time mid_exposure, std::uint64_t sequence, Scene& out);
 
 }  // namespace glint::sim

@@ -68,7 +68,7 @@ Sensor::Sensor(const Camera& camera, const NoiseSettings& noise, std::uint64_t s
       seed_(seed),
       table_(gaussian_table({seed, Stream::noise_table}, k_table_starts + k_width_max)) {}
 
-void Sensor::expose(const Planes& planes, const LensRays& rays, std::uint32_t sequence,
+void Sensor::expose(const Planes& planes, const LensRays& rays, std::uint64_t sequence,
                     FrameBuffer& out) const {
   static const std::vector<float> ones(k_width_max, 1.0f);
   const int width = planes.width, height = planes.height;

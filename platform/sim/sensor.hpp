@@ -21,7 +21,7 @@ namespace glint::sim {
 class Sensor {
  public:
   Sensor(const Camera& camera, const NoiseSettings& noise, std::uint64_t seed);
-  void expose(const Planes& planes, const LensRays& rays, std::uint32_t sequence,
+  void expose(const Planes& planes, const LensRays& rays, std::uint64_t sequence,
               FrameBuffer& out) const;
 
  private:

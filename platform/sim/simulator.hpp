@@ -28,7 +28,7 @@ struct SimTruth {
 struct SimFrame {
   FrameBuffer pixels;
   Time mid_exposure, arrival;  // as stamped
-  std::uint32_t sequence = 0;
+  std::uint64_t sequence = 0;
   HeadPose head;  // by the drifting localisation, at the stamp
   SimTruth truth;
   std::vector<Pose> reference;  // T_reference_tool, each tool

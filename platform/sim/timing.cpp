@@ -22,7 +22,7 @@ std::vector<FrameTiming> frame_timings(const Camera& camera, const TimingSetting
   std::vector<FrameTiming> deliveries;
   std::vector<bool> happened(settings.faults.size(), false);
   Time exposed;
-  for (std::uint32_t sequence = 0; exposed < Time{duration.nanoseconds}; ++sequence) {
+  for (std::uint64_t sequence = 0; exposed < Time{duration.nanoseconds}; ++sequence) {
     FrameTiming timing;
     timing.exposed = timing.mid_exposure = exposed;
     const double share = uniform(key, sequence);

@@ -41,7 +41,7 @@ struct FrameTiming {
   Time exposed;                // true mid-exposure
   Time mid_exposure;           // as stamped: differs under Fault::backward_stamp only
   Time arrival;                // last byte in memory
-  std::uint32_t sequence = 0;  // counts exposures; a doubled frame keeps it
+  std::uint64_t sequence = 0;  // counts exposures; a doubled frame keeps it
 };
 
 // The camera's clock starts at 0 with its first mid-exposure; the last one is before `duration`.

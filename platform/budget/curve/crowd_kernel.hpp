@@ -51,7 +51,7 @@ class CrowdKernel final : public MeasuredKernel {
   std::array<std::unique_ptr<sim::SimFrame>, k_frames> frames_;
   const sim::SimFrame* shown_ = nullptr;
   Duration period_;
-  std::uint32_t sequence_ = 0;
+  std::uint64_t sequence_ = 0;
 };
 
 }  // namespace glint

@@ -91,7 +91,7 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
   }
   // One tool in `missed` is not found, none for 0.
   void see(Numbers& numbers, const Vector3& velocity, int missed) {
-    verdict_ = admitted(static_cast<std::uint32_t>(++frame_));
+    verdict_ = admitted(static_cast<std::uint64_t>(++frame_));
     anchor_.now.head.time = verdict_.stamp.mid_exposure;
     for (int t = 0; t < set_.count; t += k_tool_slices) {
       FittedTool& tool = fitted_[0].tools[t];
@@ -157,7 +157,7 @@ class AnchorKernel final : public NodeKernel<AnchorHead> {
     const Pose T_camera_body = any_view(numbers);
     const int before = k_anchor_frames + numbers.below(20);
     for (int frame = 0; frame <= before; ++frame) {
-      verdict_ = admitted(static_cast<std::uint32_t>(frame));
+      verdict_ = admitted(static_cast<std::uint64_t>(frame));
       const bool last = frame == before;
       head_.valid = all || !last || !numbers.one_in(4);
       head_.time = verdict_.stamp.mid_exposure;

@@ -19,7 +19,7 @@ class PredictToolsKernel final : public NodeKernel<PredictTools> {
     Numbers numbers(kind, number);
     const bool all = at_its_worst(kind);
     node_.limits = limits;
-    now_ = {Time{} + milliseconds(1000), static_cast<std::uint32_t>(number),
+    now_ = {Time{} + milliseconds(1000), static_cast<std::uint64_t>(number),
             1'700'000'000'000'000'000};
     known_.tool_count = all ? limits.tools : 1 + numbers.below(limits.tools);
     for (int t = 0; t < known_.tool_count; ++t) {

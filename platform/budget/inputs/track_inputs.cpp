@@ -21,7 +21,7 @@ class StampKernel final : public NodeKernel<StampFrame> {
     start_.height = limits.height;
     start_.reflectivity_bits = 16;
     frame_ = {};
-    frame_.sequence = static_cast<std::uint32_t>(number);
+    frame_.sequence = static_cast<std::uint64_t>(number);
     frame_.mid_exposure = Time{static_cast<std::int64_t>(number) * 22'222'222};
     frame_.arrival = frame_.mid_exposure + milliseconds(9);
     const int width = numbers.one_in(9) ? 8 : limits.width;
@@ -61,7 +61,7 @@ class CheckKernel final : public NodeKernel<CheckFrame> {
     FrameStamp stamp;
     stamp.mid_exposure = Time{} + milliseconds(22) * (frame + 1);
     stamp.arrival = stamp.mid_exposure + milliseconds(9);
-    stamp.sequence = static_cast<std::uint32_t>(sequence);
+    stamp.sequence = static_cast<std::uint64_t>(sequence);
     return stamp;
   }
   FrameStamp stamp_;

@@ -49,7 +49,7 @@ Pose moved(const Pose& from, Numbers& numbers) {
           from.translation + numbers.in_box(0.04)};
 }
 
-FrameVerdict admitted(std::uint32_t sequence) {
+FrameVerdict admitted(std::uint64_t sequence) {
   FrameVerdict verdict;
   verdict.stamp.mid_exposure = Time{} + milliseconds(22) * (sequence + 1);
   verdict.stamp.arrival = verdict.stamp.mid_exposure + milliseconds(9);

@@ -26,6 +26,6 @@ void add_tool(Markers& markers, const Tool& tool, const Pose& pose, double sigma
 [[nodiscard]] Pose moved(const Pose& from, Numbers& numbers);
 
 // A verdict that admits frame `sequence`.
-[[nodiscard]] FrameVerdict admitted(std::uint32_t sequence);
+[[nodiscard]] FrameVerdict admitted(std::uint64_t sequence);
 
 }  // namespace glint::inputs

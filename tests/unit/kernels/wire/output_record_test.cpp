@@ -7,6 +7,7 @@
 #include <bit>
 #include <limits>
 
+#include "kernels/wire/bits.hpp"
 #include "tests/unit/kernels/wire/hex.hpp"
 #include "tests/unit/kernels/wire/samples.hpp"
 
@@ -122,6 +123,28 @@ TEST(OutputRecord, RefusesBytesThatAreNoRecord) {
   not_a_number[38] = 0xF0;
   not_a_number[39] = 0x7F;
   EXPECT_FALSE(decode(not_a_number));
+}
+
+TEST(ExtendedCount, ContinuesACountBeyondTwoToThe32) {
+  constexpr std::uint64_t k_wrap = std::uint64_t{1} << 32;
+  std::uint64_t newest = k_wrap - 3;
+  for (std::uint64_t count = k_wrap - 2; count < k_wrap + 3; ++count) {
+    newest = extended_count(static_cast<std::uint32_t>(count), newest);
+    ASSERT_EQ(newest, count);
+  }
+  EXPECT_EQ(extended_count(0xFFFFFFFF, k_wrap + 1), k_wrap - 1) << "an older one";
+  EXPECT_EQ(extended_count(7, 5 * k_wrap), 5 * k_wrap + 7);
+  EXPECT_EQ(extended_count(0xFFFFFFFF, 3), 0xFFFFFFFF) << "not below 0";
+}
+
+TEST(OutputRecord, KeepsTheLow32BitsOfItsCounts) {
+  PoseSample sample;
+  sample.tick_number = (std::uint64_t{1} << 32) + 5;
+  sample.frame_sequence = (std::uint64_t{3} << 32) + 6;
+  const PoseSample back = decode(encoded(sample)).value;
+  EXPECT_EQ(back.tick_number, 5u);
+  EXPECT_EQ(back.frame_sequence, 6u);
+  EXPECT_EQ(extended_count(5, sample.tick_number - 1), sample.tick_number);
 }
 
 }  // namespace
