@@ -62,7 +62,7 @@ class FrameLoopWriter {
  private:
   void put(const void* bytes, std::size_t count);
 
-  std::string path_;
+  std::string path_, part_path_;
   FrameLoopHeader header_;
   std::uint32_t added_ = 0;
   int descriptor_ = -1;
@@ -83,7 +83,7 @@ class FrameLoop {
   [[nodiscard]] const LoopFrame& entry(std::uint32_t place) const noexcept;
   // Its pixels and head pose, stamped as arriving now.
   [[nodiscard]] Frame view(std::uint32_t place, Time arrival,
-                           std::uint32_t sequence) const noexcept;
+                           std::uint64_t sequence) const noexcept;
   [[nodiscard]] HeadPose head(std::uint32_t place, Time arrival) const noexcept;
 
  private:

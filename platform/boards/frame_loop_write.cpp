@@ -1,4 +1,3 @@
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <array>
@@ -9,6 +8,7 @@
 
 #include "platform/boards/frame_loop.hpp"
 #include "platform/input_error.hpp"
+#include "platform/part_file.hpp"
 
 namespace glint {
 namespace {
@@ -21,16 +21,17 @@ namespace {
 
 FrameLoopWriter::FrameLoopWriter(std::string path, const FrameLoopHeader& header)
     : path_(std::move(path)), header_(header) {
-  const std::string part = path_ + ".part";
-  descriptor_ = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor_ < 0) refuse(part, std::string("cannot be made: ") + std::strerror(errno));
+  PartFile part = open_part_file(path_);
+  part_path_ = std::move(part.path);
+  descriptor_ = part.descriptor;
+  if (descriptor_ < 0) refuse(part_path_, std::string("cannot be made: ") + std::strerror(errno));
   put(&header_, sizeof header_);
 }
 
 FrameLoopWriter::~FrameLoopWriter() {
   if (descriptor_ < 0) return;
   ::close(descriptor_);
-  ::unlink((path_ + ".part").c_str());
+  ::unlink(part_path_.c_str());
 }
 
 void FrameLoopWriter::add(const LoopFrame& frame, const FrameBuffer& pixels) {
@@ -55,10 +56,9 @@ void FrameLoopWriter::close() {
   if (added_ != header_.frames) {
     refuse(path_, std::to_string(added_) + " frames; expected " + std::to_string(header_.frames));
   }
-  const std::string part = path_ + ".part";
   if (::close(std::exchange(descriptor_, -1)) != 0 ||
-      std::rename(part.c_str(), path_.c_str()) != 0) {
-    ::unlink(part.c_str());
+      std::rename(part_path_.c_str(), path_.c_str()) != 0) {
+    ::unlink(part_path_.c_str());
     refuse(path_, std::string("cannot be written: ") + std::strerror(errno));
   }
 }

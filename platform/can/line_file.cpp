@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "platform/input_error.hpp"
+#include "platform/part_file.hpp"
 
 namespace glint {
 namespace {
@@ -16,17 +17,16 @@ namespace {
 constexpr std::size_t k_gather_bytes = 65536;
 constexpr std::size_t k_line_bytes_max = 4096;
 
-bool is_plain_or_new(const std::filesystem::path& file) {
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  return !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
-}
-
 }  // namespace
 
 LineFile::LineFile(std::filesystem::path file) : file_(std::move(file)), written_as_(file_) {
-  if (is_plain_or_new(file_)) written_as_ += ".part";
-  descriptor_ = ::open(written_as_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (is_written_in_place(file_.string())) {
+    descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CLOEXEC);
+  } else {
+    const PartFile part = open_part_file(file_.string());
+    written_as_ = part.path;
+    descriptor_ = part.descriptor;
+  }
   if (descriptor_ < 0)
     throw InputError(file_.string() + ": cannot be written: " + std::strerror(errno) +
                      "; expected a place for a log");

@@ -4,10 +4,10 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "platform/input_error.hpp"
+#include "platform/part_file.hpp"
 
 namespace glint {
 
@@ -24,15 +24,9 @@ void make_folder_of(const std::string& path) {
 
 void write_text(const std::string& path, const std::string& text) {
   make_folder_of(path);
-  const std::string partial = path + ".part";
-  {
-    std::ofstream out(partial, std::ios::binary);
-    out << text;
-    if (!out.flush()) throw InputError(partial + ": cannot be written; expected a file there");
+  if (const std::string reason = write_whole_file(path, text); !reason.empty()) {
+    throw InputError(path + ": cannot be written: " + reason + "; expected a place for a file");
   }
-  std::error_code error;
-  std::filesystem::rename(partial, path, error);
-  if (error) throw InputError(path + ": " + error.message() + "; expected a place for a file");
 }
 
 ReservedRoom::ReservedRoom(const std::string& path) {

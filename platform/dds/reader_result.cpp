@@ -1,10 +1,10 @@
 #include "platform/dds/reader_result.hpp"
 
-#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "platform/input_error.hpp"
+#include "platform/part_file.hpp"
 
 namespace glint {
 
@@ -21,13 +21,9 @@ void save_result(const ReaderResult& result, const std::string& file) {
                                         {{"p50", result.latency_p50_us},
                                          {"p99", result.latency_p99_us},
                                          {"max", result.latency_max_us}}}};
-  const std::string temporary = file + ".part";
-  std::ofstream stream(temporary);
-  stream << json.dump(2) << '\n';
-  stream.close();
-  if (!stream || std::rename(temporary.c_str(), file.c_str()) != 0) {
-    std::remove(temporary.c_str());
-    throw InputError(file + ": cannot be written; expected a folder with room and the right to");
+  if (const std::string reason = write_whole_file(file, json.dump(2) + "\n"); !reason.empty()) {
+    throw InputError(file + ": cannot be written: " + reason +
+                     "; expected a folder with room and the right to");
   }
 }
 

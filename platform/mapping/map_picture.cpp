@@ -1,12 +1,15 @@
 #include "platform/mapping/map_picture.hpp"
 
 #include <cmath>
-#include <filesystem>
+#include <cstdint>
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "platform/input_error.hpp"
+#include "platform/part_file.hpp"
 
 namespace glint {
 namespace {
@@ -53,13 +56,12 @@ void write_map_picture(const std::string& path, const PointCloud& map, const Pla
       }
     }
   }
-  const std::string partial = path + ".part.png";
-  std::error_code error;
-  if (!cv::imwrite(partial, image)) {
-    throw InputError(path + ": cannot be written; expected a place for a picture");
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".png", image, bytes);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (const std::string reason = write_whole_file(path, text); !reason.empty()) {
+    throw InputError(path + ": cannot be written: " + reason + "; expected a place for a picture");
   }
-  std::filesystem::rename(partial, path, error);
-  if (error) throw InputError(path + ": " + error.message() + "; expected a place for a picture");
 }
 
 }  // namespace glint

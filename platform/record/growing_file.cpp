@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "platform/input_error.hpp"
+#include "platform/part_file.hpp"
 #include "platform/record/crc32.hpp"
 
 namespace glint {
@@ -21,14 +22,18 @@ constexpr std::size_t k_piece_bytes = std::size_t{64} << 10;
 
 }  // namespace
 
-GrowingFile::GrowingFile(std::string path) : path_(std::move(path)), part_path_(path_ + ".part") {
-  descriptor_ = ::open(part_path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+GrowingFile::GrowingFile(std::string path) : path_(std::move(path)) {
+  if (is_written_in_place(path_)) throw InputError(path_ + ": a device; expected a file's name");
+  PartFile part = open_part_file(path_);
+  part_path_ = std::move(part.path);
+  descriptor_ = part.descriptor;
   if (descriptor_ >= 0) return;
   fail("open", errno);
   throw InputError(error_ + "; expected a folder that can be written");
 }
 
 GrowingFile::~GrowingFile() {
+  sync_.reset();
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
@@ -52,7 +57,7 @@ bool GrowingFile::reserve(std::uint64_t bytes) {
   return true;
 }
 
-bool GrowingFile::write_all(std::span<const std::uint8_t> bytes) {
+bool GrowingFile::write_pieces(std::span<const std::uint8_t> bytes) {
   while (!bytes.empty()) {
     const ssize_t written =
         ::write(descriptor_, bytes.data(), std::min(bytes.size(), k_piece_bytes));
@@ -64,10 +69,11 @@ bool GrowingFile::write_all(std::span<const std::uint8_t> bytes) {
 }
 
 bool GrowingFile::append(std::initializer_list<std::span<const std::uint8_t>> parts) {
+  if (!check_sync()) return false;
   std::uint64_t size = size_;
   std::uint32_t crc = crc_;
   for (const auto part : parts) {
-    if (!write_all(part)) {
+    if (!write_pieces(part)) {
       fail("write", errno);
       if (::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0 ||
           ::lseek(descriptor_, static_cast<off_t>(size_), SEEK_SET) < 0)
@@ -83,7 +89,15 @@ bool GrowingFile::append(std::initializer_list<std::span<const std::uint8_t>> pa
   return true;
 }
 
+// What a failed synchronisation should have kept may be lost, wherever in the file it is.
+bool GrowingFile::check_sync() {
+  const int error = sync_ ? sync_->error() : 0;
+  return error == 0 || fail("synchronise", error);
+}
+
 bool GrowingFile::name() {
+  if (sync_) sync_->stop();
+  if (!check_sync()) return false;
   if (::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) return fail("cut", errno);
   if (::fsync(descriptor_) != 0) return fail("flush", errno);
   if (::close(std::exchange(descriptor_, -1)) != 0) return fail("close", errno);

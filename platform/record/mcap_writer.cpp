@@ -22,6 +22,7 @@ std::uint64_t size_of(const Record& record) {
 McapWriter::McapWriter(const std::string& path, std::string_view profile, std::string_view library,
                        McapSettings settings)
     : settings_(settings), file_(path) {
+  file_.sync_every(settings.sync_period);
   Bytes bytes(k_mcap_magic.begin(), k_mcap_magic.end());
   append_header(bytes, profile, library);
   append_with_room({bytes});

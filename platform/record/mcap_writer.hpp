@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/units.hpp"
 #include "platform/record/growing_file.hpp"
 #include "platform/record/mcap_format.hpp"
 
@@ -20,6 +21,7 @@ struct McapSettings {
   std::size_t chunk_bytes = std::size_t{4} << 20;
   std::uint64_t chunk_span_ns = 1'000'000'000;
   std::size_t closing_bytes = std::size_t{32} << 10;  // room for metadata written before close()
+  Duration sync_period = milliseconds(1000);          // how often the disk gets it all
 };
 
 class McapWriter {
@@ -42,11 +44,12 @@ class McapWriter {
   void flush_chunk();
 
   // Metadata that fits into closing_bytes, indexes, statistics; then the file gets its name. False:
-  // PATH.part remains, error() says why.
+  // part_path() remains, error() says why.
   bool close(const std::string& metadata_name, const McapTexts& metadata);
 
   [[nodiscard]] bool failed() const { return failed_; }
   [[nodiscard]] const std::string& error() const { return file_.error(); }
+  [[nodiscard]] const std::string& part_path() const { return file_.part_path(); }
   [[nodiscard]] std::uint64_t bytes() const { return file_.size(); }
   [[nodiscard]] std::uint64_t messages() const { return statistics_.messages; }  // in the file
 

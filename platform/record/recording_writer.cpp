@@ -17,6 +17,7 @@ McapSettings mcap_settings(const RecordingSettings& settings) {
   McapSettings mcap;
   mcap.chunk_bytes = settings.chunk_bytes;
   mcap.chunk_span_ns = static_cast<std::uint64_t>(settings.chunk_span.nanoseconds);
+  mcap.sync_period = settings.sync_period;
   return mcap;
 }
 
@@ -52,7 +53,7 @@ struct RecordingWriter::Body {
   void write(std::uint16_t to, Time time) {
     const auto log_time =
         static_cast<std::uint64_t>(std::max<std::int64_t>(0, (time + unix_offset).nanoseconds));
-    mcap.write({to, sequence++, log_time, log_time}, cdr.bytes());
+    mcap.write({to, static_cast<std::uint32_t>(sequence++), log_time, log_time}, cdr.bytes());
     ++offered;
     note_failure();
   }
@@ -71,7 +72,7 @@ struct RecordingWriter::Body {
   std::vector<std::string> tool_names;
   McapWriter mcap;
   CdrWriter cdr;
-  std::uint32_t sequence = 0;
+  std::uint64_t sequence = 0;
   std::uint64_t offered = 0;  // messages, written or not
   std::uint16_t frame = 0, reflectivity = 0, depth = 0, head_pose = 0, markers = 0, choice = 0,
                 dropped = 0, button = 0, robot_frame = 0, pen_buttons = 0, output = 0,
@@ -157,7 +158,7 @@ RecordingOutcome RecordingWriter::Body::close() {
   if (!mcap.close(k_closing_metadata, closing)) {
     outcome.ended_early = true;
     outcome.output_sha256.clear();
-    outcome.reason = mcap.error() + "; what was written stays in " + path + ".part";
+    outcome.reason = mcap.error() + "; what was written stays in " + mcap.part_path();
   }
   outcome.bytes = mcap.bytes();
   return outcome;

@@ -19,6 +19,7 @@ namespace glint {
 struct RecordingSettings {
   std::size_t chunk_bytes = std::size_t{4} << 20;  // a chunk ends at this size ...
   Duration chunk_span = milliseconds(1000);        // ... or when it spans this: what a crash costs
+  Duration sync_period = milliseconds(1000);       // what a power failure costs beside that
 };
 
 class RecordingWriter {

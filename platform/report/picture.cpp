@@ -4,14 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <system_error>
+#include <string_view>
 #include <vector>
 
 #include "platform/input_error.hpp"
+#include "platform/part_file.hpp"
 
 namespace glint {
 namespace {
@@ -90,17 +89,10 @@ void draw_blobs(cv::Mat& picture, const Blobs& blobs, const Markers& markers) {
 void save(const std::string& path, const cv::Mat& picture) {
   std::vector<std::uint8_t> bytes;
   cv::imencode(".png", picture, bytes);
-  const std::string temporary = path + ".part";
-  std::ofstream file(temporary, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(bytes.data()),
-             static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(temporary, path, error);
-  if (!file || error) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw InputError(path + ": cannot be written; expected a path in a writable folder");
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (const std::string reason = write_whole_file(path, text); !reason.empty()) {
+    throw InputError(path + ": cannot be written: " + reason +
+                     "; expected a path in a writable folder");
   }
 }
 

@@ -2,10 +2,9 @@
 
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 
 #include "platform/input_error.hpp"
+#include "platform/part_file.hpp"
 #include "platform/printable.hpp"
 
 namespace glint {
@@ -95,23 +94,9 @@ std::string SvgCanvas::clip_rectangle(const Vector2& corner, const Vector2& size
 }
 
 void write_text_file(const std::string& path, std::string_view text) {
-  const std::string temporary = path + ".tmp";
-  {
-    std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-    file.write(text.data(), static_cast<std::streamsize>(text.size()));
-    file.flush();
-    if (!file) {
-      std::error_code ignored;
-      std::filesystem::remove(temporary, ignored);
-      throw InputError(path + ": cannot be written; expected a folder with room to write in");
-    }
-  }
-  std::error_code error;
-  std::filesystem::rename(temporary, path, error);
-  if (error) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw InputError(path + ": " + error.message() + "; expected a file name that can be written");
+  if (const std::string reason = write_whole_file(path, text); !reason.empty()) {
+    throw InputError(path + ": cannot be written: " + reason +
+                     "; expected a folder with room to write in");
   }
 }
 

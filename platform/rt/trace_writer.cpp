@@ -1,16 +1,21 @@
 #include "platform/rt/trace_writer.hpp"
 
 #include <chrono>
+#include <cstdio>
+#include <utility>
 
 #include "platform/input_error.hpp"
+#include "platform/part_file.hpp"
 
 namespace glint {
 namespace {
 constexpr auto k_poll = std::chrono::milliseconds(5);
 }  // namespace
 
-TraceWriter::TraceWriter(const std::string& path, const std::string& header)
-    : path_(path), file_(std::fopen(path.c_str(), "wb")) {
+TraceWriter::TraceWriter(const std::string& path, const std::string& header) : path_(path) {
+  PartFile part = open_part_file(path);
+  part_path_ = std::move(part.path);
+  if (part.descriptor >= 0) file_ = ::fdopen(part.descriptor, "wb");
   if (file_ == nullptr) throw InputError(path + ": cannot be written; expected a writable folder");
   failed_ = std::fputs((header + "\n").c_str(), file_) < 0;
 }
@@ -51,6 +56,7 @@ std::string TraceWriter::close() {
   ending_ = true;
   if (thread_.joinable()) thread_.join();
   failed_ = std::fclose(file_) != 0 || failed_;
+  failed_ = std::rename(part_path_.c_str(), path_.c_str()) != 0 || failed_;
   file_ = nullptr;
   return failed_ ? path_ + ": not all of it could be written" : std::string{};
 }

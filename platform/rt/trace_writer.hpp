@@ -1,4 +1,5 @@
-// Spans from their rings to a trace file, in a thread of its own.
+// Spans from their rings to a trace file, in a thread of its own. The file gets its name when it
+// is closed.
 #pragma once
 
 #include <atomic>
@@ -34,7 +35,7 @@ class TraceWriter {
   void run();
   void write_waiting();
 
-  std::string path_;
+  std::string path_, part_path_;
   std::FILE* file_ = nullptr;
   std::vector<std::unique_ptr<SpanRing>> rings_;
   std::uint64_t written_ = 0;

@@ -1,14 +1,32 @@
 #include "platform/record/recorder.hpp"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 
+#include <array>
 #include <atomic>
+#include <cerrno>
+#include <chrono>
 #include <thread>
 
 #include "platform/input_error.hpp"
 #include "platform/record/recording_reader.hpp"
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/platform/record/recording_samples.hpp"
+
+// In place of the C library's.
+namespace {
+std::atomic<int> g_syncs{0};
+std::atomic<bool> g_sync_fails{false};
+std::array<char, 16> g_sync_thread{};
+}  // namespace
+
+extern "C" int fdatasync(int /*descriptor*/) {
+  pthread_getname_np(pthread_self(), g_sync_thread.data(), g_sync_thread.size());
+  ++g_syncs;
+  if (g_sync_fails) errno = EIO;
+  return g_sync_fails ? -1 : 0;
+}
 
 namespace glint {
 namespace {
@@ -100,6 +118,23 @@ TEST(Recorder, KeepsMarkersAtLevelBlobs) {
   EXPECT_EQ(std::get<MarkerFrame>(reader.next().value()).markers.count, 256);
 }
 
+TEST(Recorder, CountsItsFramesBeyondTwoToThe32) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("run.mcap");
+  constexpr std::uint64_t k_first = (std::uint64_t{1} << 32) - 3;
+  Recorder recorder(path, sample_info(RecordingLevel::blobs), waiting());
+  for (std::uint64_t i = 0; i < 6; ++i) {
+    MarkerFrame frame = sample_markers(1);
+    frame.sequence = k_first + i;
+    EXPECT_TRUE(recorder.frame_lane().offer_markers(frame));
+  }
+  recorder.close();
+  RecordingReader reader(path);
+  for (std::uint64_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(std::get<MarkerFrame>(reader.next().value()).sequence, k_first + i);
+  }
+}
+
 TEST(Recorder, CountsWhatFoundNoRoomAndMarksTheRecordingIncomplete) {
   const TemporaryFolder folder;
   const std::string path = folder.file("run.mcap");
@@ -152,6 +187,37 @@ TEST(Recorder, OffersWithoutTouchingTheHeap) {
   EXPECT_EQ(counter.count(), 0u);
   const std::vector<int> seen(3);
   EXPECT_EQ(counter.count(), 1u);  // the counter counts
+}
+
+// What the recorder's thread for it did, as the functions below see it.
+TEST(Recorder, BringsItsFileToTheDiskAtASteadyRateByAThreadOfItsOwn) {
+  const TemporaryFolder folder;
+  RecorderSettings settings;
+  settings.file.sync_period = milliseconds(1);
+  g_syncs = 0;
+  Recorder recorder(folder.file("run.mcap"), sample_info(RecordingLevel::roi), settings);
+  for (int waited_ms = 0; g_syncs < 3 && waited_ms < 60'000; ++waited_ms) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_GE(g_syncs, 3);
+  EXPECT_TRUE(recorder.close().complete());
+  EXPECT_STREQ(g_sync_thread.data(), "glint_sync");
+}
+
+TEST(Recorder, IsNotCompleteWhereTheDiskRefuses) {
+  const TemporaryFolder folder;
+  RecorderSettings settings;
+  settings.file.sync_period = milliseconds(1);
+  g_syncs = 0;
+  g_sync_fails = true;
+  Recorder recorder(folder.file("run.mcap"), sample_info(RecordingLevel::roi), settings);
+  for (int waited_ms = 0; g_syncs < 1 && waited_ms < 60'000; ++waited_ms) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  const RecordingOutcome outcome = recorder.close();
+  g_sync_fails = false;
+  EXPECT_FALSE(outcome.complete());
+  EXPECT_NE(outcome.reason.find("Input/output error"), std::string::npos) << outcome.reason;
 }
 
 }  // namespace

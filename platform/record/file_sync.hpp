@@ -1,0 +1,33 @@
+// Brings a growing file to the disk at a steady rate, in a thread of its own: a power failure costs
+// what was written since the last time.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "kernels/units.hpp"
+
+namespace glint {
+
+class FileSync {
+ public:
+  // The descriptor stays open until stop() has returned.
+  FileSync(int descriptor, Duration period);
+  ~FileSync() { stop(); }
+  FileSync(const FileSync&) = delete;
+  FileSync& operator=(const FileSync&) = delete;
+
+  void stop();
+  // The first failure's errno; 0: none. From any thread.
+  [[nodiscard]] int error() const noexcept { return error_; }
+
+ private:
+  std::atomic<int> error_{0};
+  std::mutex mutex_;
+  std::condition_variable_any ends_;
+  std::jthread thread_;  // last: it uses all of the above
+};
+
+}  // namespace glint
