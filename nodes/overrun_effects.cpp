@@ -77,6 +77,8 @@ bool substitute(OverrunPolicy policy, const OverrunTick& tick, const PoseSamples
   if (policy == OverrunPolicy::skip_output) return false;
   const Reason reason = reason_of(policy);
   out.count = in_time.count;
+  out.any_frame = in_time.any_frame;
+  out.newest_frame = in_time.newest_frame;
   for (int t = 0; t < in_time.count; ++t) {
     const auto i = static_cast<std::size_t>(t);
     PoseSample& sample = out.items[i];

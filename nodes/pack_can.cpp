@@ -11,6 +11,14 @@ bool PackCan::due(Time tick, Duration period, Time& next) const noexcept {
   return true;
 }
 
+// CiA 301, 7.3.2.2: a node boots up, is pre-operational, and then operational.
+CanNodeState PackCan::state(Time tick, const PoseSamples& samples) const noexcept {
+  if (!booted_) return CanNodeState::boot_up;
+  const bool frames_come =
+      samples.any_frame && tick - samples.newest_frame <= settings.frames_lost_after;
+  return frames_come ? CanNodeState::operational : CanNodeState::pre_operational;
+}
+
 void PackCan::operator()(const Now& now, const PoseSamples& samples, CanFrames& frames) noexcept {
   frames.count = 0;
   frames.dropped = 0;
@@ -22,7 +30,8 @@ void PackCan::operator()(const Now& now, const PoseSamples& samples, CanFrames& 
   }
 
   if (due(now.tick, settings.heartbeat_period, next_heartbeat_)) {
-    frames.add(heartbeat_frame(settings.node, CanNodeState::operational));
+    frames.add(heartbeat_frame(settings.node, state(now.tick, samples)));
+    booted_ = true;
     ++counts_[3];
   }
   for (int t = 0; t < count; ++t) {

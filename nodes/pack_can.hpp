@@ -1,8 +1,9 @@
 // The tick's CAN frames: every tool's pose, then the node's heartbeat, emergencies and time.
 //
-// The poses come first, since a controller waits for them. Heartbeat every 100 ms, an emergency
-// frame when a tool is lost and when it is found again, CanTSyn once a second. Time in SYNC and
-// follow-up is the tick's nominal release: the bus sees it as late as the tick itself is.
+// The poses come first, since a controller waits for them. Heartbeat every 100 ms: the first one is
+// the boot-up message, later ones are operational while the frame group publishes estimates; an
+// emergency frame when a tool is lost and when it is found again, CanTSyn once a second. Time in
+// SYNC and follow-up is the tick's nominal release: the bus sees it as late as the tick itself is.
 #pragma once
 
 #include <array>
@@ -23,6 +24,9 @@ struct PackCanSettings {
   unsigned node = 32;
   Duration heartbeat_period = milliseconds(100);
   Duration time_sync_period = milliseconds(1000);
+  // Without a newer frame for longer than this the node is pre-operational: no camera, or a frame
+  // thread that hangs. Two periods of 5 Hz, the slowest camera, and a half.
+  Duration frames_lost_after = milliseconds(500);
 };
 
 // Worst input: every tool is found again, with a pose, in the tick in which heartbeat and time are
@@ -42,7 +46,9 @@ struct PackCan {
 
  private:
   [[nodiscard]] bool due(Time tick, Duration period, Time& next) const noexcept;
+  [[nodiscard]] CanNodeState state(Time tick, const PoseSamples& samples) const noexcept;
 
+  bool booted_ = false;
   Time next_heartbeat_;
   Time next_time_sync_;
   std::uint8_t time_sync_counter_ = 0;

@@ -41,6 +41,8 @@ void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& es
                               PoseSamples& samples) noexcept {
   const Estimates& known = estimates.value();
   samples.count = std::min(known.tool_count, limits.tools);
+  samples.any_frame = estimates.version() > 0;
+  samples.newest_frame = known.verdict.stamp.arrival;
   counts_ = {{1, samples.count}};
   for (int t = 0; t < samples.count; ++t) {
     const Track& track = known.tracks[t];

@@ -22,6 +22,7 @@ namespace glint {
 
 enum class CanNodeState : std::uint8_t {
   boot_up = 0x00,
+  stopped = 0x04,
   operational = 0x05,
   pre_operational = 0x7F
 };

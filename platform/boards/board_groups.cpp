@@ -93,7 +93,7 @@ void BoardGroups::process(const ArrivedFrame& arrived) noexcept {
                                  arrived.frame.arrival.nanoseconds);
 }
 
-void BoardGroups::tick(std::uint32_t number, Time nominal, Time woken) noexcept {
+void BoardGroups::tick(std::uint64_t number, Time nominal, Time woken) noexcept {
   tick_.tick(number, nominal, woken);
   const PoseSamples& samples = tick_.samples();
   for (int t = 0; t < samples.count; ++t) {
@@ -116,7 +116,7 @@ void BoardGroups::report(BoardResult& result) {
   const SentTicks& sent = tick_.sent();
   result.sent = sent.left();
   result.latencies = sent.latencies().entries();
-  result.latencies_left_out = sent.latencies().beyond();
+  result.latencies_left_out = sent.latencies().left_out();
   if (background_ != nullptr) result.background = background_->counts();
   result.can_frames = tick_.can_frames();
   result.output_sha256 = tick_.output_sha256();

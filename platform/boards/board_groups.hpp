@@ -23,7 +23,8 @@ class BoardGroups {
               std::size_t frames, const BoardBounds& bounds = {}, BackgroundScene scene = {});
 
   void process(const ArrivedFrame& arrived) noexcept;                  // frame thread
-  void tick(std::uint32_t number, Time nominal, Time woken) noexcept;  // tick thread
+  void tick(std::uint64_t number, Time nominal, Time woken) noexcept;  // tick thread
+  void stop_safe() noexcept { tick_.stop_safe(); }                     // likewise, in its place
   // Null where the cell has none; its thread is BackgroundGroup's.
   [[nodiscard]] BackgroundGroup* background() noexcept { return background_.get(); }
 

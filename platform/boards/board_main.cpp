@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -16,8 +15,11 @@
 #include "platform/boards/system_share.hpp"
 #include "platform/budget/expected_board.hpp"
 #include "platform/exit_code.hpp"
+#include "platform/folder_lock.hpp"
 #include "platform/input_error.hpp"
+#include "platform/part_file.hpp"
 #include "platform/session/losses.hpp"
+#include "platform/stop_signals.hpp"
 #include "schedules/node_bounds.hpp"
 
 namespace glint {
@@ -46,18 +48,18 @@ void write(const std::string& file, const nlohmann::ordered_json& figures) {
     std::printf("%s\n", figures.dump(2).c_str());
     return;
   }
-  std::ofstream stream(file);
-  stream << figures.dump(2) << '\n';
-  stream.close();
-  if (!stream) throw InputError(file + ": cannot be written; expected a folder that takes it");
+  if (const std::string reason = write_whole_file(file, figures.dump(2) + "\n"); !reason.empty()) {
+    throw InputError(file + ": cannot be written: " + reason + "; expected a place for a file");
+  }
 }
 
 // Why the run ends with 1, one line each.
-std::vector<std::string> failures_of(const BoardResult& result, std::int64_t frames) {
+std::vector<std::string> failures_of(const BoardResult& result, const BoardOptions& options) {
   std::vector<std::string> lines = lines_of(losses_of(result.sinks));
-  if (result.frames != frames) {
+  if (!result.sinks.fault.empty()) lines.push_back(result.sinks.fault);
+  if (options.frames > 0 && result.frames != options.frames && !*options.stop) {
     lines.push_back(std::to_string(result.frames) + " frames processed; expected " +
-                    std::to_string(frames));
+                    std::to_string(options.frames));
   }
   return lines;
 }
@@ -66,6 +68,7 @@ int run(const Arguments& arguments) {
   Cell cell = arguments.cell_file.empty() ? default_cell() : load_cell(arguments.cell_file);
   if (!arguments.can.empty()) cell.can.sink = arguments.can;
   cell.dds.on = arguments.with_dds;
+  const FolderLock lock(arguments.options.out);
   if (arguments.measure_system) {
     CanSinkOptions can;
     can.directory = arguments.options.out;
@@ -82,9 +85,10 @@ int run(const Arguments& arguments) {
   }
   const FrameLoop loop(arguments.frames_file);
   BoardOptions options = arguments.options;
+  options.stop = &stop_on_signals();
   options.bounds = bounds_on(arguments.board, cell);
   const BoardResult result = run_board(std::move(cell), loop, options);
-  std::vector<std::string> failures = failures_of(result, arguments.options.frames);
+  std::vector<std::string> failures = failures_of(result, options);
   try {
     write(arguments.json_file, as_json(result));
   } catch (const InputError& error) {  // the figures are not lost with the file
@@ -116,8 +120,10 @@ int main(int argc, char** argv) {
   app.add_flag("--dds", arguments.with_dds, "publish over DDS as the cell says");
   auto* const frames = app.add_option("--frames", arguments.frames_file,
                                       "loop of frames made by glint_board_frames");
-  app.add_option("--count", arguments.options.frames, "frames to process")
-      ->check(CLI::PositiveNumber);
+  app.add_option("--count", arguments.options.frames,
+                 "frames to process; 0: until SIGTERM or SIGINT, in constant memory")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   auto* const system = app.add_flag("--measure-system", arguments.measure_system,
                                     "measure the operating system's share instead");
   frames->excludes(system);

@@ -57,36 +57,47 @@ BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& opti
   Sinks sinks(cell, {options.out, false, result.refused}, unix_offset_ns);
   auto groups = std::make_unique<BoardGroups>(
       cell, sinks, [epoch] { return Time{} + (monotonic_now() - epoch); }, unix_offset_ns,
-      static_cast<std::size_t>(options.frames), options.bounds, std::move(scene));
-  const Duration run = frame_period * options.frames + cell.lost_after;
-  result.tick_wake_up_ns.reserve(
-      static_cast<std::size_t>(run.nanoseconds / tick_period.nanoseconds + 1));
+      options.frames > 0 ? static_cast<std::size_t>(options.frames) : LatencyLog::k_entries_max,
+      options.bounds, std::move(scene));
+  WakeUpLog tick_wake_ups(WakeUpLog::k_entries_max);
+  // Ticks go on until the last frame's poses are lost, or until the run is stopped.
+  const auto stopped = [&] { return options.stop != nullptr && *options.stop; };
+  const Time last_tick = Time{} + frame_period * options.frames + cell.lost_after;
+  std::atomic<bool> frames_done{false}, ran_away{false};
 
   // The first frame's exposure must not lie before the session's clock began.
   LoopSource source(loop, {options.frames, frame_period, epoch + frame_period, epoch,
-                           k_arrival_priority, options.core});
+                           k_arrival_priority, options.core, options.stop});
   PeriodicLoop ticks(epoch, tick_period);
   const std::uint64_t allocations_before = AllocationCounter::count();
   const std::uint64_t faults_before = PageFaultCounter::count();
   RealTimeThread tick_thread({"glint-tick", options.core, k_tick_priority}, [&] {
     counted([&] {
-      while (result.tick_wake_up_ns.size() < result.tick_wake_up_ns.capacity()) {
-        const Tick tick = ticks.next();
-        const Time nominal = Time{} + (tick.nominal - epoch);
-        if (nominal > Time{} + run) break;
-        groups->tick(tick.number, nominal, Time{} + (tick.woken - epoch));
-        result.tick_wake_up_ns.push_back((tick.woken - tick.nominal).nanoseconds);
+      for (;;) {
+        const std::optional<Tick> tick = ticks.next();
+        if (!tick) {
+          groups->stop_safe();
+          ran_away = true;
+          break;
+        }
+        const Time nominal = Time{} + (tick->nominal - epoch);
+        if (options.frames > 0 && nominal > last_tick) break;
+        if (frames_done && stopped()) break;
+        groups->tick(tick->number, nominal, Time{} + (tick->woken - epoch));
+        tick_wake_ups.add((tick->woken - tick->nominal).nanoseconds);
+        ++result.ticks;
       }
     });
   });
   RealTimeThread frame_thread({"glint-frame", options.core, k_frame_priority}, [&] {
     counted([&] {
       ArrivedFrame arrived;
-      while (source.wait(arrived)) {
+      while (!ran_away && source.wait(arrived)) {
         groups->process(arrived);
         source.give_back(arrived);
       }
     });
+    frames_done = true;
   });
   std::atomic<bool> ended{false};
   std::optional<RealTimeThread> background_thread;
@@ -113,7 +124,8 @@ BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& opti
   }
   result.frames_worst = source.worst_shown();
   result.frame_wake_up_ns = source.wake_ups_ns();
-  result.ticks = static_cast<std::int64_t>(result.tick_wake_up_ns.size());
+  result.tick_wake_up_ns = tick_wake_ups.entries();
+  if (ran_away) result.sinks.fault = k_ran_away;
   result.ticks_late = static_cast<std::int64_t>(ticks.late());
   result.ticks_skipped = static_cast<std::int64_t>(ticks.skipped());
   groups->report(result);

@@ -2,6 +2,7 @@
 // if asked for, to DDS and into a recording; a cell's background beneath. Real time on one core.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -24,8 +25,9 @@ struct BoardBounds {
 };
 
 struct BoardOptions {
-  std::int64_t frames = 1000;
-  int core = -1;          // all threads of the run on this core; -1: on any
+  std::int64_t frames = 1000;               // 0: until `stop`
+  const std::atomic<bool>* stop = nullptr;  // set: the run ends here, whole as far as it went
+  int core = -1;                            // all threads of the run on this core; -1: on any
   std::string out = ".";  // folder of a CAN log, where the cell names one, and of the recording
   std::string record;     // a file, at the cell's [record] level; empty: nothing is recorded
   BoardBounds bounds;
@@ -40,8 +42,8 @@ struct BoardResult {
   std::vector<FrameToCan> latencies;
   TicksLeft sent;  // the ticks that left over CAN
   std::int64_t latencies_left_out = 0;
-  std::vector<std::int64_t> frame_wake_up_ns, tick_wake_up_ns;
-  std::uint64_t heap_allocations = 0;  // of all groups after their start
+  std::vector<std::int64_t> frame_wake_up_ns, tick_wake_up_ns;  // the newest, and the largest
+  std::uint64_t heap_allocations = 0;                           // of all groups after their start
   bool heap_counted = false;
   std::uint64_t page_faults = 0;               // of all groups after their start, minor and major
   std::optional<BackgroundCounts> background;  // where the cell has one

@@ -5,9 +5,10 @@
 namespace glint {
 
 LoopSource::LoopSource(const FrameLoop& loop, const ArrivalSettings& settings)
-    : loop_(loop), settings_(settings) {
-  wake_ups_ns_.reserve(static_cast<std::size_t>(settings.frames));
-}
+    : loop_(loop),
+      settings_(settings),
+      wake_ups_ns_(settings.frames > 0 ? static_cast<std::size_t>(settings.frames)
+                                       : WakeUpLog::k_entries_max) {}
 
 LoopSource::~LoopSource() {
   stop_ = true;
@@ -20,23 +21,25 @@ void LoopSource::start() {
 }
 
 void LoopSource::arrive() {
-  for (std::int64_t i = 0; i < settings_.frames && !stop_; ++i) {
-    sleep_until(settings_.first + settings_.period * i);
+  for (std::int64_t i = 0; (settings_.frames == 0 || i < settings_.frames) && !ends(); ++i) {
+    if (!sleep_until(settings_.first + settings_.period * i)) break;
     arrived_count_.fetch_add(1, std::memory_order_release);
     arrived_.post();
   }
+  arrived_.post();  // without a frame: the end
 }
 
 bool LoopSource::wait(ArrivedFrame& arrived) {
-  if (delivered_ == settings_.frames) return false;
+  if (settings_.frames > 0 && delivered_ == settings_.frames) return false;
   const bool found_waiting = arrived_count_.load(std::memory_order_acquire) <= delivered_;
   arrived_.wait();
+  if (arrived_count_.load(std::memory_order_acquire) == delivered_) return false;
   const Time due = settings_.first + settings_.period * delivered_;
-  if (found_waiting) wake_ups_ns_.push_back((monotonic_now() - due).nanoseconds);
+  if (found_waiting) wake_ups_ns_.add((monotonic_now() - due).nanoseconds);
 
   const std::uint32_t place = loop_.place_of(static_cast<std::uint64_t>(delivered_));
   const Time stamp = Time{} + (due - settings_.epoch);
-  arrived.frame = loop_.view(place, stamp, static_cast<std::uint32_t>(delivered_ + 1));
+  arrived.frame = loop_.view(place, stamp, static_cast<std::uint64_t>(delivered_ + 1));
   arrived.head = loop_.head(place, stamp);
   arrived.slot = static_cast<int>(place);
   if (loop_.entry(place).kind == LoopFrameKind::worst) ++worst_shown_;

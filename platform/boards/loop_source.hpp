@@ -11,16 +11,18 @@
 #include "platform/rt/real_time_thread.hpp"
 #include "platform/rt/release.hpp"
 #include "platform/session/frame_source.hpp"
+#include "platform/session/latency.hpp"
 
 namespace glint {
 
 struct ArrivalSettings {
-  std::int64_t frames = 0;  // how many arrive in all
+  std::int64_t frames = 0;  // how many arrive in all; 0: until `stop`
   Duration period;
   Time first;  // of the first one's arrival, monotonic
   Time epoch;  // monotonic; frames are stamped with the time since then
   int priority = 0;
   int core = -1;
+  const std::atomic<bool>* stop = nullptr;  // set: no further frame arrives
 };
 
 class LoopSource final : public FrameSource {
@@ -36,13 +38,18 @@ class LoopSource final : public FrameSource {
   void give_back(const ArrivedFrame& arrived) noexcept override;
 
   // From a frame's nominal arrival to the first instruction of who waited for it; only for frames
-  // that found their group waiting. One entry each, room set aside at the start.
-  [[nodiscard]] const std::vector<std::int64_t>& wake_ups_ns() const { return wake_ups_ns_; }
+  // that found their group waiting.
+  [[nodiscard]] const std::vector<std::int64_t>& wake_ups_ns() const {
+    return wake_ups_ns_.entries();
+  }
   [[nodiscard]] std::int64_t worst_shown() const { return worst_shown_; }
   [[nodiscard]] const ThreadReport& report() const { return arrivals_->report(); }
 
  private:
   void arrive();
+  [[nodiscard]] bool ends() const noexcept {
+    return stop_ || (settings_.stop != nullptr && *settings_.stop);
+  }
 
   const FrameLoop& loop_;
   ArrivalSettings settings_;
@@ -51,7 +58,7 @@ class LoopSource final : public FrameSource {
   std::atomic<bool> stop_{false};
   std::int64_t delivered_ = 0;
   std::int64_t worst_shown_ = 0;
-  std::vector<std::int64_t> wake_ups_ns_;
+  WakeUpLog wake_ups_ns_;
   std::unique_ptr<RealTimeThread> arrivals_;
 };
 

@@ -21,7 +21,7 @@ void sleeps(const SystemShareOptions& options, std::vector<std::int64_t>& late_n
   const Time first = monotonic_now() + k_settle;
   for (int i = 0; i < options.wake_ups; ++i) {
     const Time due = first + options.tick_period * i;
-    sleep_until(due);
+    (void)sleep_until(due);
     late_ns.push_back((monotonic_now() - due).nanoseconds);
   }
 }
@@ -37,7 +37,7 @@ void releases(const SystemShareOptions& options, std::vector<std::int64_t>& late
   });
   RealTimeThread releasing({"glint-arrival", options.core, k_arrival_priority}, [&] {
     for (int i = 0; i < options.wake_ups; ++i) {
-      sleep_until(first + options.tick_period * i);
+      (void)sleep_until(first + options.tick_period * i);
       release.post();
     }
   });
@@ -77,7 +77,7 @@ void writes(CanSink& can, const SystemShareOptions& options, std::vector<std::in
   frame.identifier = 0x1A0;
   frame.length = 8;
   for (int burst = 0; burst < options.can_bursts; ++burst) {
-    sleep_until(first + options.tick_period * burst);
+    (void)sleep_until(first + options.tick_period * burst);
     for (int i = 0; i < options.can_frames_a_burst; ++i) {
       frame.data[0] = static_cast<std::uint8_t>(i);
       const Time before = monotonic_now();

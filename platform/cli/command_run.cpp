@@ -1,8 +1,6 @@
 // glint run: frames in, poses out over DDS and CAN, everything recorded.
 #include <unistd.h>
 
-#include <atomic>
-#include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -21,17 +19,16 @@
 #include "platform/cli/progress.hpp"
 #include "platform/cli/run_output.hpp"
 #include "platform/cli/run_report.hpp"
+#include "platform/folder_lock.hpp"
 #include "platform/input_error.hpp"
 #include "platform/programming/key_buttons.hpp"
 #include "platform/programming/key_terminal.hpp"
 #include "platform/session/injection_text.hpp"
 #include "platform/session/session.hpp"
+#include "platform/stop_signals.hpp"
 
 namespace glint {
 namespace {
-
-// Set by Ctrl-C: the run ends at once, with its table and everything written.
-std::atomic<bool> g_stop{false};
 
 struct RunArguments {
   std::string config, json, out = "out", can, level;
@@ -109,14 +106,14 @@ int run(const RunArguments& arguments) {
     options.injections.push_back(injection_of(text));
   }
   options.trace = arguments.trace;
-  std::signal(SIGINT, [](int) { g_stop = true; });
-  std::signal(SIGTERM, [](int) { g_stop = true; });
+  options.stop = &stop_on_signals();
   std::optional<KeyTerminal> terminal;
   listen_to_keys(arguments, cell, terminal);
   if (terminal) options.keys = terminal->descriptor();
   make_folder(arguments.out);
   make_folder_of(arguments.json);
   ReservedRoom room(arguments.json);
+  const FolderLock lock(arguments.out);
   Progress progress("tracking");
   options.out = arguments.out;
   options.progress = [&](double done_s, double all_s) { progress.show(done_s, all_s); };
@@ -125,7 +122,6 @@ int run(const RunArguments& arguments) {
         0, 1,
         "renders ahead: " + std::to_string(rendered) + " of " + std::to_string(wanted) + " frames");
   };
-  options.stop = &g_stop;
   options.source_frame_time = {static_cast<std::int64_t>(arguments.source_frame_ms * 1e6)};
   SessionResult result = run_session(cell, options);
   progress.clear();

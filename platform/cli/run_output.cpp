@@ -105,6 +105,7 @@ std::vector<std::pair<std::string, std::string>> output_rows(const ordered_json&
 
 std::vector<std::string> failures_of(const SessionResult& result) {
   std::vector<std::string> lines = lines_of(losses_of(result));
+  if (!result.fault.empty()) lines.push_back(result.fault);
   if (!sums_hold(result)) {
     lines.emplace_back("DDS: offered, written and received samples do not add up");
   }

@@ -35,12 +35,15 @@ Duration unix_offset() noexcept {
   return {offset};
 }
 
-void sleep_until(Time wake) noexcept {
-  if (wake <= monotonic_now()) return;
+bool sleep_until(Time wake) noexcept {
+  if (wake <= monotonic_now()) return true;
   const timespec until{static_cast<time_t>(wake.nanoseconds / k_second),
                        static_cast<long>(wake.nanoseconds % k_second)};
-  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+  int error = EINTR;
+  while (error == EINTR) {
+    error = clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
   }
+  return error == 0;
 }
 
 }  // namespace glint

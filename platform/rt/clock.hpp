@@ -13,7 +13,8 @@ namespace glint {
 // moment of the call; the system's clock may be set later.
 [[nodiscard]] Duration unix_offset() noexcept;
 
-// Sleeps until an absolute time, also across signals; returns at once when it has passed.
-void sleep_until(Time wake) noexcept;
+// Sleeps until an absolute time, also across signals; returns at once when it has passed. False:
+// the system refuses to sleep, and nothing was waited for.
+[[nodiscard]] bool sleep_until(Time wake) noexcept;
 
 }  // namespace glint

@@ -1,22 +1,24 @@
 #include "platform/rt/periodic_loop.hpp"
 
-#include "platform/rt/clock.hpp"
-
 namespace glint {
 
-Tick PeriodicLoop::next() noexcept {
+std::optional<Tick> PeriodicLoop::next() noexcept {
   Tick tick;
   const Time now = monotonic_now();
-  const std::int64_t due = (now - first_).nanoseconds / period_.nanoseconds;
-  if (now > first_ && due > static_cast<std::int64_t>(next_number_) + catch_up_max_) {
-    tick.skipped = static_cast<std::uint32_t>(due) - next_number_;
-    next_number_ += tick.skipped;
+  const std::uint64_t due =
+      now > first_ ? static_cast<std::uint64_t>((now - first_).nanoseconds / period_.nanoseconds)
+                   : 0;
+  if (due > next_number_ + catch_up_max_) {
+    tick.skipped = due - next_number_;
+    next_number_ = due;
     skipped_ += tick.skipped;
   }
   tick.number = next_number_++;
-  tick.nominal = first_ + period_ * tick.number;
-  sleep_until(tick.nominal);
+  tick.nominal = first_ + period_ * static_cast<std::int64_t>(tick.number);
+  (void)sleep_(tick.nominal);  // a refusal shows below
   tick.woken = monotonic_now();
+  // Numbers only grow, so no more than one tick a period passes this.
+  if (tick.woken < tick.nominal) return std::nullopt;
   if (tick.woken >= tick.nominal + period_) ++late_;
   return tick;
 }

@@ -1,28 +1,39 @@
-// Ticks at a fixed rate: tick n is due at first + n * period, always. Late ticks are made up for,
-// one at once after the other; what is later than that is skipped, and said to be.
+// Ticks at a fixed rate: tick n is due at first + n * period, always. Ticks that are a little late
+// run at once, one after the other; a loop that is later than that skips ticks and counts them.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "kernels/units.hpp"
+#include "platform/rt/clock.hpp"
 
 namespace glint {
 
 struct Tick {
-  std::uint32_t number = 0;
-  Time nominal;               // first + number * period: what the output may know of time
+  std::uint64_t number = 0;
+  Time nominal;               // first + number * period: the only time that the output reads
   Time woken;                 // when it really began
-  std::uint32_t skipped = 0;  // ticks between this one and the one before that never ran
+  std::uint64_t skipped = 0;  // ticks between this one and the one before that never ran
 };
+
+// What a run says that stopped because of it.
+inline constexpr const char* k_ran_away =
+    "ticks: the system does not let the loop sleep until its next tick; the run stopped there, "
+    "expected a clock that can be slept by";
 
 class PeriodicLoop {
  public:
-  // period > 0. `catch_up_max` is how many ticks may be owed before they are skipped.
-  PeriodicLoop(Time first, Duration period, std::uint32_t catch_up_max = 25) noexcept
-      : first_(first), period_(period), catch_up_max_(catch_up_max) {}
+  using Sleep = bool (*)(Time wake) noexcept;
 
-  // Waits for the next tick, at most until its nominal time.
-  [[nodiscard]] Tick next() noexcept;
+  // period > 0. `catch_up_max` is how many ticks may be owed before they are skipped.
+  PeriodicLoop(Time first, Duration period, std::uint64_t catch_up_max = 25,
+               Sleep sleep = sleep_until) noexcept
+      : first_(first), period_(period), catch_up_max_(catch_up_max), sleep_(sleep) {}
+
+  // Waits for the next tick, at most until its nominal time. Nothing: the loop would run faster
+  // than its period, because the system does not let it sleep; the caller has to stop.
+  [[nodiscard]] std::optional<Tick> next() noexcept;
 
   // Ticks that began after the next one was due, and ticks that never ran; since the start.
   [[nodiscard]] std::uint64_t late() const noexcept { return late_; }
@@ -31,8 +42,9 @@ class PeriodicLoop {
  private:
   Time first_;
   Duration period_;
-  std::uint32_t catch_up_max_;
-  std::uint32_t next_number_ = 0;
+  std::uint64_t catch_up_max_;
+  Sleep sleep_;
+  std::uint64_t next_number_ = 0;
   std::uint64_t late_ = 0;
   std::uint64_t skipped_ = 0;
 };

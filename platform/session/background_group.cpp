@@ -29,12 +29,12 @@ RunnerSettings<Background> background_settings(const Cell& cell, const GroupPlan
   return settings;
 }
 
-// Whether the time has come; otherwise the session ended first.
+// Whether the time has come; otherwise the session ended first, or the system refuses to sleep.
 bool wait_until(Time due, const std::atomic<bool>& stop) noexcept {
   while (!stop) {
     const Time now = monotonic_now();
     if (now >= due) return true;
-    sleep_until(std::min(due, now + k_look));
+    if (!sleep_until(std::min(due, now + k_look))) return false;
   }
   return false;
 }
@@ -110,7 +110,7 @@ void BackgroundGroup::reach(Time now) noexcept {
 void BackgroundGroup::slice(Time nominal, Time now) noexcept {
   if (is_free()) show(scene_.pictures.newest(nominal));
   const std::uint64_t activation = ++counts_.slices;
-  (void)runner_.run(graph_, {activation, static_cast<std::uint32_t>(activation), nominal, now, 0});
+  (void)runner_.run(graph_, {activation, activation, nominal, now, 0});
   runner_.settle(graph_);
   const MapProgress& progress = std::as_const(graph_).output<MapProgress>();
   const RobotProgress& robot = std::as_const(graph_).output<RobotProgress>();

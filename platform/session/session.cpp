@@ -104,8 +104,9 @@ void tell_of_robot(const SessionGroups& groups, ToldOfRobot& told) {
 // Frames when they arrive, ticks and slices by the clock, each group in a thread of its own.
 void run_live(const Cell& cell, Time epoch, SimulatedSource& source, SessionGroups& groups,
               Time last, const SessionOptions& options, SessionResult& result) {
-  std::atomic<bool> frames_done{false};
+  std::atomic<bool> frames_done{false}, ran_away{false};
   std::atomic<std::int64_t> reached_ns{0};
+  const auto ends = [&] { return stopped(options) || ran_away; };
   const std::uint64_t allocations_before = AllocationCounter::count();
   const std::uint64_t faults_before = PageFaultCounter::count();
   const Time end = last + cell.lost_after;
@@ -116,7 +117,7 @@ void run_live(const Cell& cell, Time epoch, SimulatedSource& source, SessionGrou
   RealTimeThread frame_thread({"glint-frame", plan.frame.cores[0], plan.frame.priority}, [&] {
     counted([&] {
       ArrivedFrame arrived;
-      while (!stopped(options) && source.wait(arrived)) {
+      while (!ends() && source.wait(arrived)) {
         groups.process(arrived);
         source.give_back(arrived);
       }
@@ -126,10 +127,15 @@ void run_live(const Cell& cell, Time epoch, SimulatedSource& source, SessionGrou
   RealTimeThread tick_thread({"glint-tick", plan.tick.cores[0], plan.tick.priority}, [&] {
     counted([&] {
       for (;;) {
-        const Tick tick = loop.next();
-        const Time nominal = after_epoch(tick.nominal);
+        const std::optional<Tick> tick = loop.next();
+        if (!tick) {
+          groups.stop_safe();
+          ran_away = true;
+          break;
+        }
+        const Time nominal = after_epoch(tick->nominal);
         if (frames_done && (nominal > end || stopped(options))) break;
-        groups.tick(tick.number, nominal, after_epoch(tick.woken));
+        groups.tick(tick->number, nominal, after_epoch(tick->woken));
         ++result.ticks;
         reached_ns = nominal.nanoseconds;
       }
@@ -143,8 +149,7 @@ void run_live(const Cell& cell, Time epoch, SimulatedSource& source, SessionGrou
   }
   const double all_s = static_cast<double>(end.nanoseconds) * 1e-9;
   ToldOfRobot told;
-  while (!frames_done ||
-         (reached_ns < (end - tick_period(cell)).nanoseconds && !stopped(options))) {
+  while (!frames_done || (reached_ns < (end - tick_period(cell)).nanoseconds && !ends())) {
     // The source may be behind its time, the ticks are not.
     const double reached_s = static_cast<double>(reached_ns) * 1e-9;
     if (options.progress) {
@@ -158,6 +163,7 @@ void run_live(const Cell& cell, Time epoch, SimulatedSource& source, SessionGrou
   tick_thread.join();
   ended = true;
   if (background_thread) background_thread->join();
+  if (ran_away) result.fault = k_ran_away;
   result.ticks_late = static_cast<std::int64_t>(loop.late());
   result.ticks_skipped = static_cast<std::int64_t>(loop.skipped());
   result.heap_allocations_after_start = AllocationCounter::count() - allocations_before;
@@ -180,7 +186,7 @@ void run_in_order(const Cell& cell, Time& now, SimulatedSource& source, SessionG
       now = next_tick;
       result.duration_s = (now - Time{}).seconds();
       if (groups.background() != nullptr) groups.background()->reach(now);
-      groups.tick(static_cast<std::uint32_t>(result.ticks++), next_tick, next_tick);
+      groups.tick(static_cast<std::uint64_t>(result.ticks++), next_tick, next_tick);
     }
   };
   ArrivedFrame arrived;
@@ -249,7 +255,8 @@ SessionResult run_session(const Cell& cell, sim::Scenario scenario, const Sessio
   SleepUntil sleep;
   if (cell.realtime) {
     now = [epoch] { return Time{} + (monotonic_now() - epoch); };
-    sleep = [epoch](Time time) { sleep_until(epoch + (time - Time{})); };
+    // A refusal to sleep stops the tick loop, and with it the run.
+    sleep = [epoch](Time time) { (void)sleep_until(epoch + (time - Time{})); };
   }
 
   Sinks sinks(cell, options, unix_offset_ns);

@@ -101,7 +101,7 @@ void SessionGroups::process(const ArrivedFrame& arrived) noexcept {
   background_->tracked().publish(processed_, arrived.frame.arrival.nanoseconds);
 }
 
-void SessionGroups::tick(std::uint32_t number, Time nominal, Time woken) noexcept {
+void SessionGroups::tick(std::uint64_t number, Time nominal, Time woken) noexcept {
   tick_.tick(number, nominal, woken);
   counters_->tick.store(tick_runner_.overruns().total(), std::memory_order_relaxed);
   counters_->source.store(tick_.ticks_source_late(), std::memory_order_relaxed);

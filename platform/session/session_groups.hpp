@@ -25,7 +25,9 @@ class SessionGroups {
                 BackgroundScene scene);
 
   void process(const ArrivedFrame& arrived) noexcept;
-  void tick(std::uint32_t number, Time nominal, Time woken) noexcept;
+  void tick(std::uint64_t number, Time nominal, Time woken) noexcept;
+  // In place of the next tick: see TickGroup.
+  void stop_safe() noexcept { tick_.stop_safe(); }
 
   // What changes by plan or was asked for, up to this time; not by a real-time thread.
   void reach(Time now) { roster_.reach(now); }

@@ -41,6 +41,7 @@ struct SinkOutcome {
   RecordingOutcome recording;
   std::string recording_file;
   std::string output_sha256;
+  std::string fault;                     // why the run had to stop; empty: it did not
   std::vector<std::string> refused;      // real-time rights that the system did not grant
   std::vector<std::string> files;        // everything written
   std::vector<std::string> not_written;  // other files that the disk refused, each with the reason

@@ -37,7 +37,7 @@ TickGroup::TickGroup(const Cell& cell, graph::TripleBuffer<Estimates>& estimates
   output_->latest<PenButtons>().bind(buttons);
 }
 
-void TickGroup::tick(std::uint32_t number, Time nominal, Time woken) noexcept {
+void TickGroup::tick(std::uint64_t number, Time nominal, Time woken) noexcept {
   const Now now{nominal, number, unix_offset_ns_};
   output_->input<Now>() = now;
   (void)group_.release(nominal.nanoseconds);
@@ -67,6 +67,10 @@ void TickGroup::tick(std::uint32_t number, Time nominal, Time woken) noexcept {
   offer_samples();
 }
 
+void TickGroup::stop_safe() noexcept {
+  (void)send_one(heartbeat_frame(node_, CanNodeState::stopped), now_());
+}
+
 void TickGroup::answer(const Now& now) noexcept {
   (void)own_notes_.push({k_tick_group, overrun_});
   samples_ = substitute_.get();
@@ -94,7 +98,7 @@ void TickGroup::offer_samples() noexcept {
   }
 }
 
-std::uint32_t TickGroup::carried_sequence() const noexcept {
+std::uint64_t TickGroup::carried_sequence() const noexcept {
   return std::as_const(*output_).token<graph::Latest<Estimates>>().value().verdict.stamp.sequence;
 }
 

@@ -42,7 +42,9 @@ class TickGroup {
 
   // Tick `number` at its nominal time; `woken` is when it really began. Of a tick that was not in
   // time, what the policy says leaves.
-  void tick(std::uint32_t number, Time nominal, Time woken) noexcept;
+  void tick(std::uint64_t number, Time nominal, Time woken) noexcept;
+  // No tick can follow: the node's heartbeat says so.
+  void stop_safe() noexcept;
 
   // From here on the ticks without a measurement are counted while this source is late.
   void watch(const FrameSource& source) noexcept { source_ = &source; }
@@ -63,7 +65,7 @@ class TickGroup {
   void send(const Now& now, Time woken) noexcept;
   void send_poses(Time woken) noexcept;
   void send_emergency(Time tick) noexcept;
-  [[nodiscard]] std::uint32_t carried_sequence() const noexcept;
+  [[nodiscard]] std::uint64_t carried_sequence() const noexcept;
   bool send_one(const CanFrame& frame, Time time) noexcept;
   [[nodiscard]] std::size_t pose_frames() const noexcept;
   [[nodiscard]] bool measures_none() const noexcept;

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <map>
 #include <memory>
+#include <vector>
 
 namespace glint {
 namespace {
@@ -46,6 +49,37 @@ TEST(PackCan, SendsOneFdFrameATickInsteadWhereChosen) {
 
 TEST(PackCan, SendsOneEmergencyWhenAToolIsLost) {
   EXPECT_EQ(one_second({}, TrackState::lost).at(0x080 + 32), 1);
+}
+
+// The states of the heartbeats over three seconds in which frames arrive up to `last_frame`.
+std::vector<int> heartbeats(Time first_frame, Time last_frame) {
+  PackCan node;
+  auto samples = std::make_unique<PoseSamples>();
+  auto frames = std::make_unique<CanFrames>();
+  std::vector<int> states;
+  for (std::uint64_t i = 0; i < 750; ++i) {
+    const Now now{Time{} + milliseconds(4) * static_cast<std::int64_t>(i), i, 0};
+    samples->any_frame = now.tick >= first_frame;
+    samples->newest_frame = std::min(now.tick, last_frame);
+    node(now, *samples, *frames);
+    for (const CanFrame& frame : frames->frames()) {
+      if (frame.identifier == 0x720) states.push_back(frame.data[0]);
+    }
+  }
+  return states;
+}
+
+TEST(PackCan, BootsUpAndIsPreOperationalUntilTheFirstFrame) {
+  const auto states = heartbeats(Time{} + milliseconds(1000), Time{} + milliseconds(9000));
+  ASSERT_EQ(states.size(), 30u);
+  EXPECT_EQ(states[0], 0x00);
+  for (std::size_t i = 1; i < 30; ++i) EXPECT_EQ(states[i], i < 10 ? 0x7F : 0x05) << i;
+}
+
+TEST(PackCan, IsPreOperationalWhenFramesNoLongerCome) {
+  const auto states = heartbeats(Time{}, Time{} + milliseconds(1000));
+  ASSERT_EQ(states.size(), 30u);
+  for (std::size_t i = 1; i < 30; ++i) EXPECT_EQ(states[i], i <= 15 ? 0x05 : 0x7F) << i;
 }
 
 }  // namespace

@@ -5,8 +5,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <string>
+#include <vector>
+
+#include "platform/can/candump_line.hpp"
 
 namespace glint {
 namespace {
@@ -34,7 +39,9 @@ class BoardGroupsTest : public testing::Test {
 
   // Some frames, then some ticks, each released when it is due; the pen's button goes down first,
   // if at all.
-  [[nodiscard]] BoardResult run_with(const BoardBounds& bounds, bool pressed = false) const {
+  [[nodiscard]] BoardResult run_with(const BoardBounds& bounds, bool pressed = false,
+                                     std::uint64_t first_tick = 0,
+                                     std::uint64_t ticks = k_ticks) const {
     Sinks sinks(cell_, {folder_.string(), false, {}}, 0);
     if (pressed) sinks.offer_button({Time{}, Button::draw, true});
     Time now;
@@ -47,9 +54,9 @@ class BoardGroupsTest : public testing::Test {
       arrived.frame = black_.view(mid_exposure, now, frame);
       groups.process(arrived);
     }
-    for (std::uint32_t tick = 0; tick < k_ticks; ++tick) {
-      now = Time{} + milliseconds(100 + 4 * tick);
-      groups.tick(tick, now, now);
+    for (std::uint64_t tick = 0; tick < ticks; ++tick) {
+      now = Time{} + milliseconds(100 + 4 * static_cast<std::int64_t>(tick));
+      groups.tick(first_tick + tick, now, now);
     }
     BoardResult result;
     groups.report(result);
@@ -85,6 +92,41 @@ TEST_F(BoardGroupsTest, SayWhetherAButtonIsHeld) {
   const std::string held = run_with({}, true).output_sha256;
   EXPECT_EQ(held, run_with({}, true).output_sha256);
   EXPECT_NE(held, run_with({}).output_sha256);
+}
+
+// Data bytes of the frames with this identifier in the run's log, in order.
+std::vector<std::vector<std::uint8_t>> sent_as(std::uint32_t identifier,
+                                               const std::filesystem::path& log) {
+  std::vector<std::vector<std::uint8_t>> data;
+  std::ifstream file(log);
+  for (std::string line; std::getline(file, line);) {
+    const auto record = parse_candump(line);
+    if (!record || record->frame.identifier != identifier) continue;
+    data.emplace_back(record->frame.bytes().begin(), record->frame.bytes().end());
+  }
+  return data;
+}
+
+TEST_F(BoardGroupsTest, SayByTheHeartbeatThatTheFrameThreadHangs) {
+  cell_.can.sink = "log:can.log";
+  (void)run_with({}, false, 0, 300);  // ticks for 1.2 s after the last frame
+  const auto heartbeats = sent_as(0x720, folder_ / "can.log");
+  ASSERT_EQ(heartbeats.size(), 12u);
+  EXPECT_EQ(heartbeats[0][0], 0x00) << "boot-up";
+  EXPECT_EQ(heartbeats[1][0], 0x05) << "operational";
+  EXPECT_EQ(heartbeats[11][0], 0x7F) << "pre-operational";
+}
+
+// A reader takes a repeated counter for a repeated frame.
+TEST_F(BoardGroupsTest, AdvanceTheCounterOfTheirCanFramesBeyondTwoToThe32Ticks) {
+  cell_.can.sink = "log:can.log";
+  constexpr std::uint64_t k_wrap = std::uint64_t{1} << 32;
+  (void)run_with({}, false, k_wrap - 5, 20);
+  const auto quality = sent_as(0x1A4, folder_ / "can.log");
+  ASSERT_EQ(quality.size(), 20u);
+  for (std::size_t i = 0; i < quality.size(); ++i) {
+    EXPECT_EQ(quality[i][1] & 0xFU, (k_wrap - 5 + i) % 15) << "tick 2^32 - 5 + " << i;
+  }
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ TEST_F(HeardJointsOfABoard, LetItFollowWhatItCannotFollowWithoutThem) {
   // The first is there where the second was counted.
   for (int i = 0; i < 1000 && sinks.inputs()->counts().joints < 2; ++i) {
     driver.say_joints();
-    sleep_until(monotonic_now() + milliseconds(10));
+    (void)sleep_until(monotonic_now() + milliseconds(10));
   }
   ASSERT_GE(sinks.inputs()->counts().joints, 2u);
   background.reach(at_ms(1150));

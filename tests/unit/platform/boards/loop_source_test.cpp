@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <cstdint>
 #include <filesystem>
 
 #include "platform/rt/clock.hpp"
@@ -65,13 +67,30 @@ TEST_F(LoopSourceTest, KeepsFramesThatArriveWhileAnOlderOneIsWorkedOn) {
   source.start();
   ArrivedFrame arrived;
   ASSERT_TRUE(source.wait(arrived));
-  sleep_until(epoch + milliseconds(10));
+  (void)sleep_until(epoch + milliseconds(10));
   for (int i = 1; i < 5; ++i) {
     ASSERT_TRUE(source.wait(arrived));
     EXPECT_EQ(arrived.frame.arrival, Time{} + milliseconds(1) * i);
   }
   EXPECT_FALSE(source.wait(arrived));
   EXPECT_LE(source.wake_ups_ns().size(), 1u);  // only the first found its group waiting
+}
+
+TEST_F(LoopSourceTest, GoesOnUntilItIsStoppedWhereNoNumberIsGiven) {
+  const FrameLoop loop(file_);
+  const Time epoch = monotonic_now();
+  std::atomic<bool> stop{false};
+  LoopSource source(loop, {0, milliseconds(1), epoch, epoch, 0, -1, &stop});
+  source.start();
+  ArrivedFrame arrived;
+  for (std::uint64_t i = 1; i <= 10; ++i) {
+    ASSERT_TRUE(source.wait(arrived));
+    ASSERT_EQ(arrived.frame.sequence, i);
+  }
+  stop = true;
+  while (source.wait(arrived)) {  // those that had arrived by then
+  }
+  EXPECT_GE(arrived.frame.sequence, 10u);
 }
 
 }  // namespace

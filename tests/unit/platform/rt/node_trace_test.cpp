@@ -22,7 +22,7 @@ TEST(NodeTrace, KeepsWhenEachNodeRanAndWhatWasDecidedAfterIt) {
   const Time begin = monotonic_now();
   trace.begin_activation(7, 70, 1'000, cycle_count());
   trace.on_node_begin(0);
-  sleep_until(monotonic_now() + milliseconds(2));
+  (void)sleep_until(monotonic_now() + milliseconds(2));
   trace.on_node_end(0);
   trace.on_node_begin(1);
   trace.on_node_end(1);

@@ -49,7 +49,7 @@ BackgroundCounts counted_for(Duration time, Duration period, int steps) {
   const Time epoch = monotonic_now();
   RealTimeThread thread(BackgroundGroup::thread_settings(*plan.background),
                         [&] { group.run(epoch, stop); });
-  sleep_until(epoch + time);
+  (void)sleep_until(epoch + time);
   stop = true;
   thread.join();
   return group.counts();

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
 namespace glint {
 namespace {
 
@@ -24,11 +28,17 @@ TEST(Latency, IsAllZeroForNoFrames) {
   EXPECT_EQ(figures_of_totals({}).max_us, 0);
 }
 
-TEST(Latency, CountsWhatDoesNotFitInsteadOfAllocating) {
-  LatencyLog log(2);
-  for (int i = 0; i < 5; ++i) log.add({});
-  EXPECT_EQ(log.entries().size(), 2u);
-  EXPECT_EQ(log.beyond(), 3);
+TEST(Latency, LogKeepsTheNewestAndTheLargestInTheRoomOfTheStart) {
+  LatencyLog log(3);
+  const FrameToCan* const room = log.entries().data();
+  for (const int ms : {1, 9, 2, 3, 4, 5, 6}) log.add({milliseconds(ms), {}, {}});
+  ASSERT_EQ(log.entries().size(), 3u);
+  EXPECT_EQ(log.entries().data(), room);
+  EXPECT_EQ(log.left_out(), 4);
+  std::vector<std::int64_t> left;
+  for (const FrameToCan& entry : log.entries()) left.push_back(entry.total().nanoseconds);
+  std::sort(left.begin(), left.end());
+  EXPECT_EQ(left, (std::vector<std::int64_t>{5'000'000, 6'000'000, 9'000'000}));
 }
 
 }  // namespace
