@@ -46,7 +46,9 @@ struct FindBlobs {
     for (int i = 0; i < k_row_bands; ++i) in_order[static_cast<std::size_t>(i)] = &bands[i];
     const std::span predicted(predictions.markers_px.data(),
                               static_cast<std::size_t>(predictions.marker_count));
-    work_ = find_blobs(frame, in_order, settings, predicted, scratch_, blobs, limits);
+    work_ =
+        find_blobs(frame, in_order, settings, {predicted, predictions.everywhere, predictions.turn},
+                   scratch_, blobs, limits);
   }
 
   static constexpr std::array<std::string_view, 5> k_loops = {"call", "runs", "distances", "blobs",

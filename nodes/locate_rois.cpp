@@ -46,7 +46,44 @@ bool box_of(const CameraModel& camera, const Prediction& prediction, Roi& box) {
   return prediction.in_view && box.x0 < box.x1 && box.y0 < box.y1;
 }
 
+// A part of the frame, another each turn: half or a quarter of its columns; every fourth turn a
+// quarter of its rows, too. Its middle moves over the whole frame by the golden ratio's multiples,
+// which leave no gap for long.
+Roi part_of_frame(const CameraModel& camera, std::uint32_t turn) {
+  constexpr std::uint32_t golden = 0x9E3779B9;  // 2^32 / phi
+  const auto share = [](std::uint32_t position, int room) {
+    return static_cast<int>(position * static_cast<std::uint64_t>(room) >> 32);
+  };
+  const int width = camera.width / (turn % 2 == 0 ? 4 : 2);
+  const int height = turn % 4 == 0 ? camera.height / 4 : camera.height;
+  const int x = share(turn * golden, camera.width) - width / 2;
+  const int y =
+      height == camera.height ? 0 : share(turn / 4 * golden * golden, camera.height) - height / 2;
+  return {std::max(x, 0), std::max(y, 0), std::min(x + width, camera.width),
+          std::min(y + height, camera.height)};
+}
+
 }  // namespace
+
+// Of the searched part and as many tools' boxes as there are ROIs: first those of tracked tools.
+void LocateRois::search_part(const ToolSet& set, int count, const Predictions& predictions,
+                             Rois& rois) noexcept {
+  rois.items[0] = part_of_frame(camera, predictions.turn);
+  rois.count = 1;
+  int boxes = 1;
+  for (const bool missed : {false, true}) {
+    for (int t = 0; t < count && boxes < limits.tools; ++t) {
+      const Prediction& prediction = predictions.tools[t];
+      Roi box;
+      if (!set.items[t].present() || !prediction.has_prior || prediction.missed_last != missed ||
+          !box_of(camera, prediction, box))
+        continue;
+      ++boxes;
+      ++counts_[1];
+      counts_[2] += add_disjoint(box, rois);
+    }
+  }
+}
 
 void LocateRois::operator()(const FrameVerdict& verdict, const graph::Latest<ToolSet>& tools,
                             const Predictions& predictions, Rois& rois) noexcept {
@@ -54,8 +91,9 @@ void LocateRois::operator()(const FrameVerdict& verdict, const graph::Latest<Too
   counts_ = {{1}};
   if (!verdict.usable()) return;
   const ToolSet& set = tools.value();
-  bool whole_frame = false;
   const int count = tools_within(set, limits);
+  if (predictions.narrowed) return search_part(set, count, predictions, rois);
+  bool whole_frame = false;
   for (int t = 0; t < count && !whole_frame; ++t) {
     if (!set.items[t].present()) continue;
     const Prediction& prediction = predictions.tools[t];

@@ -1,7 +1,8 @@
 // Where in the image to look for the tools.
 //
-// A tool seen in the last frame is looked for around its prediction; as soon as one is not (never
-// found, missed, gone), the whole frame is searched, which the budget covers anyway.
+// A tool seen in the last frame is searched for around its prediction; as soon as one is not (never
+// found, missed, gone), the whole frame is searched, which the budget covers anyway. Where the
+// whole frame had more runs than that, a part of it is, another each frame, and the boxes.
 // Cost: (tools - 1)^2 comparisons of boxes.
 // Worst input: the last tool's box meets the others one after the other, each only once the one
 // before has been merged.
@@ -38,6 +39,9 @@ struct LocateRois {
                   const Predictions& predictions, Rois& rois) noexcept GLINT_NONBLOCKING;
 
  private:
+  void search_part(const ToolSet& set, int count, const Predictions& predictions,
+                   Rois& rois) noexcept GLINT_NONBLOCKING;
+
   graph::LoopCounts counts_;
 };
 

@@ -12,6 +12,18 @@ std::span<T> first(std::array<T, k_tools_max>& all, int count) {
   return {all.data(), static_cast<std::size_t>(count)};
 }
 
+// Why a tool that was not found may lie where nothing was searched; none: it was searched for
+// everywhere. Near a prediction blobs are kept in any case, runs are not.
+Reason left_unsearched(const Markers& markers, const Predictions& predictions,
+                       const Prediction& prediction, const Labelings& labelings) {
+  const bool missed =
+      labelings.reason == Reason::too_few_markers || labelings.reason == Reason::no_labeling;
+  if (!missed) return Reason::none;
+  if (markers.incomplete == Reason::runs_full) return Reason::runs_full;
+  if (prediction.has_prior) return Reason::none;
+  return predictions.narrowed ? Reason::runs_full : markers.incomplete;
+}
+
 }  // namespace
 
 void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
@@ -42,6 +54,8 @@ void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
         markers, tool, gated, prediction.has_prior ? &prediction.T_camera_tool : nullptr, scratch_,
         out);
     gated.search_steps_max -= work.search.steps;
+    const Reason unsearched = left_unsearched(markers, predictions, prediction, out);
+    if (unsearched != Reason::none) out.reason = unsearched;
     const graph::LoopCounts done = {{0, 1, work.markers, work.pairs.pairs, work.pairs.tests,
                                      work.pairs.words_written, work.search.steps,
                                      work.search.words_narrowed}};

@@ -22,6 +22,10 @@ void include(const CameraModel& camera, const Tool& tool, const Vector3& point,
   }
 }
 
+// While parts of the frame are searched, every so many frames the whole of it is: what had too many
+// runs may be gone.
+constexpr std::uint32_t k_whole_again = 16;
+
 // Of its variance, what a walk that returns with this correlation moves by.
 double moved_share(double seconds, double correlation_s) {
   return correlation_s > 0 ? 2 * (1 - exponential(-seconds / correlation_s)) : 2.0;
@@ -92,13 +96,17 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
   // As the frame before corrected it: this one's correction rests on what is yet to be found.
   const Pose T_camera_world = anchor.value().state.corrected(head.T_world_camera).inverse();
   predictions.marker_count = 0;
+  predictions.turn = verdict.accepted;
   counts_ = {{1}};
-  int lens_steps = 0;
+  int lens_steps = 0, searched_everywhere = 0, cut_short = 0;
   const ToolSet& set = tools.value();
   const int count = tools_within(set, limits);
   for (int t = 0; t < k_tools_max; ++t) {
     Prediction& prediction = predictions.tools[t];
     prediction = Prediction{};
+    const bool present = t < count && verdict.usable() && set.items[t].present();
+    searched_everywhere += present ? 1 : 0;
+    cut_short += present && last.value().tracks[t].reason == Reason::runs_full ? 1 : 0;
     if (t >= count || !verdict.usable() || verdict.resynchronised) continue;
     const Track& track = last.value().tracks[t];
     if (!track.alive || track.identity != set.items[t].identity) continue;
@@ -124,7 +132,10 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
       predictions.markers_px[predictions.marker_count++] = pixel.value;
       include(camera, tool, point, pixel.value, prediction);
     }
+    searched_everywhere -= present && prediction.in_view && !prediction.missed_last ? 1 : 0;
   }
+  predictions.everywhere = searched_everywhere > 0;
+  predictions.narrowed = cut_short > 0 && predictions.turn % k_whole_again != 0;
   counts_[4] = lens_steps;
 }
 

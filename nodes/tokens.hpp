@@ -67,6 +67,10 @@ struct Predictions {
   std::array<Prediction, k_tools_max> tools;
   std::array<Vector2, k_tools_max * k_markers_per_tool_max> markers_px;
   int marker_count = 0;
+  bool everywhere = false;  // a tool of the set may be anywhere: the whole frame is searched
+  // The whole frame had more runs than the budget: a part of it is searched, another each turn.
+  bool narrowed = false;
+  std::uint32_t turn = 0;  // number of the accepted frame
 };
 
 struct ToolLabelings {

@@ -31,8 +31,12 @@ struct Blob {
 struct Blobs {
   std::array<Blob, k_blobs_max> items;  // by rows: top first, then left first
   int count = 0;
-  std::uint32_t dropped = 0;  // beyond the buffer, or outside the size gate
+  std::uint32_t dropped = 0;   // beyond the budget, or outside the size gate
+  std::uint32_t left_out = 0;  // of these inside the gate: another frame may have them
+  // blobs_full also where all blobs are here, but their centroids had too little budget.
   Reason reason = Reason::none;
+  // Why blobs inside the gate may be missing: runs_full, or blobs_full by left_out.
+  Reason incomplete = Reason::none;
 };
 
 }  // namespace glint

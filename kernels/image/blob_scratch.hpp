@@ -35,7 +35,8 @@ struct BlobScratch {
   std::array<std::uint16_t, k_runs_max> next_run;
   std::array<Component, k_runs_max> components;     // by their first run
   std::array<std::uint16_t, k_runs_max> candidate;  // indices of components inside the size gate
-  std::array<std::int32_t, k_runs_max> distance;    // of a candidate to the nearest prediction
+  std::array<std::uint8_t, k_runs_max> misfit;      // of a candidate: marker_misfit()
+  std::array<std::int32_t, k_runs_max> distance;    // of a candidate to what is looked for
   int run_count = 0;
   int component_count = 0;
 };

@@ -1,6 +1,7 @@
 #include "kernels/image/blob_settings.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace glint {
@@ -28,6 +29,32 @@ SizeGate size_gate(double radius_m, double range_min_m, double range_max_m,
   gate.min_area_px = static_cast<std::uint32_t>(least);
   gate.max_area_px = static_cast<std::uint32_t>(most) + 1;
   return gate;
+}
+
+MarkerSizes marker_sizes(const MarkerOptics& optics) noexcept {
+  MarkerSizes sizes;
+  const double near_m = optics.range_min_m, far_m = optics.range_max_m;
+  if (!(optics.radius_min_m > 0) || !(optics.radius_max_m >= optics.radius_min_m) ||
+      !(near_m > 0) || !(far_m >= near_m) || !(optics.focal_px > 0) || !(optics.depth_unit_m > 0))
+    return sizes;
+  const auto sizes_between = [&](double from_m, double to_m) {
+    const double radius_px = optics.focal_px * optics.radius_min_m / to_m;
+    const double least = optics.visible_part_min * std::numbers::pi * radius_px * radius_px;
+    SizeGate gate = size_gate(optics.radius_max_m, from_m, to_m, optics.focal_px);
+    gate.min_area_px = static_cast<std::uint32_t>(std::clamp(std::ceil(least), 1.0, k_area_max_px));
+    return gate;
+  };
+  sizes.known = true;
+  sizes.invalid_from = optics.depth_invalid_from;
+  while ((optics.depth_invalid_from - 1) >> sizes.depth_shift >= k_depth_bins) ++sizes.depth_shift;
+  sizes.without_depth = sizes_between(near_m, far_m);
+  for (int bin = 0; bin < k_depth_bins; ++bin) {
+    const double from_m = optics.depth_unit_m * (bin << sizes.depth_shift);
+    const double to_m = optics.depth_unit_m * ((bin + 1) << sizes.depth_shift);
+    sizes.by_depth[static_cast<std::size_t>(bin)] =
+        sizes_between(std::clamp(from_m, near_m, far_m), std::clamp(to_m, near_m, far_m));
+  }
+  return sizes;
 }
 
 }  // namespace glint

@@ -5,6 +5,7 @@
 #include "kernels/image/centroid.hpp"
 #include "kernels/image/centroid_variance.hpp"
 #include "kernels/image/components.hpp"
+#include "kernels/image/marker_misfit.hpp"
 #include "kernels/merge_sort.hpp"
 #include "kernels/shared_budget.hpp"
 
@@ -22,6 +23,14 @@ int gather_candidates(const BlobSettings& settings, BlobScratch& scratch) {
     candidates += area >= settings.min_area_px && area <= settings.max_area_px ? 1 : 0;
   }
   return candidates;
+}
+
+void judge_candidates(const Frame& frame, const BlobSettings& settings, BlobScratch& scratch,
+                      int candidates) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(candidates); ++i) {
+    const Component& component = scratch.components[scratch.candidate[i]];
+    scratch.misfit[i] = static_cast<std::uint8_t>(marker_misfit(frame, component, settings));
+  }
 }
 
 // Sorts the candidates by rows: top first, then left first, then by their first run. A key has its
@@ -72,14 +81,16 @@ Blob blob_of(const Frame& frame, const Component& component, const Centroid& cen
 }  // namespace
 
 BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
-                    const BlobSettings& settings, std::span<const Vector2> predicted_px,
-                    BlobScratch& scratch, Blobs& out, const Limits& limits) noexcept {
+                    const BlobSettings& settings, const BlobSearch& search, BlobScratch& scratch,
+                    Blobs& out, const Limits& limits) noexcept {
   out.count = 0;
   out.dropped = 0;
+  out.left_out = 0;
   out.reason = Reason::none;
   for (const Runs* band : bands) {
     if (band->reason != Reason::none) out.reason = band->reason;
   }
+  out.incomplete = out.reason;
   BlobWork work;
   find_components(bands, scratch, limits.runs_per_band);
   work.runs = scratch.run_count;
@@ -87,9 +98,13 @@ BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
   const int most = std::clamp(limits.blobs, 0, k_blobs_max);
   if (candidates > most) {
     out.reason = Reason::blobs_full;
+    if (out.incomplete == Reason::none) out.incomplete = Reason::blobs_full;
+    out.left_out = static_cast<std::uint32_t>(candidates - most);
     const auto markers = static_cast<std::size_t>(limits.tools * limits.markers_per_tool);
-    work.distances = keep_nearest(predicted_px.first(std::min(predicted_px.size(), markers)),
-                                  scratch, candidates, most);
+    BlobSearch within = search;
+    within.predicted_px = search.predicted_px.first(std::min(search.predicted_px.size(), markers));
+    judge_candidates(frame, settings, scratch, candidates);
+    work.distances = keep_nearest(within, scratch, candidates, most);
     candidates = most;
   }
   out.dropped = static_cast<std::uint32_t>(scratch.component_count - candidates);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
 
+#include "kernels/image/marker_misfit.hpp"
 #include "kernels/image/pair_products.hpp"
 
 namespace glint {
@@ -15,6 +17,11 @@ constexpr std::int32_t k_too_far = 1 << 23;
 static_assert(2 * std::max(k_width_max, k_height_max) - k_nearest <= 1536);
 static_assert(2 * 1536 * 1536 < k_too_far);
 constexpr int k_at_once = 16;  // distances compared in one round
+// Each step of misfit doubles a distance, which is squared.
+constexpr int k_bits_a_misfit = 2;
+constexpr std::int32_t k_last = INT32_MAX;
+static_assert((std::int64_t{2} * 1536 * 1536 << k_bits_a_misfit * k_misfit_max) + 1 < k_last);
+constexpr std::uint8_t k_stays = 0x80;  // in the place of a misfit: kept already
 
 // The smaller of numbers up to k_too_far: in the place of a float's fraction they are in the order
 // of the floats, for which every x86-64 has an instruction that chooses.
@@ -41,9 +48,9 @@ class Least {
 #endif
 };
 
-// The predictions in half pixels, x beside y, each as often as there are pairs of lanes. Far
-// outside the frame the order among them is of no interest.
-struct Predictions {
+// Points in half pixels, x beside y, each as often as there are pairs of lanes. Far outside the
+// frame the order among predictions is of no interest.
+struct Points {
   std::array<Words, k_predictions_max> at;
   int count = 0;
 };
@@ -53,8 +60,8 @@ constexpr std::int32_t pair_of(int x, int y) {
                                    static_cast<std::uint32_t>(y & 0xFFFF) << 16);
 }
 
-Predictions in_half_pixels(std::span<const Vector2> predicted_px) {
-  Predictions out;
+Points in_half_pixels(std::span<const Vector2> predicted_px) {
+  Points out;
   for (const Vector2& pixel : predicted_px) {
     if (out.count == k_predictions_max) break;
     if (!(pixel.squaredNorm() < 1e12)) continue;
@@ -69,11 +76,11 @@ std::int32_t middle_of(const Component& component) {
   return pair_of(component.x0 + component.x1, component.y0 + component.y1);
 }
 
-// Squared, in half pixels, of four middles to their nearest predictions.
-Sums nearest(Words middles, const Predictions& predictions) {
+// Squared, in half pixels, of four middles to their nearest points.
+Sums nearest(Words middles, const Points& points) {
   Least least;
-  for (int i = 0; i < predictions.count; ++i) {
-    const Words apart = middles - predictions.at[static_cast<std::size_t>(i)];
+  for (int i = 0; i < points.count; ++i) {
+    const Words apart = middles - points.at[static_cast<std::size_t>(i)];
     least.see(pair_products(apart, apart));
   }
   return least.value();
@@ -94,8 +101,8 @@ Cut find_cut(const BlobScratch& scratch, int candidates, int kept) {
     return four;
   };
   Cut cut{0, kept};
-  for (std::int32_t bit = k_too_far / 2; bit > 0; bit /= 2) {
-    const Sums last_below = Sums{} + (cut.distance + bit - 1);
+  for (std::int32_t bit = k_last / 2 + 1; bit > 0; bit /= 2) {
+    const Sums last_below = Sums{} + (cut.distance + (bit - 1));
     Sums even{}, odd{};  // counts of the others, negative
     for (int i = 0; i < padded; i += k_at_once) {
       even += at(i) > last_below;
@@ -112,41 +119,74 @@ Cut find_cut(const BlobScratch& scratch, int candidates, int kept) {
   return cut;
 }
 
-// To each candidate's middle, and k_too_far behind the last one.
-void measure_distances(const Predictions& predictions, BlobScratch& scratch, int candidates) {
+// Of each candidate's middle to the nearest point, grown by its misfit; 0 of one that stays
+// already, and k_last behind the last one.
+void measure_distances(const Points& points, BlobScratch& scratch, int candidates) {
   for (int i = 0; i < candidates; i += 4) {
     const auto middle = [&](int lane) {
       const auto at = static_cast<std::size_t>(std::min(i + lane, candidates - 1));
       return middle_of(scratch.components[scratch.candidate[at]]);
     };
     const Sums middles = {middle(0), middle(1), middle(2), middle(3)};
-    const Sums distances = nearest(reinterpret_cast<Words>(middles), predictions);
+    const Sums distances = nearest(reinterpret_cast<Words>(middles), points);
     std::memcpy(&scratch.distance[static_cast<std::size_t>(i)], &distances, sizeof distances);
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(candidates); ++i) {
+    const std::uint8_t misfit = scratch.misfit[i];
+    const std::int32_t grown = (scratch.distance[i] << k_bits_a_misfit * (misfit & 7)) + 1;
+    scratch.distance[i] = misfit == k_stays ? 0 : grown;
   }
   static_assert(k_runs_max % k_at_once == 0);
   for (int i = candidates; i % k_at_once != 0; ++i) {
-    scratch.distance[static_cast<std::size_t>(i)] = k_too_far;
+    scratch.distance[static_cast<std::size_t>(i)] = k_last;
   }
+}
+
+// Calls visit(index, whether it is one of the `kept` nearest) for each candidate.
+template <class Visit>
+void for_each_judged(const BlobScratch& scratch, int candidates, int kept, Visit visit) {
+  Cut cut = find_cut(scratch, candidates, kept);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(candidates); ++i) {
+    const std::int32_t distance = scratch.distance[i];
+    const bool last_place = distance == cut.distance && cut.equal > 0;
+    cut.equal -= last_place ? 1 : 0;
+    visit(i, distance < cut.distance || last_place);
+  }
+}
+
+// The middle of the candidate whose turn it is.
+Points focus_of(const BlobScratch& scratch, int candidates, std::uint32_t turn) {
+  constexpr std::uint32_t golden = 0x9E3779B9;  // 2^32 / phi
+  const std::uint64_t part = static_cast<std::uint32_t>(turn * golden);
+  const auto at = static_cast<std::size_t>(part * static_cast<std::uint64_t>(candidates) >> 32);
+  const std::int32_t middle = middle_of(scratch.components[scratch.candidate[at]]);
+  Points focus;
+  focus.at[0] = reinterpret_cast<Words>(Sums{} + middle);
+  focus.count = 1;
+  return focus;
 }
 
 }  // namespace
 
-int keep_nearest(std::span<const Vector2> predicted_px, BlobScratch& scratch, int candidates,
+int keep_nearest(const BlobSearch& search, BlobScratch& scratch, int candidates,
                  int kept) noexcept {
-  const Predictions predictions = in_half_pixels(predicted_px);
-  if (predictions.count == 0) return 0;  // the first ones stand where they should
-  measure_distances(predictions, scratch, candidates);
-  Cut cut = find_cut(scratch, candidates, kept);
-  std::size_t out = 0;
-  for (int i = 0; i < candidates; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const std::int32_t distance = scratch.distance[at];
-    const bool last_place = distance == cut.distance && cut.equal > 0;
-    scratch.candidate[out] = scratch.candidate[at];
-    cut.equal -= last_place ? 1 : 0;
-    out += distance < cut.distance || last_place ? 1 : 0;
+  const int fours = (candidates + 3) / 4;
+  const Points predictions = in_half_pixels(search.predicted_px);
+  const int near = kept_near_predictions(search, predictions.count, kept);
+  if (near > 0) measure_distances(predictions, scratch, candidates);
+  if (near > 0 && near < kept) {
+    for_each_judged(scratch, candidates, near, [&](std::size_t i, bool stays) {
+      if (stays) scratch.misfit[i] = k_stays;
+    });
   }
-  return (candidates + 3) / 4 * predictions.count;
+  if (near < kept)
+    measure_distances(focus_of(scratch, candidates, search.turn), scratch, candidates);
+  std::size_t out = 0;
+  for_each_judged(scratch, candidates, kept, [&](std::size_t i, bool stays) {
+    scratch.candidate[out] = scratch.candidate[i];
+    out += stays ? 1 : 0;
+  });
+  return fours * (predictions.count + (near < kept ? 1 : 0));
 }
 
 }  // namespace glint

@@ -209,6 +209,7 @@ BackProjectWork back_project(const Frame& frame, const Blobs& blobs, const Camer
                              const Limits& limits) noexcept {
   BackProjectWork work;
   out.count = 0;
+  out.incomplete = blobs.incomplete;
   const int count = std::clamp(blobs.count, 0, std::min(limits.blobs, k_blobs_max));
   SharedBudget pixels(limits.range_pixels_a_blob, limits.blobs, count);
   SharedBudget samples(limits.range_samples_a_blob, limits.blobs, count);

@@ -6,6 +6,7 @@
 
 #include "kernels/geometry.hpp"
 #include "kernels/limits.hpp"
+#include "kernels/reason.hpp"
 
 namespace glint {
 
@@ -42,6 +43,8 @@ struct Marker {
 struct Markers {
   std::array<Marker, k_blobs_max> items;
   int count = 0;
+  // Why markers of the frame may be missing here: blobs_full, runs_full.
+  Reason incomplete = Reason::none;
 };
 
 }  // namespace glint

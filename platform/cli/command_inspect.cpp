@@ -132,7 +132,8 @@ int inspect_frame(const InspectArguments& arguments) {
     lines.push_back(name + ": " + (track.seen_now ? "found" : reason));
     std::printf("%-16s %s\n", printable(name).c_str(), track.seen_now ? "found" : reason.c_str());
   }
-  std::printf("%-16s %d (and %u outside the size gate)\n", "blobs", blobs.count, blobs.dropped);
+  std::printf("%-16s %d (and %u outside the size gate, %u beyond the budget)\n", "blobs",
+              blobs.count, blobs.dropped - blobs.left_out, blobs.left_out);
 
   make_folder(arguments.out);
   const std::string picture = (std::filesystem::path(arguments.out) /
@@ -147,6 +148,7 @@ int inspect_frame(const InspectArguments& arguments) {
                               {"reasons", reasons},
                               {"blobs", blob_list},
                               {"blobs_dropped", blobs.dropped},
+                              {"blobs_left_out", blobs.left_out},
                               {"picture", picture}});
   return 0;
 }

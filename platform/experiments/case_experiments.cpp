@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "platform/experiments/acquisition_experiment.hpp"
 #include "platform/experiments/bound_experiment.hpp"
 #include "platform/experiments/centroid_experiment.hpp"
 #include "platform/experiments/cis_pivot.hpp"
@@ -41,6 +42,8 @@ std::span<const CaseExperiment> case_experiments() {
       {"map", "a map of depth pictures against a second one of the same place", true, run_map},
       {"clutter", "five tools among up to 200 strays, and two tools that look alike", false,
        run_clutter},
+      {"acquire", "how soon a tool is found among more bright spots than the cell has blobs for",
+       false, run_acquisition},
       {"reference", "a robot found in real and simulated depth, from hundreds of rough poses", true,
        run_reference_experiment},
   };

@@ -58,6 +58,9 @@ std::optional<MarkerFrame> read_markers(MessageBytes bytes) {
     marker.peak = from.get<std::uint16_t>();
   }
   if (from.failed()) return std::nullopt;
+  if (from.at_end()) return frame;  // and from before markers could be incomplete
+  frame.markers.incomplete = static_cast<Reason>(from.get<std::uint8_t>());
+  if (from.failed() || frame.markers.incomplete > k_last_reason) return std::nullopt;
   return frame;
 }
 

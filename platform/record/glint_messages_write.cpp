@@ -82,6 +82,7 @@ void write_message(CdrWriter& to, const MarkerFrame& frame, Duration unix_offset
     to.put(marker.bias_taken_m);
     to.put(marker.peak);
   }
+  to.put(static_cast<std::uint8_t>(frame.markers.incomplete));
 }
 
 void write_message(CdrWriter& to, const ChoiceRecord& choice, Duration unix_offset) {

@@ -70,7 +70,8 @@ constexpr std::array k_definitions{
                "glint_msgs/Marker[] markers\n"
                "glint_msgs/MarkerSigma[] sigmas  # of the same; older recordings have none\n"
                "glint_msgs/MarkerTurn[] turns    # of the same; older recordings have none\n"
-               "glint_msgs/MarkerDepth[] depths  # of the same; older recordings have none\n"},
+               "glint_msgs/MarkerDepth[] depths  # of the same; older recordings have none\n"
+               "uint8 incomplete  # why markers may be missing; older recordings have none\n"},
     Definition{"glint_msgs/Choice",
                "std_msgs/Header header\nint64 nominal_ns\nuint64 activation\nuint8 group\n"
                "uint8 overrun  # 0: none; else 1 noticed ahead, 2 missed; plus 4 times the policy\n"

@@ -23,6 +23,28 @@ RadiusRange radii(const ToolSet& tools) {
   return range;
 }
 
+// A flat marker shines up to 75 degrees off its normal and is then narrower: half of its disc is
+// as likely as the whole.
+constexpr double k_flat_part_min = 0.4;
+
+MarkerOptics marker_optics(const Cell& cell) {
+  const Camera& camera = cell.camera;
+  const RadiusRange radius = radii(cell.tools);
+  MarkerOptics optics;
+  optics.radius_min_m = radius.smallest_m;
+  optics.radius_max_m = radius.largest_m;
+  for (int t = 0; t < cell.tools.count; ++t) {
+    if (cell.tools.items[static_cast<std::size_t>(t)].shape == MarkerShape::disc)
+      optics.visible_part_min = k_flat_part_min;
+  }
+  optics.focal_px = camera.model.fx;
+  optics.range_min_m = camera.range_min_m;
+  optics.range_max_m = camera.range_max_m;
+  optics.depth_unit_m = camera.depth.unit_m;
+  optics.depth_invalid_from = camera.depth.invalid_from;
+  return optics;
+}
+
 BlobSettings blob_settings(const Cell& cell) {
   const Camera& camera = cell.camera;
   const RadiusRange radius = radii(cell.tools);
@@ -36,6 +58,7 @@ BlobSettings blob_settings(const Cell& cell) {
   settings.threshold = camera.threshold;
   settings.saturated_from = camera.depth.saturated_from;
   settings.noise = camera.noise;
+  settings.sizes = marker_sizes(marker_optics(cell));
   return settings;
 }
 

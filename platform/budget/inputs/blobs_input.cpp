@@ -26,6 +26,9 @@ class MeasuredFindBlobs final : public MeasuredKernel {
     limits_ = limits;
     node_->limits = limits;
     node_->settings = {1, 4096, drawn_threshold(limits), 0xFFFF};
+    MarkerOptics optics;
+    optics.focal_px = 250;
+    node_->settings.sizes = marker_sizes(optics);
     drawn_.clear(limits);
     predict_at_random(random);
     switch (kind) {
@@ -56,7 +59,10 @@ class MeasuredFindBlobs final : public MeasuredKernel {
     }
   }
 
+  // With a tool that is searched for everywhere: a distance more for each four candidates.
   void predict_at_random(CounterRandom& random) {
+    predictions_->everywhere = true;
+    predictions_->turn = static_cast<std::uint32_t>(random.below(1 << 20));
     predictions_->marker_count = limits_.tools * limits_.markers_per_tool;
     for (int i = 0; i < predictions_->marker_count; ++i) {
       const double x = random.uniform() * limits_.width;

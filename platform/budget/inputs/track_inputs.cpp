@@ -183,6 +183,8 @@ class LocateRoisKernel final : public NodeKernel<LocateRois> {
     start_.camera.width = limits.width;
     start_.camera.height = limits.height;
     set_.count = at_its_worst(kind) ? limits.tools : 1 + numbers.below(limits.tools);
+    predictions_.narrowed = !at_its_worst(kind) && numbers.one_in(4);
+    predictions_.turn = static_cast<std::uint32_t>(number);
     for (int t = 0; t < set_.count; ++t) {
       set_.items[t].marker_count = limits.markers_per_tool;
       Prediction& prediction = predictions_.tools[t];

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <memory>
 
 #include "nodes/predict_tracks.hpp"
@@ -39,10 +40,11 @@ class LocateRois : public testing::Test {
         position + tools_->items[static_cast<std::size_t>(tool)].middle_m();
   }
 
-  Rois locate(std::int64_t gap_ms = 22) {
+  Rois locate(std::int64_t gap_ms = 22, std::uint32_t turn = 1) {
     graph::Latest<ToolSet> tools;
     tools.set(*tools_, 1, 0);
     FrameVerdict verdict;
+    verdict.accepted = turn;
     verdict.stamp.mid_exposure = Time{} + milliseconds(1000 + gap_ms);
     Rois rois;
     predict_(verdict, HeadPose{}, tools, graph::Previous<Anchor>(anchor_),
@@ -71,6 +73,38 @@ TEST_F(LocateRois, SearchesTheWholeFrameAfterAMiss) {
   track(0, Vector3(0, 0, 0.5));
   track(1, Vector3(0.1, 0, 0.5), false);
   EXPECT_EQ(locate().items[0].x1, 512);
+}
+
+bool holds(const Rois& rois, int x, int y) {
+  for (int i = 0; i < rois.count; ++i) {
+    const Roi& roi = rois.items[static_cast<std::size_t>(i)];
+    if (roi.x0 <= x && x < roi.x1 && roi.y0 <= y && y < roi.y1) return true;
+  }
+  return false;
+}
+
+// What cannot be searched at once is searched bit by bit, and the tracked tool in every frame.
+TEST_F(LocateRois, SearchesAllPartsOfAFrameThatHadTooManyRunsWithin45Frames) {
+  track(0, Vector3(0, 0, 0.5));
+  last_->tracks[1].reason = Reason::runs_full;
+  locate_.limits.tools = 2;
+  std::array<std::array<bool, 8>, 8> covered{};  // squares of 64 pixels
+  for (std::uint32_t turn = 1; turn <= 45; ++turn) {
+    const Rois rois = locate(22, turn);
+    ASSERT_GE(rois.count, 1);
+    ASSERT_LE(rois.count, 2) << "no more ROIs than tools";
+    EXPECT_TRUE(holds(rois, 256, 256)) << "the tracked tool";
+    EXPECT_EQ(turn % 16 == 0, holds(rois, 0, 0) && holds(rois, 511, 511)) << turn;
+    if (turn % 16 == 0) continue;
+    for (int y = 0; y < 8; ++y) {
+      for (int x = 0; x < 8; ++x)
+        covered[y][x] |= holds(rois, 64 * x, 64 * y) && holds(rois, 64 * x + 63, 64 * y + 63);
+    }
+  }
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 8; ++x) EXPECT_TRUE(covered[y][x]) << x << ", " << y;
+  }
+  EXPECT_LE(locate_.counts()[2], glint::LocateRois::worst(locate_.limits)[2]);
 }
 
 TEST_F(LocateRois, BoxesEachToolThatIsFollowed) {

@@ -44,11 +44,13 @@ class PredictTracks : public testing::Test {
     FrameVerdict verdict;
     verdict.resynchronised = restarted_;
     verdict.stamp.mid_exposure = Time{} + milliseconds(1000 + gap_ms);
+    verdict.accepted = verdict_accepted_;
     node_(verdict, head_, tools, graph::Previous<Anchor>(anchor_),
           graph::Previous<Estimates>(*last_), *predictions_);
     return predictions_->tools[0];
   }
 
+  std::uint32_t verdict_accepted_ = 7;
   std::unique_ptr<ToolSet> tools_ = std::make_unique<ToolSet>();
   bool restarted_ = false;
   HeadPose head_;
@@ -57,6 +59,29 @@ class PredictTracks : public testing::Test {
   std::unique_ptr<Predictions> predictions_ = std::make_unique<Predictions>();
   glint::PredictTracks node_;
 };
+
+TEST_F(PredictTracks, HasTheWholeFrameSearchedUnlessEachToolWasSeen) {
+  predict();
+  EXPECT_FALSE(predictions_->everywhere);
+  track().seen_now = false;
+  predict();
+  EXPECT_TRUE(predictions_->everywhere) << "missed in the last frame";
+  track().seen_now = true;
+  tools_->count = 2;
+  predict();
+  EXPECT_FALSE(predictions_->everywhere) << "the second place is empty";
+  tools_->items[1] = tool();
+  tools_->items[1].identity = tool().identity + 1;
+  predict();
+  EXPECT_TRUE(predictions_->everywhere) << "the second tool was never found";
+  EXPECT_FALSE(predictions_->narrowed);
+  last_->tracks[1].reason = Reason::runs_full;
+  predict();
+  EXPECT_TRUE(predictions_->narrowed);
+  verdict_accepted_ = 32;
+  predict();
+  EXPECT_FALSE(predictions_->narrowed) << "now and then the whole frame";
+}
 
 TEST_F(PredictTracks, GoesOnWithTheMotionThatTheFilterFollowed) {
   track().motion.velocity_m_s = {0.5, 0, 0};

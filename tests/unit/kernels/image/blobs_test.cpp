@@ -22,6 +22,7 @@ struct Finder {
   BlobSettings settings{1, 100000, 500, 0xFFFF};
   std::vector<Vector2> predicted;
   int bands = 1;
+  std::uint32_t turn = 0;
 
   const Blobs& operator()(const Picture& picture) {
     const Frame frame = picture.frame();
@@ -29,8 +30,8 @@ struct Finder {
     threshold_runs(frame, all, settings.threshold, {0, bands}, *upper);
     if (bands == 2) threshold_runs(frame, all, settings.threshold, {1, 2}, *lower);
     const Runs* both[] = {upper.get(), lower.get()};
-    find_blobs(frame, {both, static_cast<std::size_t>(bands)}, settings, predicted, *scratch,
-               *blobs);
+    find_blobs(frame, {both, static_cast<std::size_t>(bands)}, settings, {predicted, false, turn},
+               *scratch, *blobs);
     return *blobs;
   }
 };
@@ -134,16 +135,46 @@ Picture dots() {
   return p;
 }
 
-TEST(Blobs, KeepsTheTopmostWhenFullAndNothingIsPredicted) {
+TEST(Blobs, SaysHowManyWereLeftOutWhenFull) {
   Finder find;
   const Blobs& blobs = find(dots());
   ASSERT_EQ(blobs.count, k_blobs_max);
   EXPECT_EQ(blobs.dropped, 400u - k_blobs_max);
+  EXPECT_EQ(blobs.left_out, 400u - k_blobs_max);
   EXPECT_EQ(blobs.reason, Reason::blobs_full);
-  for (int i = 0; i < k_blobs_max; ++i) {
-    EXPECT_EQ(blobs.items[static_cast<std::size_t>(i)].x0, i % 20 * 4 + 1);
-    EXPECT_EQ(blobs.items[static_cast<std::size_t>(i)].y0, i / 20 * 4 + 1);
+  EXPECT_EQ(blobs.incomplete, Reason::blobs_full);
+}
+
+TEST(Blobs, KeepsOthersInAnotherFrameWhenFullAndNothingIsPredicted) {
+  Finder find;
+  std::vector<int> was_kept(400, 0);
+  for (find.turn = 0; find.turn < 20; ++find.turn) {
+    const Blobs& blobs = find(dots());
+    for (const Blob& blob : blobs.items) {
+      const auto dot = static_cast<std::size_t>(blob.x0 / 4 + 20 * (blob.y0 / 4));
+      ++was_kept[dot];
+    }
   }
+  EXPECT_EQ(std::count(was_kept.begin(), was_kept.end(), 0), 0);
+}
+
+// As many single pixels as a bad sensor has, and five markers: the pixels fit no marker by size.
+TEST(Blobs, KeepsMarkersAmongAThousandSinglePixels) {
+  std::mt19937 random(4);
+  Picture p(512, 512);
+  for (int i = 0; i < 1000; ++i)
+    p(static_cast<int>(random() % 512), static_cast<int>(random() % 512)) = 9000;
+  for (int i = 0; i < 5; ++i) test::add_disc(p, 400.3 + 15 * i, 430.6 - 7 * (i % 2), 3, 9000);
+  Finder find;
+  find.settings.sizes = marker_sizes({0.0055, 0.0055, 0.8, 253, 0.15, 1.0, 0.001, 4090});
+  int whole = 0;
+  for (find.turn = 0; find.turn < 40; ++find.turn) {
+    const Blobs& blobs = find(p);
+    int markers = 0;
+    for (const Blob& blob : blobs.items) markers += blob.area_px > 20 ? 1 : 0;
+    whole += markers == 5 ? 1 : 0;
+  }
+  EXPECT_GE(whole, 20);
 }
 
 TEST(Blobs, KeepsTheBlobsNearestAPredictionWhenFull) {

@@ -14,9 +14,10 @@ namespace {
 
 struct Candidates {
   std::unique_ptr<BlobScratch> scratch = std::make_unique<BlobScratch>();
+  std::vector<std::uint8_t> misfits;
   int count = 0;
 
-  void add(int x, int y, int width = 1, int height = 1) {
+  void add(int x, int y, int width = 1, int height = 1, int misfit = 0) {
     Component component;
     component.x0 = static_cast<std::uint16_t>(x);
     component.y0 = static_cast<std::uint16_t>(y);
@@ -25,14 +26,26 @@ struct Candidates {
     const auto at = static_cast<std::size_t>(count++);
     scratch->components[at] = component;
     scratch->candidate[at] = static_cast<std::uint16_t>(at);
+    misfits.push_back(static_cast<std::uint8_t>(misfit));
   }
 
   std::vector<int> keep(const std::vector<Vector2>& predicted_px, int kept) {
-    (void)keep_nearest(predicted_px, *scratch, count, kept);
+    return keep(BlobSearch{predicted_px, false, 0}, kept);
+  }
+  std::vector<int> keep(const BlobSearch& search, int kept) {
+    std::iota(scratch->candidate.begin(), scratch->candidate.begin() + count, std::uint16_t{0});
+    std::copy(misfits.begin(), misfits.end(), scratch->misfit.begin());
+    (void)keep_nearest(search, *scratch, count, kept);
     return {scratch->candidate.begin(), scratch->candidate.begin() + kept};
   }
 
-  // A plain sort by the distance of the box's middle in whole half pixels, then by place.
+  [[nodiscard]] Vector2 middle(int i) const {
+    const Component& c = scratch->components[static_cast<std::size_t>(i)];
+    return {0.5 * (c.x0 + c.x1), 0.5 * (c.y0 + c.y1)};
+  }
+
+  // A plain sort by the distance of the box's middle in whole half pixels, doubled by each step of
+  // misfit, then by place.
   [[nodiscard]] std::vector<int> sorted(const std::vector<Vector2>& predicted_px, int kept) const {
     std::vector<long> distance;
     for (int i = 0; i < count; ++i) {
@@ -43,6 +56,7 @@ struct Candidates {
         const long dy = c.y0 + c.y1 - static_cast<long>(2 * p.y());
         least = std::min(least, dx * dx + dy * dy);
       }
+      for (int step = 0; step < misfits[static_cast<std::size_t>(i)]; ++step) least *= 4;
       distance.push_back(least);
     }
     std::vector<int> order(static_cast<std::size_t>(count));
@@ -64,7 +78,8 @@ TEST(NearestKept, AreThoseOfAPlainSort) {
     const int field = round % 3 == 0 ? 20 : 500;  // a small one has many equal distances
     const int count = 2 + below(600);
     for (int i = 0; i < count; ++i) {
-      candidates.add(below(field), below(field), 1 + below(12), 1 + below(12));
+      const int x = below(field), y = below(field), misfit = round % 2 * below(5);
+      candidates.add(x, y, 1 + below(12), 1 + below(12), misfit);
     }
     std::vector<Vector2> predicted;
     for (int i = below(k_predictions_max); i >= 0; --i) {
@@ -85,14 +100,83 @@ TEST(NearestKept, AreTheFirstOnesAmongEquals) {
   EXPECT_EQ(near_last.keep({{300, 50}}, 4), (std::vector<int>{0, 1, 7, 8}));
 }
 
-TEST(NearestKept, AreTheFirstOnesWithoutAPrediction) {
+// The whole order of a plain sort, twice: half of the budget by the predictions, then the focus.
+TEST(NearestKept, ShareTheBudgetBetweenPredictionsAndTheFocus) {
+  std::mt19937 random(6);
+  const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+  for (int round = 0; round < 200; ++round) {
+    Candidates candidates;
+    const int count = 70 + below(300), kept = 64;
+    for (int i = 0; i < count; ++i)
+      candidates.add(below(500), below(500), 1 + below(12), 1 + below(12), below(5));
+    std::vector<Vector2> predicted;
+    for (int i = below(60); i >= 0; --i) predicted.push_back({below(500) + 0.0, below(500) + 0.0});
+    const auto turn = static_cast<std::uint32_t>(random());
+    const double part = static_cast<double>(turn * 2654435769u) / 4294967296.0;
+    const int focus = static_cast<int>(part * count);
+
+    const int share = std::max(kept / 2, static_cast<int>(predicted.size()));
+    std::vector<int> expected = candidates.sorted(predicted, share);
+    for (const int i : expected) ASSERT_LT(i, count);
+    // The rest by the focus: as many of its order as are new.
+    const std::vector<int> near = expected;
+    for (int n = 1; static_cast<int>(expected.size()) < kept; ++n) {
+      expected = near;
+      for (const int i : candidates.sorted({candidates.middle(focus)}, n))
+        if (!std::binary_search(near.begin(), near.end(), i)) expected.push_back(i);
+    }
+    std::sort(expected.begin(), expected.end());
+    ASSERT_EQ(candidates.keep({predicted, true, turn}, kept), expected) << "round " << round;
+  }
+}
+
+// Without a prediction, too: a tool that was never found.
+TEST(NearestKept, HaveEveryCandidateInTheMiddleWithinTwiceAsManyTurns) {
+  for (const int count : {65, 205, 1000, 1001}) {
+    Candidates candidates;
+    for (int i = 0; i < count; ++i) candidates.add(5 * (i % 100), 20 * (i / 100));
+    std::vector<int> was_kept(static_cast<std::size_t>(count), 0);
+    for (std::uint32_t turn = 7; turn < 7 + 2u * static_cast<unsigned>(count); ++turn) {
+      // Of one place the focus alone is left.
+      ++was_kept[static_cast<std::size_t>(candidates.keep(BlobSearch{{}, false, turn}, 1).front())];
+    }
+    EXPECT_EQ(std::count(was_kept.begin(), was_kept.end(), 0), 0) << count;
+  }
+}
+
+// A second of frames at 45 Hz, whatever the first one's number.
+TEST(NearestKept, HoldAllMarkersOfAToolInOneOf45Turns) {
+  std::mt19937 random(7);
+  const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+  for (int round = 0; round < 100; ++round) {
+    Candidates candidates;
+    const int strays = round % 2 == 0 ? 200 : 500;
+    std::vector<std::pair<int, int>> places;  // by rows, as components come
+    const int x = 40 + below(430), y = 40 + below(430);
+    for (int i = 0; i < strays; ++i) places.emplace_back(below(512), below(512));
+    for (int i = 0; i < 5; ++i) places.emplace_back(y + below(80) - 40, x + below(80) - 40);
+    const std::vector<std::pair<int, int>> tool(places.end() - 5, places.end());
+    std::sort(places.begin(), places.end());
+    for (const auto& [row, column] : places) candidates.add(column, row);
+    const auto first = static_cast<std::uint32_t>(random());
+    bool together = false;
+    for (std::uint32_t turn = 0; turn < 45 && !together; ++turn) {
+      int held = 0;
+      for (const int i : candidates.keep(BlobSearch{{}, false, first + turn}, 64))
+        held += std::count(tool.begin(), tool.end(), places[static_cast<std::size_t>(i)]) > 0;
+      together = held >= 5;
+    }
+    EXPECT_TRUE(together) << "round " << round;
+  }
+}
+
+TEST(NearestKept, CountNonsenseAsNoPrediction) {
   Candidates candidates;
   for (int i = 0; i < 30; ++i) candidates.add(500 - 10 * i, i);
-  EXPECT_EQ(candidates.keep({}, 3), (std::vector<int>{0, 1, 2}));
   const Vector2 nowhere(std::numeric_limits<double>::quiet_NaN(), 0);
+  EXPECT_EQ(candidates.keep(BlobSearch{}, 3), (std::vector<int>{0, 1, 2})) << "turn 0";
   EXPECT_EQ(candidates.keep({nowhere, {1e300, 0}}, 3), (std::vector<int>{0, 1, 2}));
-  const std::vector<Vector2> none{nowhere};
-  EXPECT_EQ(keep_nearest(none, *candidates.scratch, candidates.count, 3), 0);
+  EXPECT_EQ(keep_nearest({}, *candidates.scratch, candidates.count, 3), (30 + 3) / 4);
 }
 
 // At the corner opposite to a prediction that lies outside the frame.
@@ -108,7 +192,7 @@ TEST(NearestKept, LookAtNoMorePredictionsThanToolsHaveMarkers) {
   Candidates candidates;
   for (int i = 0; i < 8; ++i) candidates.add(i < 4 ? 399 : 60, 399);
   EXPECT_EQ(candidates.keep(predicted, 4), (std::vector<int>{4, 5, 6, 7}));
-  EXPECT_EQ(keep_nearest(predicted, *candidates.scratch, 5, 4), 2 * k_predictions_max);
+  EXPECT_EQ(keep_nearest({predicted, false, 0}, *candidates.scratch, 5, 4), 2 * k_predictions_max);
   predicted.erase(predicted.begin());
   Candidates again;
   for (int i = 0; i < 8; ++i) again.add(i < 4 ? 399 : 60, 399);

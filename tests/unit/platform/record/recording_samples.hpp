@@ -68,6 +68,7 @@ inline MarkerFrame sample_markers(int count) {
   frame.sequence = 77;
   frame.reason = Reason::frame_invalid;
   frame.markers.count = count;
+  frame.markers.incomplete = Reason::blobs_full;
   for (int i = 0; i < count; ++i) {
     Marker& marker = frame.markers.items[static_cast<std::size_t>(i)];
     marker.ray = Vector3(0.6, 0.0, 0.8);

@@ -159,17 +159,22 @@ TEST(Recording, GivesBackMarkersAtLevelBlobs) {
     EXPECT_EQ(a.bias_taken_m, b.bias_taken_m);
     EXPECT_EQ(a.peak, b.peak);
   }
+  EXPECT_EQ(read.markers.incomplete, Reason::blobs_full);
 }
 
-// A message as it was written before markers had what a tool's own depth bias needs, turns, and
-// sigmas: its last arrays left out.
+// A message as it was written before markers could be incomplete, and before they had what a tool's
+// own depth bias needs, turns, and sigmas: its last fields left out.
 TEST(Recording, ReadsMarkersOfOlderRecordings) {
   CdrWriter writer;
   write_message(writer, sample_markers(3), {});
   // Its number and three a marker, after a byte that fills up to it; its number and six a marker,
   // with four bytes between; its number and a float and two bytes a marker, filled up but the last.
   const std::size_t sigmas = 1 + 4 + 3 * 3 * 4, turns = 4 + 4 + 3 * 6 * 8, depths = 4 + 2 * 8 + 6;
-  const auto message = writer.bytes();
+  const auto with_incomplete = writer.bytes();
+  const auto message = with_incomplete.first(with_incomplete.size() - 1);
+  const auto complete = read_markers(message);
+  ASSERT_TRUE(complete);
+  EXPECT_EQ(complete->markers.incomplete, Reason::none);
   const auto all = message.first(message.size() - depths);
   const auto without_depths = read_markers(all);
   ASSERT_TRUE(without_depths);

@@ -1,0 +1,52 @@
+#include "nodes/pose_nodes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace glint {
+namespace {
+
+// One tool of three markers, none of which is in view.
+class Correspond : public testing::Test {
+ protected:
+  Correspond() {
+    set_->count = 1;
+    Tool& tool = set_->items[0];
+    tool.marker_count = 3;
+    tool.markers_m = {Vector3(-0.05, 0, 0), Vector3(0.05, 0, 0), Vector3(0, 0.06, 0)};
+    tool.marker_radius_m = 0.005;
+    EXPECT_EQ(prepare_tool(tool), Reason::none);
+    tools_.set(*set_, 1, 0);
+  }
+  Reason reason(Reason incomplete) {
+    markers_->incomplete = incomplete;
+    (*node_)(FrameVerdict{}, *markers_, tools_, *predictions_, {0, 1}, *labelings_);
+    return labelings_->tools[0].reason;
+  }
+
+  std::unique_ptr<ToolSet> set_ = std::make_unique<ToolSet>();
+  graph::Latest<ToolSet> tools_;
+  std::unique_ptr<Markers> markers_ = std::make_unique<Markers>();
+  std::unique_ptr<Predictions> predictions_ = std::make_unique<Predictions>();
+  std::unique_ptr<ToolLabelings> labelings_ = std::make_unique<ToolLabelings>();
+  std::unique_ptr<glint::Correspond> node_ = std::make_unique<glint::Correspond>();
+};
+
+TEST_F(Correspond, NamesTheBudgetWhereItLeftOutSpotsOfAToolThatWasNotFound) {
+  EXPECT_EQ(reason(Reason::none), Reason::too_few_markers);
+  EXPECT_EQ(reason(Reason::blobs_full), Reason::blobs_full);
+  EXPECT_EQ(reason(Reason::runs_full), Reason::runs_full);
+  predictions_->narrowed = true;
+  EXPECT_EQ(reason(Reason::none), Reason::runs_full) << "a part of the frame was searched";
+}
+
+// Spots near a prediction are kept whatever the budget is; runs are not.
+TEST_F(Correspond, BlamesABlobBudgetForNoToolThatWasPredicted) {
+  predictions_->tools[0].has_prior = true;
+  EXPECT_EQ(reason(Reason::blobs_full), Reason::too_few_markers);
+  EXPECT_EQ(reason(Reason::runs_full), Reason::runs_full);
+}
+
+}  // namespace
+}  // namespace glint
