@@ -39,7 +39,9 @@ struct Section {
   }
   [[nodiscard]] std::vector<double> needed(TomlReader& reader, const char* key,
                                            std::size_t count) const {
-    require(key, std::to_string(count) + " numbers in [ ]");
+    std::string expected = std::to_string(count);
+    expected += " numbers in [ ]";
+    require(key, expected);
     return *reader.reals(key, count);
   }
   void require(const char* key, const std::string& expected) const {
