@@ -5,6 +5,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "platform/cells/toml_keys.hpp"
 #include "platform/input_error.hpp"
 #include "platform/nearest_name.hpp"
 #include "platform/printable.hpp"
@@ -70,6 +71,7 @@ std::string read_text(const std::string& file) {
 void refuse_toml_state() { throw BrokenState(); }
 
 toml::table parse_toml(const std::string& text, const std::string& file) {
+  check_key_parts(text, file);
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "kernels/limits.hpp"
 #include "platform/record/glint_messages.hpp"
 #include "platform/record/message_parts.hpp"
 
@@ -23,7 +24,8 @@ bool put_rows(std::span<const std::uint8_t> rows, const Roi& roi, int frame_widt
   return true;
 }
 
-constexpr std::size_t k_pixels_max = std::size_t{1} << 24;  // 4096 x 4096
+// As many as a camera may have: a short message asks for memory for all of them.
+constexpr std::size_t k_pixels_max = std::size_t{k_width_max} * k_height_max;
 
 struct FrameShape {
   int width = 0, height = 0, reflectivity_bits = 0;

@@ -44,6 +44,7 @@ class C3dFile {
     if (bytes_.size() < 1024 || byte(1) != 0x50) return trial;
     const std::size_t points = word(2);
     const std::size_t analog = word(4);
+    if (points == 0 || word(8) < word(6)) return trial;
     const std::size_t frames = word(8) - word(6) + 1u;
     if (number(12) >= 0) return trial;  // a positive scale means integers
     const std::size_t data = (word(16) - 1u) * k_block;
@@ -102,6 +103,7 @@ class C3dFile {
           }
           result.push_back(label);
         }
+        return result;
       }
       const std::size_t next = word(body);
       if (next == 0) break;

@@ -22,6 +22,43 @@ TEST(TomlReader, RefusesWhatBreaksTheParserWithItsLine) {
                      {"a.toml:5: ", "expected TOML"});
 }
 
+std::string repeated(const std::string& piece, int times) {
+  std::string text;
+  for (int i = 0; i < times; ++i) text += piece;
+  return text;
+}
+
+// toml++ 3.3.0: undefined behaviour at any such letter where a blank may stand.
+TEST(TomlReader, RefusesLettersOfOtherLanguagesOutsideOfTexts) {
+  expect_input_error([] { (void)parse_toml("a = 1\nb = 2 \xC3\xA9\n", "a.toml"); },
+                     {"a.toml:2: ", "expected TOML"});
+  expect_input_error([] { (void)parse_toml("\xD0\xB6 = 1\n", "a.toml"); }, {"a.toml:1: "});
+  EXPECT_EQ(parse_toml("a = \"\xC3\xA9\" # \xC3\xA9\n", "a").size(), 1u);
+}
+
+// A million parts ended the process by SIGSEGV: toml++ destroys their tables by recursion.
+TEST(TomlReader, BoundsTheDepthOfTables) {
+  const auto refused = [](const std::string& text, const char* place) {
+    expect_input_error([&] { (void)parse_toml(text, "a.toml"); }, {place});
+  };
+  const std::string deep = repeated("a.", 70) + "b = 1\n";
+  refused("x = 1\n" + repeated("a.", 1'000'000) + "b = 1\n", "a.toml:2: a key of more than 64");
+  refused("[" + repeated("a . ", 70) + "b]\n", "a key of more");
+  refused(repeated("'='.\"\\\"\".", 40) + "b = 1\n", "a key of more");
+  refused("s = \"\"\"x\"\"\"\"\"\n" + deep, "a.toml:2: a key of more");
+  refused("s = '''x'''''\n" + deep, "a.toml:2: a key of more");
+  refused("a = " + repeated("[", 100) + repeated("]", 100), "expected TOML");
+}
+
+TEST(TomlReader, TakesDotsThatAreNoKeys) {
+  const std::string dots = repeated(".", 200);
+  const std::string text =
+      "a = \"" + dots + "\" # " + dots + "\n# " + dots + "\nb = '" + dots + "'\n";
+  EXPECT_EQ(parse_toml(text, "a").size(), 2u);
+  EXPECT_EQ(parse_toml("a = [" + repeated("1.5, ", 200) + "]\n", "a").size(), 1u);
+  EXPECT_EQ(parse_toml(repeated("a.", 60) + "b = 1\n", "a").size(), 1u);
+}
+
 TEST(TomlReader, ShowsNoControlCharactersOfTheFile) {
   const std::string complaint = complaint_about("tools = \"\\u001b[2J\"\n");
   EXPECT_NE(complaint, "accepted");

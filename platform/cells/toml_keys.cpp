@@ -1,0 +1,60 @@
+#include "platform/cells/toml_keys.hpp"
+
+#include <algorithm>
+
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+constexpr std::size_t k_end = std::string_view::npos;
+
+// Behind the string that begins at `at` with a quote; the end of its line where it is not closed,
+// which the parser refuses.
+std::size_t behind_string(std::string_view text, std::size_t at) {
+  const char quote = text[at];
+  const bool basic = quote == '"';
+  const std::string closing(text.substr(at, 3) == std::string(3, quote) ? 3 : 1, quote);
+  for (std::size_t i = at + closing.size(); i < text.size(); ++i) {
+    if (basic && text[i] == '\\') {
+      ++i;
+    } else if (closing.size() == 1 && text[i] == '\n') {
+      return i;
+    } else if (text.substr(i, closing.size()) == closing) {
+      i += closing.size();
+      // Of five quotes the first two belong to the text.
+      for (int more = 0; closing.size() == 3 && more < 2 && i < text.size() && text[i] == quote;) {
+        ++i, ++more;
+      }
+      return i;
+    }
+  }
+  return text.size();
+}
+
+}  // namespace
+
+void check_key_parts(std::string_view text, const std::string& file) {
+  std::size_t dots = 0;
+  for (std::size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    if (c == '"' || c == '\'') {
+      i = behind_string(text, i);
+      continue;
+    }
+    if (c == '#') {
+      i = std::min(text.find('\n', i), text.size());
+      continue;
+    }
+    if (std::string_view("=,[]{}\n").find(c) != k_end) dots = 0;
+    if (c == '.' && ++dots == k_toml_key_parts_max) {
+      const auto line =
+          1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
+      throw InputError(file + ":" + std::to_string(line) + ": a key of more than " +
+                       std::to_string(k_toml_key_parts_max) + " parts; expected a.b.c of a few");
+    }
+    ++i;
+  }
+}
+
+}  // namespace glint
