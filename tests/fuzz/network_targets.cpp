@@ -90,6 +90,6 @@ constexpr Target k_network_targets[] = {{"cdr_joint_states", read_joint_state},
 
 }  // namespace
 
-std::span<const Target> network_network_targets() { return k_network_targets; }
+std::span<const Target> network_targets() { return k_network_targets; }
 
 }  // namespace glint::fuzz
