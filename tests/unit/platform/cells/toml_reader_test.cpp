@@ -17,9 +17,9 @@ using test::expect_input_error;
 
 // toml++ 3.3.0: an assertion without NDEBUG, undefined behaviour in clang's release build.
 TEST(TomlReader, RefusesWhatBreaksTheParserWithItsLine) {
-  expect_input_error([] { (void)parse_toml("[\nd", "a.toml"); }, {"a.toml:2: ", "expected TOML"});
+  expect_input_error([] { (void)parse_toml("[\nd", "a.toml"); }, {"a.toml:1: ", "expected TOML"});
   expect_input_error([] { (void)parse_toml("a = 1\n[t]\nb = 2\n[\nd\n[u]\n", "a.toml"); },
-                     {"a.toml:5: ", "expected TOML"});
+                     {"a.toml:4: ", "expected TOML"});
 }
 
 std::string repeated(const std::string& piece, int times) {
