@@ -10,7 +10,7 @@
 namespace glint {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 
 constexpr auto k_poll = std::chrono::microseconds(200);
 constexpr auto k_fill_poll = std::chrono::milliseconds(5);
@@ -111,11 +111,11 @@ int SimulatedSource::frames_wanted(double frames_a_second) const {
 }
 
 void SimulatedSource::fill(const std::function<bool(int, int)>& go_on) {
-  const Clock::time_point begin = Clock::now();
+  const SteadyClock::time_point begin = SteadyClock::now();
   int wanted = std::min(k_slots_min / 2, simulator_.frame_count());
   for (;;) {
     const int rendered = rendered_count_;
-    const std::chrono::duration<double> taken = Clock::now() - begin;
+    const std::chrono::duration<double> taken = SteadyClock::now() - begin;
     if (settings_.live && rendered > 0) wanted = frames_wanted(rendered / taken.count());
     if (rendered >= wanted || taken > k_fill_limit || (go_on && !go_on(rendered, wanted))) break;
     std::this_thread::sleep_for(k_fill_poll);
