@@ -296,6 +296,28 @@ TEST(BackProject, FindsAndFlagsAWrappedRange) {
   }
 }
 
+// Of a blob that the border cuts a part is seen: its area shows neither a wrap nor a second marker.
+TEST(BackProject, ConcludesNothingFromTheAreaOfABlobThatTheBorderCuts) {
+  const auto cut_marker_of = [](const Scene& scene, const NominalMarker& nominal) {
+    const FrameBuffer buffer = scene.render();
+    const Frame frame = buffer.view({}, {}, 0);
+    Blob blob = blobs_of(scene, frame).items[0];
+    blob.flags |= k_blob_touches_edge;
+    Marker marker;
+    EXPECT_TRUE(measure_marker(frame, blob, 0, scene.camera.model, {}, scene.camera.depth, nominal,
+                               marker));
+    return marker;
+  };
+  Scene far;
+  far.centre_m = {0.1, 0.05, 1.25};
+  const Marker wrapped = cut_marker_of(far, {});
+  EXPECT_EQ(wrapped.flags, k_marker_touches_edge);
+  EXPECT_LT(wrapped.surface_range_m, 0.25);
+  const Marker large = cut_marker_of(Scene{}, {0.003});
+  EXPECT_EQ(large.flags, k_marker_touches_edge);
+  EXPECT_LT(large.sigma_px[0], 1.0F);
+}
+
 TEST(BackProject, DoesNotSearchAWrapWithoutANominalRadius) {
   Scene scene;
   scene.centre_m = {0.1, 0.05, 1.25};

@@ -277,6 +277,8 @@ TEST(Correspond, LeavesOutMarkersWithoutDepthOrOfAnImpossibleSize) {
   EXPECT_EQ(labelings_of(large, pen, ahat()).items[0].count, 4);
   large.items[0].area_px = 2;
   EXPECT_EQ(labelings_of(large, pen, ahat()).items[0].count, 4);
+  large.items[0].flags = k_marker_touches_edge;
+  EXPECT_EQ(labelings_of(large, pen, ahat()).items[0].count, 5) << "the border cuts it";
 }
 
 TEST(Correspond, GivesTheSameBitsEverywhere) {
