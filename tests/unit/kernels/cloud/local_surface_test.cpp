@@ -44,6 +44,26 @@ TEST(LocalSurface, IsThatOfATextbookInDouble) {
   }
 }
 
+// Upright walls: the first of z, y and x that is not zero is positive.
+TEST(LocalSurface, TurnsItsNormalByTheLastAxisThatIsNotZero) {
+  for (const int axis : {0, 1}) {
+    for (const float lean : {-1.0f, 0.0f, 1.0f}) {
+      std::vector<Point> near;
+      for (int i = 0; i < 25; ++i) {
+        const float along = 0.004f * static_cast<float>(i % 5 - 2);
+        const float up = 0.004f * static_cast<float>(i / 5 - 2);
+        near.push_back({0, lean * along, up});
+        near.back()[axis == 0 ? 1 : 0] = along;
+        near.back()[static_cast<std::size_t>(axis)] = lean * along;
+      }
+      const Vector3 normal = surface_of(near).normal;
+      EXPECT_NEAR(normal.z(), 0, 1e-6);
+      const double decides = std::abs(normal.y()) > 1e-6 ? normal.y() : normal.x();
+      if (normal.z() == 0) EXPECT_GT(decides, 0) << axis << ' ' << lean;
+    }
+  }
+}
+
 TEST(LocalSurface, TakesANeighbourOfWeightThreeAsThreeNeighbours) {
   std::vector<Point> near = noisy_patch(15, 1), thrice = near;
   std::vector<float> weights(15, 1);

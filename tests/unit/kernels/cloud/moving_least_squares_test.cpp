@@ -114,6 +114,12 @@ TEST(MovingLeastSquares, SaysWhenThereIsNoRoomAndWhenCandidatesWereUsedUp) {
   EXPECT_EQ(cut.run(points).size(), 400u);
   EXPECT_GT(cut.smoothing.cut(), 200);
   EXPECT_EQ(cut.smoothing.reason(), Reason::search_full);
+  // A crowd counts, and no point far away from it does.
+  std::vector<Point> crowd(50, {0, 0, 0});
+  for (int i = 1; i < 5; ++i) crowd.push_back({static_cast<float>(i), 0, 0});
+  TestSmoothing far(400, few);
+  far.run(crowd);
+  EXPECT_EQ(far.smoothing.cut(), 50);
 }
 
 TEST(MovingLeastSquares, RefusesWhatItCannotWorkWith) {

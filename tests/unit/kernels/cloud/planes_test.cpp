@@ -183,6 +183,35 @@ TEST(PlaneSupport, TakesOffAStripeAndLeavesEdgesOn) {
   EXPECT_EQ(support.taken_off(), stripe);
 }
 
+// Every pair of points is looked at.
+TEST(PlaneSupport, LeavesOnAPlaneWhatAPlainCountOfNeighboursLeaves) {
+  const std::vector<Oriented> points = room(5);
+  const TestCloud cloud = cloud_of(points);
+  TestSearch test(20'000);
+  test.run(cloud.points, 211);
+  constexpr float k_limit = 0.2f * 0.2f;
+  int taken_off = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint8_t plane = test.search.plane_of(static_cast<int>(i));
+    int near = 0, on_plane = 0;
+    for (std::size_t j = 0; j < points.size() && plane != PlaneSearch::k_no_plane; ++j) {
+      const float dx = points[j].point[0] - points[i].point[0],
+                  dy = points[j].point[1] - points[i].point[1];
+      const float dz = points[j].point[2] - points[i].point[2];
+      if (dx * dx + dy * dy + dz * dz > k_limit) continue;
+      ++near;
+      on_plane += test.search.plane_of(static_cast<int>(j)) == plane ? 1 : 0;
+    }
+    const bool stays = plane == PlaneSearch::k_no_plane ||
+                       static_cast<float>(on_plane) >= 0.4f * static_cast<float>(near);
+    taken_off += stays ? 0 : 1;
+    ASSERT_EQ(test.support.plane_of(static_cast<int>(i)), stays ? plane : PlaneSearch::k_no_plane)
+        << i << ": " << on_plane << " of " << near;
+  }
+  EXPECT_EQ(test.support.taken_off(), taken_off);
+  EXPECT_GT(taken_off, 0);
+}
+
 TEST(PlaneSupport, RefusesWhatItCannotWorkWith) {
   TestMemory memory(PlaneSupport::bytes(10));
   PlaneSupport support;
