@@ -59,7 +59,7 @@ TEST(LocalSurface, TurnsItsNormalByTheLastAxisThatIsNotZero) {
       const Vector3 normal = surface_of(near).normal;
       EXPECT_NEAR(normal.z(), 0, 1e-6);
       const double decides = std::abs(normal.y()) > 1e-6 ? normal.y() : normal.x();
-      if (normal.z() == 0) EXPECT_GT(decides, 0) << axis << ' ' << lean;
+      EXPECT_TRUE(normal.z() != 0 || decides > 0) << axis << ' ' << lean;
     }
   }
 }
