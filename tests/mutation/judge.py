@@ -101,9 +101,8 @@ class Judge:
         output = folder / f"{number}.o"
         at = command.index("-o")
         command[at + 1] = str(output)
-        source = command[command.index("-c") + 1]
-        if source == str(self.programs.tree / mutation.path):
-            command[command.index("-c") + 1] = str(folder / "tree" / mutation.path)
+        at = command.index("-c") + 1
+        command[at] = self._source(command[at], mutation, folder)
         compiler = next(i for i, c in enumerate(command) if c.endswith(("++", "g++", "cc", "gcc")))
         command.insert(compiler + 1, f"-I{folder / 'tree'}")
         ran = self._run([*command, "-w"], self.programs.build)
@@ -111,6 +110,21 @@ class Judge:
             raise NotCompiled(ran.output)
         same = filecmp.cmp(output, self.programs.build / part, shallow=False)
         return None if same else str(output)
+
+    def _source(self, source, mutation, folder):
+        """What is compiled instead of `source`: the mutated file, or a copy of the list of files
+        that are compiled as one, which names them by their whole paths."""
+        unmutated, mutated = (str(tree / mutation.path)
+                              for tree in (self.programs.tree, folder / "tree"))
+        if source == unmutated:
+            return mutated
+        listed = f'"{unmutated}"'
+        text = pathlib.Path(source).read_text() if "/Unity/" in source else ""
+        if listed not in text:
+            return source
+        copy = folder / os.path.basename(source)
+        copy.write_text(text.replace(listed, f'"{mutated}"'))
+        return str(copy)
 
     def _failing_test(self, program, path, changed, folder):
         """The first test that fails with the changed objects, or None."""
