@@ -1,5 +1,6 @@
 // write_known_samples FOLDER: a CAN log of known poses, classic and FD, and the poses beside it as
 // one JSON object a line. What reads them must not share code with what wrote them.
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -23,7 +24,8 @@ void print(std::FILE* file, const char* name, const Vector3& v) {
 
 void print(std::FILE* file, const PoseSample& s) {
   std::fprintf(file, "{\"tool\": %d, \"tick\": %u, \"sequence\": %u, \"state\": %d, ", s.tool,
-               s.tick_number, s.frame_sequence, static_cast<int>(s.state));
+               static_cast<std::uint32_t>(s.tick_number),
+               static_cast<std::uint32_t>(s.frame_sequence), static_cast<int>(s.state));
   std::fprintf(file, "\"registration\": %d, \"reason\": %d, \"marker_mask\": %d, \"buttons\": %d, ",
                static_cast<int>(s.registration), static_cast<int>(s.reason), s.marker_mask,
                s.buttons);
