@@ -52,7 +52,7 @@ TEST(DepthPicture, RefusesAnotherSizeNoDepthAndUnknownKinds) {
 // OpenCV takes memory for every pixel that the head of a file names.
 TEST(DepthPicture, RefusesAPngThatSaysItIsEnormous) {
   const Files files;
-  for (const std::string size :
+  for (const std::string& size :
        {std::string("\0\0\xEA\x60\0\0\0\1", 8), std::string("\0\0\x27\x10\0\0\x27\x10", 8)}) {
     const std::string head = std::string("\x89PNG\r\n\x1A\n\0\0\0\x0D", 12) + "IHDR" + size;
     const std::string path = files.write("a.png", head + std::string("\x10\0\0\0\0", 5));
