@@ -1,12 +1,14 @@
 #include "platform/experiments/clutter_tally.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <string>
 
 namespace glint {
 namespace {
 
 constexpr double k_swapped_m = 0.02;
+constexpr int k_markers_to_find = 4;
 
 bool lies_on(const Tool& tool, const ToolOutcome& found, const Tool& other, const Pose& truth) {
   for (int i = 0; i < tool.marker_count; ++i) {
@@ -30,7 +32,13 @@ void ClutterTally::add(const FrameOutcome& outcome, const sim::SimTruth& truth) 
     const ToolOutcome& found = outcome.tools[i];
     const Pose T_camera_tool = T_camera_world * truth.T_world_tool[i];
     ++judged_;
+    const int to_find = std::min(k_markers_to_find, tools_.items[i].marker_count);
+    four_seen_[i] = four_seen_[i] || std::popcount(truth.visible_mask[i]) >= to_find;
     if (is_trackable(truth.visible_mask[i])) {
+      if (four_seen_[i]) {
+        ++findable_;
+        found_ += found.seen ? 1 : 0;
+      }
       ++trackable_;
       if (found.seen)
         ++tracked_;
@@ -51,11 +59,12 @@ void ClutterTally::add(const FrameOutcome& outcome, const sim::SimTruth& truth) 
   }
 }
 
-std::vector<Figure> ClutterTally::figures(const Bar& tracked, const Bar& wrong) const {
+std::vector<Figure> ClutterTally::figures(const Bar& found, const Bar& wrong) const {
   const auto share = [](std::int64_t part, std::int64_t of) {
     return 100 * static_cast<double>(part) / static_cast<double>(of);
   };
-  std::vector<Figure> figures = {{"tracked", "%", share(tracked_, trackable_), tracked},
+  std::vector<Figure> figures = {{"tracked", "%", share(tracked_, trackable_)},
+                                 {"found", "%", share(found_, findable_), found},
                                  {"gross", "", static_cast<double>(gross_), wrong},
                                  {"swapped", "", static_cast<double>(swapped_), wrong},
                                  {"trackable_share", "%", share(trackable_, judged_)}};

@@ -22,11 +22,11 @@ static_assert(sizeof(std::atomic<std::uint32_t>) == sizeof(std::uint32_t),
 // none) has passed.
 [[nodiscard]] inline bool futex_sleep(std::atomic<std::uint32_t>& counter, std::uint32_t value,
                                       const Time* deadline) noexcept {
-  constexpr std::int64_t k_second = 1'000'000'000;
+  constexpr std::int64_t k_nanoseconds = 1'000'000'000;
   timespec until{};
   if (deadline != nullptr) {
-    until.tv_sec = static_cast<time_t>(deadline->nanoseconds / k_second);
-    until.tv_nsec = static_cast<long>(deadline->nanoseconds % k_second);
+    until.tv_sec = static_cast<time_t>(deadline->nanoseconds / k_nanoseconds);
+    until.tv_nsec = static_cast<long>(deadline->nanoseconds % k_nanoseconds);
   }
   const long result = syscall(
       SYS_futex, reinterpret_cast<std::uint32_t*>(&counter), FUTEX_WAIT_BITSET | FUTEX_PRIVATE_FLAG,

@@ -26,9 +26,7 @@ class MeasuredFindBlobs final : public MeasuredKernel {
     limits_ = limits;
     node_->limits = limits;
     node_->settings = {1, 4096, drawn_threshold(limits), 0xFFFF};
-    MarkerOptics optics;
-    optics.focal_px = 250;
-    node_->settings.sizes = marker_sizes(optics);
+    expect_markers(0.005);
     drawn_.clear(limits);
     predict_at_random(random);
     switch (kind) {
@@ -51,6 +49,13 @@ class MeasuredFindBlobs final : public MeasuredKernel {
   [[nodiscard]] graph::LoopCounts counts() const override { return node_->counts(); }
 
  private:
+  void expect_markers(double radius_m) {
+    MarkerOptics optics;
+    optics.focal_px = 250;
+    optics.radius_min_m = optics.radius_max_m = radius_m;
+    node_->settings.sizes = marker_sizes(optics);
+  }
+
   void find_runs() {
     frame_ = drawn_.view();
     for (int band = 0; band < k_row_bands; ++band) {
@@ -72,14 +77,17 @@ class MeasuredFindBlobs final : public MeasuredKernel {
   }
 
   // Single dots, as many as there are runs, all of them candidates; and blobs as wide as a box may
-  // be, as many as may stay, with the predictions between them, so that these are the ones.
+  // be, as many as may stay in each band. The predictions and the focus, the first candidate of
+  // turn 0, lie between these, and dots misfit so large a marker: only wide blobs stay.
   void draw_dots_and_bars(int gap) {
     const int per_row = std::max(limits_.width / k_wide_pitch_px, 1);
-    const int wide_a_band = limits_.blobs / k_row_bands;
+    const int wide_a_band = limits_.blobs;
     const int wide_rows = (wide_a_band + per_row - 1) / per_row;
     const int dots_a_row = (limits_.width + gap) / (1 + gap);
     const int dot_rows = (limits_.runs_per_band - wide_a_band + dots_a_row - 1) / dots_a_row;
     const int predicted = predictions_->marker_count;
+    predictions_->turn = 0;
+    expect_markers(0.011);
     for (int band = 0; band < k_row_bands; ++band) {
       const int top = limits_.height * band / k_row_bands + 2;
       const int bottom = limits_.height * (band + 1) / k_row_bands;

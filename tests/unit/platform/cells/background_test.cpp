@@ -42,7 +42,9 @@ TEST(CellBackground, RefusesWhatIsOutOfRangeByItsLine) {
       {"steps = 0", "cell.toml:2: background.steps is 0; expected a whole number from 1 to 50000"},
       {"steps = 50001",
        "cell.toml:2: background.steps is 50001; expected a whole number from 1 to 50000"},
-      {"step = 1", "cell.toml:2: unknown key background.step; expected one of period_ms, steps"},
+      {"step = 1",
+       "cell.toml:2: unknown key background.step; did you mean steps?; expected one of period_ms, "
+       "steps"},
   };
   for (const auto& [text, said] : cases) {
     EXPECT_EQ(complaint_about("[background]\n" + std::string(text) + "\n"), said);

@@ -120,7 +120,8 @@ void add_markers(Sample& sample, const MarkerFrame& frame) {
                  {"markers", markers},
                  {"sigmas", sigmas},
                  {"turns", turns},
-                 {"depths", depths}});
+                 {"depths", depths},
+                 {"incomplete", static_cast<int>(frame.markers.incomplete)}});
 }
 
 void add_inputs(Sample& sample) {
