@@ -1,4 +1,6 @@
 // Binary files: tools, arrays, pictures, clouds, meshes, robots.
+#include <algorithm>
+#include <filesystem>
 #include <string>
 
 #include "platform/cells/tool_formats.hpp"
@@ -53,8 +55,9 @@ void read_mesh_bytes(Bytes bytes) { (void)mesh_of_bytes(text_of(bytes), "a.stl")
 // A name out of a robot's description.
 void find_mesh_file(Bytes bytes) {
   const RobotFiles files{"/robot_description", {"/proc/self/fdinfo"}, Geometry::collision, "x"};
-  const std::string found = find_mesh(text_of(bytes), files);
-  expect(found.starts_with("/proc/self/fdinfo/") && found.find("..") == std::string::npos,
+  const std::filesystem::path found = find_mesh(text_of(bytes), files);
+  expect(found.string().starts_with("/proc/self/fdinfo/") &&
+             std::find(found.begin(), found.end(), "..") == found.end(),
          "a mesh lies in the package's folder");
 }
 
