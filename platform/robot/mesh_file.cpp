@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string_view>
+#include <system_error>
 
 #include "platform/input_error.hpp"
 #include "platform/robot/limited_process.hpp"
@@ -133,10 +134,17 @@ fs::path folder_of(const std::string& entry) {
   return entry.substr(entry.find('=') == std::string::npos ? 0 : entry.find('=') + 1);
 }
 
+// A name that is too long, say, is no file: not an error of its own.
+bool is_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
 // A path that names its place itself: absolute, or beside the URDF.
 std::string confined(const fs::path& path, const std::string& name, const RobotFiles& files,
                      bool beside) {
-  const fs::path found = fs::absolute(path).lexically_normal();
+  std::error_code error;  // an empty name has no absolute path
+  const fs::path found = fs::absolute(path, error).lexically_normal();
   bool inside = beside && lies_in(fs::path(files.urdf).parent_path(), found);
   for (const std::string& entry : files.package_dirs) {
     inside = inside || lies_in(folder_of(entry), found);
@@ -162,7 +170,7 @@ std::string find_mesh(const std::string& name, const RobotFiles& files) {
     return confined(name, name, files, false);
   } else if (files.text.empty()) {
     const fs::path beside = fs::path(files.urdf).parent_path() / name;
-    if (fs::is_regular_file(beside)) return confined(beside, name, files, true);
+    if (is_file(beside)) return confined(beside, name, files, true);
   }
   // Below, the path grows shorter from its beginning: each part must be a name.
   const fs::path parts(rest);
@@ -178,7 +186,7 @@ std::string find_mesh(const std::string& name, const RobotFiles& files) {
     const fs::path folder = folder_of(entry);
     looked += (looked.empty() ? "" : ", ") + folder.string();
     for (std::string part = rest;;) {
-      if (fs::is_regular_file(folder / part)) return (folder / part).string();
+      if (is_file(folder / part)) return (folder / part).string();
       const std::size_t slash = part.find('/');
       if (slash == std::string::npos) break;
       part = part.substr(slash + 1);

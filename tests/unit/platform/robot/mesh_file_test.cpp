@@ -110,6 +110,8 @@ TEST(FindMesh, StaysInThePackageFolders) {
   EXPECT_EQ(find_mesh("package://arm/m/a.stl", robot), part);
   EXPECT_EQ(find_mesh("file://" + part, robot), part);
   EXPECT_EQ(find_mesh("file://" + package + "/m/../m/./a.stl", robot), part);
+  refused("file://");
+  refused("package://x/" + std::string(300, 'a'));  // no file may have so long a name
   refused("package://x/../secret.stl");
   refused("package://../secret.stl");
   refused("package://x/m/../../secret.stl");
