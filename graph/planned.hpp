@@ -3,7 +3,7 @@
 // A node begins when every node whose data it reads has ended, which each node says by storing the
 // activation's number. Nodes of one worker need no such look: the plan's order holds the data's.
 // The bytes are Serial's. Worst input: a part that comes late. Its reader goes on waiting
-// (rest.hpp), since nobody else has the data, and counts one overrun; worker 0 asks the boundary
+// (rest.hpp), as no other node writes the data, and counts one overrun; worker 0 asks the boundary
 // meanwhile, so that a watched activation ends at its deadline and the output need not wait. A
 // worker that is still inside a node then is waited for by settle(), after the output has left.
 #pragma once

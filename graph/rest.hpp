@@ -9,7 +9,7 @@
 namespace glint::graph {
 
 // What the host provides: one object for all workers of a graph. A sleep has a longest duration, so
-// that whoever waits can ask again whether to go on.
+// that the waiting worker can check again whether to go on.
 template <class T>
 concept Rest = requires(T& rest, std::uint32_t seen) {
   rest.spin();  // a CPU's pause instruction

@@ -3,7 +3,7 @@
 // Copy i of a split runs on worker i % W, every other node on worker 0: a rule, not a guess, so
 // that a plan can be made of it. Workers meet at a barrier before and after each level that has a
 // split. The host provides the threads, releases them and provides their rest (rest.hpp). Worst
-// input: a part that comes late. Its reader goes on waiting, since nobody else has the data, and
+// input: a part that comes late. Its reader goes on waiting, as no other node writes the data, and
 // counts one overrun.
 #pragma once
 

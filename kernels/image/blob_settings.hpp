@@ -16,7 +16,7 @@ struct SizeGate {
 inline constexpr int k_depth_bins = 128;
 
 // The areas of a whole marker by its raw depth: what find_blobs compares a blob with where it
-// cannot keep all. Not known: all areas are equally likely.
+// cannot keep all. Without `known` all areas are equally likely.
 struct MarkerSizes {
   bool known = false;
   int depth_shift = 0;             // raw depth >> depth_shift is its bin
@@ -53,7 +53,7 @@ struct MarkerOptics {
 
 // From visible_part_min of the disc of the smallest marker to size_gate's largest area of the
 // largest marker. A depth outside the range limits counts as the nearer limit. Nonsense (a length
-// <= 0) gives sizes that are not known.
+// <= 0) returns sizes without `known`.
 [[nodiscard]] MarkerSizes marker_sizes(const MarkerOptics& optics) noexcept;
 
 }  // namespace glint

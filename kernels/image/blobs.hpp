@@ -1,7 +1,7 @@
 // Runs to blobs: what may be a marker, where its middle is, and what else it was.
 //
 // What:     connected components inside the size gate, each with a sub-pixel centroid. If more than
-//           limits.blobs are found, nearest_kept.hpp says which stay: near predicted markers, near
+//           limits.blobs are found, nearest_kept.hpp lists which stay: near predicted markers, near
 //           a place that changes with the frame, and rather those that fit a marker. A blob whose
 //           grown box holds no more than its share of limits.centroid_pixels_a_blob has the
 //           centroid of that box, a larger one if the others leave enough, by rows from the top;

@@ -21,7 +21,7 @@ namespace glint {
 class CanButtons {
  public:
   // `socket` gives one frame a read, as a CAN socket does. Events are in the board's time:
-  // when the kernel received the frame, where it says so, else when it was read. The Unix clock is
+  // when the kernel received the frame, by its stamp, else when it was read. The Unix clock is
   // read once, here: a later step of it moves no event. `on_button` is called from the reading
   // thread, also with the release of a button whose sender has been silent for `timeout`.
   CanButtons(Descriptor socket, std::uint32_t identifier, Duration unix_minus_board,

@@ -14,7 +14,7 @@ namespace {
 // How long the writer sleeps when there is nothing to write. Waking it from `send` instead would
 // cost the sender a system call.
 constexpr std::chrono::milliseconds k_nap{2};
-// After so many frames their fate is known.
+// Lines are flushed, and so counted as written or lost, after so many frames.
 constexpr std::uint64_t k_batch = 256;
 static_assert(FrameRing::k_capacity + k_batch <= k_can_in_flight_max);
 

@@ -34,7 +34,7 @@ constexpr const char* k_button_names[k_button_count] = {"button", "button_delete
                                                         "button_finish"};
 
 // Takes what waits in a reader. A message is unpacked only where it is no larger than `most` bytes;
-// `use(message, sender)` says whether it makes sense. Gives how many were refused.
+// `use(message, sender)` returns whether it is valid. Returns how many were refused.
 template <class Message, class Use>
 std::uint64_t take_bounded(dds_entity_t reader, const TopicType& type, std::size_t most, Use use) {
   std::uint64_t refused = 0;
