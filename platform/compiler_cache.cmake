@@ -7,6 +7,8 @@ if(GLINT_CCACHE)
     CCACHE_SLOPPINESS=pch_defines,time_macros ${GLINT_CCACHE})
   set(CMAKE_C_COMPILER_LAUNCHER ${launcher})
   set(CMAKE_CXX_COMPILER_LAUNCHER ${launcher})
+  # Files compiled as one are included by their whole path: GoogleTest's __FILE__ would hold it.
+  add_compile_options(-ffile-prefix-map=${CMAKE_SOURCE_DIR}/=)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")  # a time stamp would make each header differ
     add_compile_options("SHELL:-Xclang -fno-pch-timestamp")
   endif()
