@@ -2,7 +2,7 @@
 
 #include "small_graph.hpp"
 
-namespace glint::test {
+namespace glint::test::describe_test {
 namespace {
 
 using Words = Description<SmallGraph>;
@@ -65,4 +65,4 @@ TEST(Describe, ChangesTheSignatureWithTheWiring) {
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::describe_test

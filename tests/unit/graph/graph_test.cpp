@@ -4,7 +4,7 @@
 
 #include "small_graph.hpp"
 
-namespace glint::test {
+namespace glint::test::graph_test {
 
 int total_with_core_flags();
 
@@ -170,4 +170,4 @@ TEST(Graph, BuildsAndRunsWithoutExceptionsAndTypeInformation) {
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::graph_test

@@ -4,7 +4,7 @@
 #include "graph/latest.hpp"
 #include "model.hpp"
 
-namespace glint::test {
+namespace glint::test::latest_model_test {
 namespace {
 
 // A slot of two words, so that a torn read shows.
@@ -129,4 +129,4 @@ TEST(LatestModel, WouldFindATornReadInADoubleBuffer) {
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::latest_model_test

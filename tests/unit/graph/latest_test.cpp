@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace glint::graph {
+namespace glint::graph::latest_test {
 namespace {
 
 TEST(TripleBuffer, IsEmptyWithVersionZeroBeforeAnythingIsPublished) {
@@ -52,4 +52,4 @@ TEST(Latest, TakesAConstantInPlaceOfABuffer) {
 }
 
 }  // namespace
-}  // namespace glint::graph
+}  // namespace glint::graph::latest_test

@@ -11,7 +11,7 @@
 #include "wide_graph.hpp"
 #include "yielding_rest.hpp"
 
-namespace glint::test {
+namespace glint::test::planned_test {
 namespace {
 
 using Tables = PlanTables<WideGraph>;
@@ -175,4 +175,4 @@ TEST(Planned, EndsAtItsDeadlineWhileAnotherWorkerIsLateAndWaitsForItOnlyAfterwar
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::planned_test

@@ -2,7 +2,7 @@
 
 #include "small_graph.hpp"
 
-namespace glint::test {
+namespace glint::test::rate_group_test {
 namespace {
 
 struct Fixture {
@@ -82,4 +82,4 @@ TEST(RateGroup, SaysWhenARecordedVersionWasNotPublished) {
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::rate_group_test

@@ -4,7 +4,7 @@
 #include "graph/ring.hpp"
 #include "model.hpp"
 
-namespace glint::test {
+namespace glint::test::ring_model_test {
 namespace {
 
 struct Slot {
@@ -118,4 +118,4 @@ TEST(RingModel, WouldFindAnOverwrittenItem) {
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::ring_model_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace glint::graph {
+namespace glint::graph::ring_test {
 namespace {
 
 TEST(Ring, GivesItemsInTheOrderTheyCame) {
@@ -51,4 +51,4 @@ TEST(Ring, CountsOnPastTheEndOfItsCounters) {
 }
 
 }  // namespace
-}  // namespace glint::graph
+}  // namespace glint::graph::ring_test

@@ -8,7 +8,7 @@
 #include "small_graph.hpp"
 #include "yielding_rest.hpp"
 
-namespace glint::test {
+namespace glint::test::threads_test {
 namespace {
 
 struct Message {
@@ -102,4 +102,4 @@ TEST(Threads, ShareAGraphActivationAfterActivation) {
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::threads_test

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace glint::graph {
+namespace glint::graph::watch_test {
 namespace {
 
 struct HandClock {
@@ -63,4 +63,4 @@ TEST(RecordedBoundary, EndsWhereTheRecordingSaysAndNowhereWithoutADecision) {
 }
 
 }  // namespace
-}  // namespace glint::graph
+}  // namespace glint::graph::watch_test

@@ -12,7 +12,7 @@
 #include "wide_graph.hpp"
 #include "yielding_rest.hpp"
 
-namespace glint::test {
+namespace glint::test::workers_test {
 namespace {
 
 // Hosts the workers in threads that live for one activation: slow, but nothing to go wrong.
@@ -124,4 +124,4 @@ TEST(Workers, NeverWaitAlone) {
 }
 
 }  // namespace
-}  // namespace glint::test
+}  // namespace glint::test::workers_test

@@ -6,7 +6,7 @@
 #include "schedules/sensitivity.hpp"
 #include "schedules/synthesis.hpp"
 
-namespace glint {
+namespace glint::assessment_test {
 namespace {
 
 constexpr std::int64_t k_us = 1'000, k_ms = 1'000'000;
@@ -156,4 +156,4 @@ TEST(Assessment, NoPhaseOfFramesAndTicksIsLaterThanTheChainsBounds) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::assessment_test

@@ -12,7 +12,7 @@
 #include "schedules/sensitivity.hpp"
 #include "schedules/synthesis.hpp"
 
-namespace glint {
+namespace glint::background_test {
 namespace {
 
 constexpr std::int64_t k_us = 1'000, k_ms = 1'000'000;
@@ -244,4 +244,4 @@ TEST(BackgroundResponse, OfNoGroupIsExceededInAThousandSimulatedSets) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::background_test

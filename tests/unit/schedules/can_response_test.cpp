@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace glint {
+namespace glint::can_response_test {
 namespace {
 
 constexpr std::int64_t k_ms = 1'000'000;
@@ -100,4 +100,4 @@ TEST(CanResponse, ShortIdentifiersWinAgainstLongOnesWithTheSameBeginning) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::can_response_test

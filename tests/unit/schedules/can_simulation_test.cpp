@@ -8,7 +8,7 @@
 #include "can_simulator.hpp"
 #include "schedules/can_response.hpp"
 
-namespace glint {
+namespace glint::can_simulation_test {
 namespace {
 
 constexpr int k_message_sets = 1000;
@@ -98,4 +98,4 @@ TEST(CanSimulation, NoResponseOfAThousandMessageSetsIsAboveItsBound) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::can_simulation_test

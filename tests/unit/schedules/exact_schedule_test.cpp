@@ -9,7 +9,7 @@
 #include "schedules/makespan_bound.hpp"
 #include "schedules/static_order.hpp"
 
-namespace glint {
+namespace glint::exact_schedule_test {
 namespace {
 
 // Every assignment to cores and every order on each, by hand and without any bound.
@@ -114,4 +114,4 @@ TEST(MakespanBound, NoOptimumIsBelowIt) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::exact_schedule_test

@@ -8,7 +8,7 @@
 #include "schedules/group_response.hpp"
 #include "schedules/synthesis.hpp"
 
-namespace glint {
+namespace glint::plan_check_test {
 namespace {
 
 TaskModel small_model(int cores) {
@@ -242,4 +242,4 @@ TEST(Synthesis, GivesTheTickTheHigherPriorityOnlyWhereItNeedsIt) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::plan_check_test

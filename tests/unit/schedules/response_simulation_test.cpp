@@ -8,7 +8,7 @@
 #include "fixed_priority_simulator.hpp"
 #include "schedules/response_time.hpp"
 
-namespace glint {
+namespace glint::response_simulation_test {
 namespace {
 
 constexpr int k_task_sets = 1000;
@@ -105,4 +105,4 @@ TEST(ResponseSimulation, NoResponseOfAThousandTaskSetsIsAboveItsBound) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::response_simulation_test

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace glint {
+namespace glint::response_time_test {
 namespace {
 
 // Joseph and Pandya's recurrence at compile time: what a board's build asserts.
@@ -43,4 +43,4 @@ TEST(ResponseTime, HasNoBoundAboveFullLoad) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::response_time_test

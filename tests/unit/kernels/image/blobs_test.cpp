@@ -9,7 +9,7 @@
 #include "kernels/image/roi_threshold.hpp"
 #include "tests/unit/kernels/image/picture_of.hpp"
 
-namespace glint {
+namespace glint::blobs_test {
 namespace {
 
 using test::Picture;
@@ -312,4 +312,4 @@ TEST(Blobs, HaveALargerVarianceWhereTheyAreCutOrMerged) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::blobs_test

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-namespace glint {
+namespace glint::box_sums_test {
 namespace {
 
 struct Box {
@@ -113,4 +113,4 @@ TEST(BoxSums, DoNotOverflow) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::box_sums_test

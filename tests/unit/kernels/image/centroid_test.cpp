@@ -8,7 +8,7 @@
 #include "kernels/image/roi_threshold.hpp"
 #include "tests/unit/kernels/image/picture_of.hpp"
 
-namespace glint {
+namespace glint::centroid_test {
 namespace {
 
 using test::Picture;
@@ -219,4 +219,4 @@ TEST(Centroids, AreTheSameFromEightAndFromSixteenBits) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::centroid_test

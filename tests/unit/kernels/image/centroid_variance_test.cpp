@@ -10,7 +10,7 @@
 #include "kernels/image/roi_threshold.hpp"
 #include "tests/unit/kernels/image/picture_of.hpp"
 
-namespace glint {
+namespace glint::centroid_variance_test {
 namespace {
 
 using test::Picture;
@@ -178,4 +178,4 @@ TEST(CentroidVariance, IsTheSquaredErrorsMean) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::centroid_variance_test

@@ -9,7 +9,7 @@
 #include "kernels/merge_sort.hpp"
 #include "tests/unit/kernels/image/picture_of.hpp"
 
-namespace glint {
+namespace glint::limits_test {
 namespace {
 
 using test::Picture;
@@ -105,4 +105,4 @@ TEST(MergeSort, SortsAsTheStandardOneDoes) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::limits_test

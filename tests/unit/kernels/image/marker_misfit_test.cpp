@@ -6,7 +6,7 @@
 
 #include "tests/unit/kernels/image/picture_of.hpp"
 
-namespace glint {
+namespace glint::marker_misfit_test {
 namespace {
 
 constexpr double k_focal_px = 253, k_radius_m = 0.0055;
@@ -128,4 +128,4 @@ TEST(MarkerSizes, HoldTheDiscAtEachDepth) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::marker_misfit_test

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace glint {
+namespace glint::nearest_kept_test {
 namespace {
 
 struct Candidates {
@@ -200,4 +200,4 @@ TEST(NearestKept, LookAtNoMorePredictionsThanToolsHaveMarkers) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::nearest_kept_test

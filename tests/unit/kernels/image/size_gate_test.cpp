@@ -5,7 +5,7 @@
 
 #include "kernels/image/blob_settings.hpp"
 
-namespace glint {
+namespace glint::size_gate_test {
 namespace {
 
 TEST(SizeGate, HoldsTheDiscOfEveryRangeBetween) {
@@ -36,4 +36,4 @@ TEST(SizeGate, IsWideOpenForNonsense) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::size_gate_test

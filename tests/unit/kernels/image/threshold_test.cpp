@@ -5,7 +5,7 @@
 #include "kernels/image/roi_threshold.hpp"
 #include "tests/unit/kernels/image/picture_of.hpp"
 
-namespace glint {
+namespace glint::threshold_test {
 namespace {
 
 using test::Picture;
@@ -168,4 +168,4 @@ TEST(Threshold, EqualsThePlainVersionOnRandomFrames) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::threshold_test

@@ -8,7 +8,7 @@
 
 #include "tests/unit/kernels/motion/motion_scene.hpp"
 
-namespace glint {
+namespace glint::rest_window_test {
 namespace {
 
 constexpr double k_shift_sigma = 0.0005, k_turn_sigma = 0.005;
@@ -212,4 +212,4 @@ TEST(RestWindow, GivesTheSameBitsEverywhere) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::rest_window_test

@@ -11,7 +11,7 @@
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"
 
-namespace glint {
+namespace glint::tool_motion_test {
 namespace {
 
 constexpr double k_shift_sigma = 0.0005, k_turn_sigma = 0.005;
@@ -196,4 +196,4 @@ TEST(ToolMotion, GivesTheSameBitsEverywhere) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::tool_motion_test

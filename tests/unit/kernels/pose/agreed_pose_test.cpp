@@ -11,7 +11,7 @@
 #include "kernels/pose/refine_pose.hpp"
 #include "tests/unit/kernels/pose/weighted_scene.hpp"
 
-namespace glint {
+namespace glint::agreed_pose_test {
 namespace {
 
 using test::Random;
@@ -164,4 +164,4 @@ TEST(AgreedPose, SaysWhereThereIsNone) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::agreed_pose_test

@@ -8,7 +8,7 @@
 
 #include "tests/unit/kernels/pose/scene.hpp"
 
-namespace glint {
+namespace glint::assign_test {
 namespace {
 
 Labeling labeling_of(std::initializer_list<std::int16_t> markers, double rms_m) {
@@ -116,4 +116,4 @@ TEST(Assign, NeverGivesAMarkerToTwoTools) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::assign_test

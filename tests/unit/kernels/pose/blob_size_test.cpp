@@ -7,7 +7,7 @@
 
 #include "tests/unit/kernels/pose/weighted_scene.hpp"
 
-namespace glint {
+namespace glint::blob_size_test {
 namespace {
 
 using test::Random;
@@ -174,4 +174,4 @@ TEST(BlobSize, TellsNothingOfWhatIsNotSeenWhole) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::blob_size_test

@@ -9,7 +9,7 @@
 #include "kernels/pose/correspond.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
 
-namespace glint {
+namespace glint::correspond_crowd_test {
 namespace {
 
 constexpr int k_tools = 5;
@@ -103,4 +103,4 @@ TEST(CorrespondCrowd, LosesNothingToTheBudgetsOfACell) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::correspond_crowd_test

@@ -5,7 +5,7 @@
 
 #include "tests/unit/kernels/pose/correspond_view.hpp"
 
-namespace glint {
+namespace glint::correspond_prediction_test {
 namespace {
 
 using test::ahat;
@@ -121,4 +121,4 @@ TEST(CorrespondPrediction, APredictionDoesNotOverruleAReadingThatFitsWorseThanNo
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::correspond_prediction_test

@@ -10,7 +10,7 @@
 #include "tests/unit/kernels/pose/correspond_view.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
 
-namespace glint {
+namespace glint::correspond_test {
 namespace {
 
 using test::ahat;
@@ -302,4 +302,4 @@ TEST(Correspond, GivesTheSameBitsEverywhere) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::correspond_test

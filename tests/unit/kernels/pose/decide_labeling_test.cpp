@@ -9,7 +9,7 @@
 #include "kernels/pose/correspond.hpp"
 #include "tests/unit/kernels/pose/weighted_scene.hpp"
 
-namespace glint {
+namespace glint::decide_labeling_test {
 namespace {
 
 using test::Random;
@@ -203,4 +203,4 @@ TEST(DecideLabeling, EndsWithinItsDeclaredWorkAtItsWorstWithTheSameBitsEverywher
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::decide_labeling_test

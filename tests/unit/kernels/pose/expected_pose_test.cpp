@@ -8,7 +8,7 @@
 #include "kernels/pose/lever_arm.hpp"
 #include "tests/unit/kernels/pose/weighted_scene.hpp"
 
-namespace glint {
+namespace glint::expected_pose_test {
 namespace {
 
 using test::Random;
@@ -104,4 +104,4 @@ TEST(ExpectedPose, TellsAFlatToolsMinimaApart) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::expected_pose_test

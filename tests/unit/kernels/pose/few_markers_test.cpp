@@ -7,7 +7,7 @@
 #include "kernels/pose/lever_arm.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
 
-namespace glint {
+namespace glint::few_markers_test {
 namespace {
 
 constexpr double k_sigma_m = 0.001, k_turn_sigma = 0.01;
@@ -175,4 +175,4 @@ TEST_F(FewMarkersTest, TestsEachMarkerAgainstEachGateOfAPredictedTool) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::few_markers_test

@@ -4,7 +4,7 @@
 
 #include "tests/unit/kernels/pose/weighted_scene.hpp"
 
-namespace glint {
+namespace glint::marker_sight_test {
 namespace {
 
 using test::Random;
@@ -120,4 +120,4 @@ TEST(MarkerSight, GivesTheSameBitsEverywhere) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::marker_sight_test

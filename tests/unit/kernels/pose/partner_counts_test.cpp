@@ -6,7 +6,7 @@
 
 #include "tests/unit/kernels/pose/scene.hpp"
 
-namespace glint {
+namespace glint::partner_counts_test {
 namespace {
 
 bool has(const PairMatches& matches, int i, int a, int j, int b) {
@@ -56,4 +56,4 @@ TEST(PartnerCounts, AreThoseOfTheTableForEachMarkerAndCandidate) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::partner_counts_test

@@ -9,7 +9,7 @@
 #include "kernels/pose/rigid_fit.hpp"
 #include "tests/unit/kernels/pose/weighted_scene.hpp"
 
-namespace glint {
+namespace glint::refine_pose_test {
 namespace {
 
 using test::Random;
@@ -348,4 +348,4 @@ TEST(RefinePose, GivesTheSameBitsEverywhere) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::refine_pose_test

@@ -12,7 +12,7 @@
 #include "kernels/pose/rigid_fit.hpp"
 #include "tests/unit/kernels/pose/weighted_scene.hpp"
 
-namespace glint {
+namespace glint::weighted_fit_test {
 namespace {
 
 const Vector3 k_place(0.08, -0.05, 0.5);
@@ -304,4 +304,4 @@ TEST(WeightedFit, SaysWhenMarkersAndPriorDoNotFixThePose) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::weighted_fit_test

@@ -29,6 +29,15 @@ inline Vector3 mean_of_markers(const Tool& tool) {
   return mean / tool.marker_count;
 }
 
+// The least turn from the line of sight to `place`, which is in front of the camera.
+inline Quaternion turn_to(const Vector3& place) {
+  const Vector3 ahead = Vector3::UnitZ();
+  Quaternion half;  // twice the turn's quaternion has the cosine of half of it
+  half.w() = 1 + ahead.dot(place.normalized());
+  half.vec() = ahead.cross(place.normalized());
+  return half.normalized();
+}
+
 // The tool's mean at `place`, its x axis at this angle from the line of sight.
 inline Pose tilted_pose(const Tool& tool, double tilt_rad, const Vector3& place, Random& random) {
   const Quaternion facing = from_rotation_vector(Vector3(0, 1.5707963267948966, 0));
@@ -36,10 +45,8 @@ inline Pose tilted_pose(const Tool& tool, double tilt_rad, const Vector3& place,
   const SineCosine axis = sine_cosine(around);
   const Quaternion spin = from_rotation_vector(Vector3(0, 0, random.within(0, 6.28)));
   Pose pose;
-  pose.rotation =
-      (Quaternion::FromTwoVectors(Vector3::UnitZ(), place) *
-       from_rotation_vector(tilt_rad * Vector3(axis.cosine, axis.sine, 0)) * spin * facing)
-          .normalized();
+  const Quaternion tilt = from_rotation_vector(tilt_rad * Vector3(axis.cosine, axis.sine, 0));
+  pose.rotation = (turn_to(place) * tilt * spin * facing).normalized();
   pose.translation = place - pose.rotation * mean_of_markers(tool);
   return pose;
 }

@@ -9,7 +9,7 @@
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/registration/box_model.hpp"
 
-namespace glint {
+namespace glint::align_model_test {
 namespace {
 
 using test::k_truth;
@@ -219,4 +219,4 @@ TEST(JudgeAlignment, TellsRightFromSeenThroughAndHidden) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::align_model_test

@@ -5,7 +5,7 @@
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/registration/box_model.hpp"
 
-namespace glint {
+namespace glint::follow_reference_test {
 namespace {
 
 using test::k_truth;
@@ -174,4 +174,4 @@ TEST(FollowReference, TakesNoMoreSlicesThanItSaysAndNoHeap) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::follow_reference_test

@@ -5,7 +5,7 @@
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/registration/box_model.hpp"
 
-namespace glint {
+namespace glint::follow_slices_test {
 namespace {
 
 using test::k_truth;
@@ -101,4 +101,4 @@ TEST(FollowSlices, TakeNothingFromTheHeap) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::follow_slices_test

@@ -8,7 +8,7 @@
 
 #include "tests/unit/heap_count.hpp"
 
-namespace glint {
+namespace glint::model_cloud_test {
 namespace {
 
 TEST(PoseCloud, MovesEachPointWithItsLink) {
@@ -147,4 +147,4 @@ TEST(PoseCloudSlices, TakeNothingFromTheHeap) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::model_cloud_test

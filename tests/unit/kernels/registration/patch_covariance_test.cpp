@@ -8,7 +8,7 @@
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/registration/box_model.hpp"
 
-namespace glint {
+namespace glint::patch_covariance_test {
 namespace {
 
 using test::k_truth;
@@ -104,4 +104,4 @@ TEST(PatchCovariance, SaysWhereItKnowsNothing) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::patch_covariance_test

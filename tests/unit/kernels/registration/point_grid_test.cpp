@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-namespace glint {
+namespace glint::point_grid_test {
 namespace {
 
 std::vector<Vector3f> cloud(int count, float side) {
@@ -79,4 +79,4 @@ TEST(PointGrid, TakesTheFirstOfPointsInOnePlaceAndEndsInACrowd) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::point_grid_test

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-namespace glint {
+namespace glint::render_depth_test {
 namespace {
 
 struct Picture {
@@ -80,4 +80,4 @@ TEST(RenderDepth, EndsAfterItsBudgetOfTests) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::render_depth_test

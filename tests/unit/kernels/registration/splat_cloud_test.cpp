@@ -6,7 +6,7 @@
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/registration/box_model.hpp"
 
-namespace glint {
+namespace glint::splat_cloud_test {
 namespace {
 
 using test::k_truth;
@@ -160,4 +160,4 @@ TEST(SplatCloud, TakesNoHeapAndGivesTheSameBitsAgain) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::splat_cloud_test

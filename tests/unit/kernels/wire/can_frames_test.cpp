@@ -11,7 +11,7 @@
 #include "tests/unit/kernels/wire/hex.hpp"
 #include "tests/unit/kernels/wire/samples.hpp"
 
-namespace glint {
+namespace glint::can_frames_test {
 namespace {
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
@@ -207,4 +207,4 @@ TEST(CanFrames, CountWhatDoesNotFitInsteadOfOverflowing) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::can_frames_test

@@ -4,7 +4,7 @@
 
 #include "tests/unit/kernels/wire/hex.hpp"
 
-namespace glint {
+namespace glint::crc_test {
 namespace {
 
 TEST(Crc, GivesTheCatalogueCheckValues) {
@@ -41,4 +41,4 @@ TEST(Crc, EqualsPolynomialDivision) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::crc_test

@@ -4,7 +4,7 @@
 
 #include "tests/unit/kernels/wire/hex.hpp"
 
-namespace glint {
+namespace glint::e2e_test {
 namespace {
 
 std::string p01(P01Mode mode, unsigned counter) {
@@ -117,4 +117,4 @@ TEST(EndToEnd, LeavesFramesWithoutRoomAlone) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::e2e_test

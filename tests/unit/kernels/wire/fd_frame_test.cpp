@@ -8,7 +8,7 @@
 #include "tests/unit/kernels/wire/hex.hpp"
 #include "tests/unit/kernels/wire/samples.hpp"
 
-namespace glint {
+namespace glint::fd_frame_test {
 namespace {
 
 constexpr double k_half = 0.5 + 1e-6;
@@ -141,4 +141,4 @@ TEST(FdFrame, SendsATimeBefore1970AsUnknown) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::fd_frame_test

@@ -5,7 +5,7 @@
 #include "kernels/wire/crc.hpp"
 #include "tests/unit/kernels/wire/hex.hpp"
 
-namespace glint {
+namespace glint::node_frames_test {
 namespace {
 
 TEST(NodeFrames, BeatAsCanOpenSays) {
@@ -76,4 +76,4 @@ TEST(NodeFrames, RefuseTimesThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::node_frames_test

@@ -11,7 +11,7 @@
 #include "tests/unit/kernels/wire/hex.hpp"
 #include "tests/unit/kernels/wire/samples.hpp"
 
-namespace glint {
+namespace glint::output_record_test {
 namespace {
 
 using Record = std::array<std::uint8_t, k_output_record_bytes>;
@@ -148,4 +148,4 @@ TEST(OutputRecord, KeepsTheLow32BitsOfItsCounts) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::output_record_test

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace glint {
+namespace glint::quantize_test {
 namespace {
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
@@ -52,4 +52,4 @@ TEST(Quantize, PutsAllOnesWhereAnUncertaintyIsTooLarge) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::quantize_test

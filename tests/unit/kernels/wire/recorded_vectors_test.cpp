@@ -10,7 +10,7 @@
 #include "kernels/wire/e2e.hpp"
 #include "tests/unit/kernels/wire/hex.hpp"
 
-namespace glint {
+namespace glint::recorded_vectors_test {
 namespace {
 
 using Row = std::vector<std::string>;
@@ -79,4 +79,4 @@ TEST(RecordedVectors, AreJudgedAlike) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::recorded_vectors_test

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-namespace glint {
+namespace glint::smallest_three_test {
 namespace {
 
 double degrees_between(const Quaternion& a, const Quaternion& b) {
@@ -62,4 +62,4 @@ TEST(SmallestThree, GivesAUnitQuaternionForAnyIntegers) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::smallest_three_test

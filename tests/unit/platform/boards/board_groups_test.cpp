@@ -13,7 +13,7 @@
 
 #include "platform/can/candump_line.hpp"
 
-namespace glint {
+namespace glint::board_groups_test {
 namespace {
 
 constexpr std::uint32_t k_frames = 3, k_ticks = 4;
@@ -130,4 +130,4 @@ TEST_F(BoardGroupsTest, AdvanceTheCounterOfTheirCanFramesBeyondTwoToThe32Ticks) 
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::board_groups_test

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace glint {
+namespace glint::board_json_test {
 namespace {
 
 TEST(BoardJson, SaysWhatWasHeardOverCan) {
@@ -33,4 +33,4 @@ TEST(BoardJson, SaysByWhichJointsTheRobotWasFollowed) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::board_json_test

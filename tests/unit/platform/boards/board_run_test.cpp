@@ -16,7 +16,7 @@
 #include "platform/sim/simulator.hpp"
 #include "tests/unit/platform/session/followed_robot.hpp"
 
-namespace glint {
+namespace glint::board_run_test {
 namespace {
 
 constexpr int k_frames = 12;
@@ -132,4 +132,4 @@ TEST_F(BoardRun, RefusesACellThatChangesItsTools) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::board_run_test

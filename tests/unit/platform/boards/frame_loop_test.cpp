@@ -8,7 +8,7 @@
 
 #include "platform/input_error.hpp"
 
-namespace glint {
+namespace glint::frame_loop_test {
 namespace {
 
 class FrameLoopFile : public testing::Test {
@@ -134,4 +134,4 @@ TEST_F(FrameLoopFile, HasItsNameOnlyWhenItIsWhole) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::frame_loop_test

@@ -9,7 +9,7 @@
 
 #include "platform/rt/clock.hpp"
 
-namespace glint {
+namespace glint::loop_source_test {
 namespace {
 
 constexpr int k_frames = 3;
@@ -94,4 +94,4 @@ TEST_F(LoopSourceTest, GoesOnUntilItIsStoppedWhereNoNumberIsGiven) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::loop_source_test

@@ -6,7 +6,7 @@
 
 #include "kernels/image/roi_threshold.hpp"
 
-namespace glint {
+namespace glint::worst_frames_test {
 namespace {
 
 constexpr std::uint16_t k_threshold = 100;
@@ -55,4 +55,4 @@ TEST(WorstFrames, HaveTheBrightPixelsTheyAreNamedFor) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::worst_frames_test

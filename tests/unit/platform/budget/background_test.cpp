@@ -16,7 +16,7 @@
 #include "schedules/synthesis.hpp"
 #include "tests/unit/platform/budget/flat_board.hpp"
 
-namespace glint {
+namespace glint::background_test {
 namespace {
 
 constexpr int k_steps = 1'000;
@@ -263,4 +263,4 @@ TEST(BackgroundCheck, IsHeldAgainstTheSlicesThatARunSaw) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::background_test

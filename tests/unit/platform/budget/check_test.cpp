@@ -17,7 +17,7 @@
 #include "schedules/synthesis.hpp"
 #include "tests/unit/platform/budget/flat_board.hpp"
 
-namespace glint {
+namespace glint::check_test {
 namespace {
 
 struct Fixture {
@@ -227,4 +227,4 @@ TEST(BusFrames, OfOthersAreReadAndRefusedByLine) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::check_test

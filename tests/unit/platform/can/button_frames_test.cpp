@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace glint {
+namespace glint::button_frames_test {
 namespace {
 
 constexpr std::uint32_t k_identifier = 0x190;
@@ -139,4 +139,4 @@ TEST(FrameOfSocketCan, KeepsToItsBoundsWhateverTheBytes) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::button_frames_test

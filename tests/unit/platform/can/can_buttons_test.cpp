@@ -15,7 +15,7 @@
 
 #include "platform/input_error.hpp"
 
-namespace glint {
+namespace glint::can_buttons_test {
 namespace {
 
 constexpr std::uint32_t k_buttons = 0x190;
@@ -179,4 +179,4 @@ TEST(CanButtons, DoNotComeFromALogAndNameTheInterfaceThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::can_buttons_test

@@ -4,7 +4,7 @@
 
 #include "platform/input_error.hpp"
 
-namespace glint {
+namespace glint::can_sink_test {
 namespace {
 
 template <class Error>
@@ -47,4 +47,4 @@ TEST(CanSink, NamesTheLogThatCannotBeMade) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::can_sink_test

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <random>
 
-namespace glint {
+namespace glint::candump_line_test {
 namespace {
 
 CanFrame frame_of(std::uint32_t identifier, std::initializer_list<std::uint8_t> data) {
@@ -129,4 +129,4 @@ TEST(CandumpLine, OfARealLogIsReadAndWrittenUnchanged) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::candump_line_test

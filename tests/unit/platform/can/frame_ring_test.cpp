@@ -5,7 +5,7 @@
 #include <memory>
 #include <thread>
 
-namespace glint {
+namespace glint::frame_ring_test {
 namespace {
 
 StampedFrame numbered(std::uint32_t number) {
@@ -54,4 +54,4 @@ TEST(FrameRing, KeepsOrderAndContentBetweenTwoThreads) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::frame_ring_test

@@ -8,7 +8,7 @@
 #include "platform/can/candump_line.hpp"
 #include "tests/unit/platform/can/temporary_folder.hpp"
 
-namespace glint {
+namespace glint::log_sink_test {
 namespace {
 
 CanFrame frame_number(std::uint32_t number) {
@@ -103,4 +103,4 @@ TEST(LogSink, EndsAtAWholeLineWhenTheDiskIsFull) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::log_sink_test

@@ -5,7 +5,7 @@
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/platform/can/temporary_folder.hpp"
 
-namespace glint {
+namespace glint::send_allocation_test {
 namespace {
 
 TEST(LogSink, AsksForNoMemoryToSendAFrame) {
@@ -26,4 +26,4 @@ TEST(LogSink, AsksForNoMemoryToSendAFrame) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::send_allocation_test

@@ -10,7 +10,7 @@
 #include "tests/unit/platform/dds/peer.hpp"
 #include "tests/unit/platform/dds/samples.hpp"
 
-namespace glint {
+namespace glint::sink_test {
 namespace {
 
 using Sinks = DdsTest;
@@ -332,4 +332,4 @@ TEST_F(Sinks, CanBeOpenedAgainOnTheSameDomain) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::sink_test

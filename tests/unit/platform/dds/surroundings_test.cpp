@@ -15,7 +15,7 @@
 #include "tests/unit/platform/dds/samples.hpp"
 #include "tests/unit/platform/dds/wire.hpp"
 
-namespace glint {
+namespace glint::surroundings_test {
 namespace {
 
 using Surroundings = DdsTest;
@@ -176,4 +176,4 @@ TEST_F(Surroundings, HaveTheNamesAndQualitiesOfRos2) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::surroundings_test

@@ -13,7 +13,7 @@
 #include "tests/unit/platform/dds/samples.hpp"
 #include "tests/unit/platform/dds/wire.hpp"
 
-namespace glint {
+namespace glint::wire_test {
 namespace {
 
 using WireFormat = DdsTest;
@@ -158,4 +158,4 @@ TEST_F(WireFormat, DisposesOfNothingWhenTheSinkLeaves) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::wire_test

@@ -6,7 +6,7 @@
 
 #include "painted_frame.hpp"
 
-namespace glint {
+namespace glint::seed_match_test {
 namespace {
 
 std::vector<Vector3> placed(const Tool& tool, const Pose& pose) {
@@ -94,4 +94,4 @@ TEST(SeedMatch, StopsAtItsBudget) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::seed_match_test

@@ -5,7 +5,7 @@
 #include "kernels/angles.hpp"
 #include "painted_frame.hpp"
 
-namespace glint {
+namespace glint::seed_tracker_test {
 namespace {
 
 const Pose k_pose = turned(0.4, -0.3, 1.1, {0.05, -0.02, 0.45});
@@ -162,4 +162,4 @@ TEST(Seed, TakesTheRimsDepthWhereASaturatedMiddleHasNone) {
 }
 
 }  // namespace
-}  // namespace glint
+}  // namespace glint::seed_tracker_test
