@@ -4,9 +4,11 @@
 
 #include "small_graph.hpp"
 
-namespace glint::test::graph_test {
+namespace glint::test {
+int total_with_core_flags();  // core_flags.cpp
+}  // namespace glint::test
 
-int total_with_core_flags();
+namespace glint::test::graph_test {
 
 namespace {
 
