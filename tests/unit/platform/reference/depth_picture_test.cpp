@@ -54,7 +54,7 @@ TEST(DepthPicture, RefusesAPngThatSaysItIsEnormous) {
   const Files files;
   for (const std::string& size :
        {std::string("\0\0\xEA\x60\0\0\0\1", 8), std::string("\0\0\x27\x10\0\0\x27\x10", 8)}) {
-    const std::string head = std::string("\x89PNG\r\n\x1A\n\0\0\0\x0D", 12) + "IHDR" + size;
+    const std::string head = std::string("\x89PNG\r\n\x1A\n\0\0\0\x0DIHDR", 16) + size;
     const std::string path = files.write("a.png", head + std::string("\x10\0\0\0\0", 5));
     expect_input_error([&] { (void)read_depth(path, camera(2, 1)); },
                        {"a.png:byte 16", "0 x ", "pixels; expected at most"});
