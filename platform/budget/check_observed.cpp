@@ -12,13 +12,7 @@ namespace {
 
 double in_us(std::int64_t ns) { return static_cast<double>(ns) * 1e-3; }
 
-}  // namespace
-
-void compare_observed(const std::string& summary_file, CheckResult& result) {
-  std::ifstream in(summary_file);
-  if (!in)
-    throw InputError(summary_file + ": cannot be read; expected a summary.json of `glint run`");
-  const auto summary = nlohmann::json::parse(in, nullptr, false);
+void compare(const nlohmann::json& summary, const std::string& summary_file, CheckResult& result) {
   if (summary.is_discarded() || !summary.contains("frame_to_can_us") ||
       !summary["frame_to_can_us"].contains("max")) {
     throw InputError(summary_file +
@@ -29,7 +23,7 @@ void compare_observed(const std::string& summary_file, CheckResult& result) {
                      ":1: frame_to_can_us was computed, no clock saw it; expected the summary of a "
                      "run in real time, without --fast");
   }
-  const auto compare = [&](const char* what, const nlohmann::json& seen, double bound_us) {
+  const auto judge = [&](const char* what, const nlohmann::json& seen, double bound_us) {
     const double seen_us = seen.value("max", 0.0);
     if (seen_us <= bound_us) return;
     char text[120];
@@ -39,19 +33,33 @@ void compare_observed(const std::string& summary_file, CheckResult& result) {
   };
   const nlohmann::json& seen = summary["frame_to_can_us"];
   for (const Chain& chain : result.assessment.chains) {
-    if (chain.name == "frame_to_can") compare("frame to CAN", seen, in_us(chain.total_ns));
+    if (chain.name == "frame_to_can") judge("frame to CAN", seen, in_us(chain.total_ns));
   }
   const GroupResponse& frame = result.assessment.groups[k_frame_group_index];
   if (frame.response_ns && seen.contains("computing")) {
-    compare("frame group", seen["computing"], in_us(*frame.response_ns - frame.jitter_ns));
+    judge("frame group", seen["computing"], in_us(*frame.response_ns - frame.jitter_ns));
   }
   if (summary.contains("background") &&
       result.assessment.groups.size() > k_background_group_index) {
     const auto& bound = result.assessment.groups[k_background_group_index].response_ns;
     const auto& slices = summary["background"];
     if (bound && slices.contains("response_us")) {
-      compare("background group", slices["response_us"], in_us(*bound));
+      judge("background group", slices["response_us"], in_us(*bound));
     }
+  }
+}
+
+}  // namespace
+
+void compare_observed(const std::string& summary_file, CheckResult& result) {
+  std::ifstream in(summary_file);
+  if (!in)
+    throw InputError(summary_file + ": cannot be read; expected a summary.json of `glint run`");
+  try {
+    compare(nlohmann::json::parse(in, nullptr, false), summary_file, result);
+  } catch (const nlohmann::json::exception& error) {  // a value of another type
+    throw InputError(summary_file + ":1: " + error.what() +
+                     "; expected a summary.json of `glint run`");
   }
 }
 

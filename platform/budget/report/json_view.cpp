@@ -11,6 +11,21 @@ namespace glint {
 
 using nlohmann::ordered_json;
 
+namespace {
+
+// Copying and writing a value recurse as deep as the file nests; glint writes fewer levels than this.
+constexpr int k_max_depth = 32;
+
+ordered_json parse(const std::string& text, const std::string& path) {
+  return ordered_json::parse(text, [&](int depth, auto, const ordered_json&) {
+    if (depth <= k_max_depth) return true;
+    throw InputError(path + ": nested deeper than " + std::to_string(k_max_depth) +
+                     " levels; expected a file that glint wrote with --json");
+  });
+}
+
+}  // namespace
+
 JsonView JsonView::of_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::stringstream text;
@@ -20,7 +35,7 @@ JsonView JsonView::of_file(const std::string& path) {
   const std::string content = text.str();
   JsonView view;
   try {
-    view.root_ = std::make_shared<const ordered_json>(ordered_json::parse(content));
+    view.root_ = std::make_shared<const ordered_json>(parse(content, path));
   } catch (const nlohmann::json::parse_error& error) {
     const auto end =
         content.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, content.size()));

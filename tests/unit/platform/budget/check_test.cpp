@@ -148,6 +148,12 @@ TEST(Check, FailsBelowThePolicysMarginAndAboveAnObservation) {
   std::ofstream(options.observed)
       << R"({"frame_to_can_kind": "nominal", "frame_to_can_us": {"max": 1.0}})";
   EXPECT_THROW((void)check(fixture.input(), options), InputError);
+  for (const char* of_another_type :
+       {R"({"frame_to_can_us": {"max": "x"}})", R"({"frame_to_can_us": 1})",
+        R"({"frame_to_can_kind": 1, "frame_to_can_us": {"max": 1.0}})"}) {
+    std::ofstream(options.observed) << of_another_type;
+    EXPECT_THROW((void)check(fixture.input(), options), InputError) << of_another_type;
+  }
   std::remove(options.observed.c_str());
 }
 

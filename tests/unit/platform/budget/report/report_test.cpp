@@ -218,6 +218,10 @@ TEST_F(BudgetReport, RefusesABrokenFileByItsPlaceInIt) {
   EXPECT_NE(message_of({{path("short.json")}, "", "", ""})
                 .find("short.json: /kernels/0/bound: found nothing; expected a value"),
             std::string::npos);
+  const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
+  std::ofstream(path("deep.json")) << R"({"kernels":[{"loops":[],"bound":)" << deep << "}]}";
+  EXPECT_NE(message_of({{path("deep.json")}, "", "", ""}).find("deep.json: nested deeper than 32"),
+            std::string::npos);
   EXPECT_NE(message_of({{}, path("measure.json"), "", ""}).find("no \"chains\""),
             std::string::npos);
   EXPECT_NE(message_of({}).find("nothing to report on"), std::string::npos);
