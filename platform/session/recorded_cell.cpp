@@ -73,6 +73,15 @@ ToolSet tools_of(const json& tools, const std::string& path) {
 
 }  // namespace
 
+ToolSet tools_from_json(std::string_view text, const std::string& path) {
+  try {
+    return tools_of(json::parse(text.begin(), text.end()), path);
+  } catch (const json::exception& error) {
+    throw InputError(path + ": attachment tools.json: " + error.what() +
+                     "; expected the tools that `glint run` put there");
+  }
+}
+
 std::vector<Attachment> attachments_of(const Cell& cell) {
   std::vector<Attachment> attachments;
   attachments.push_back(text_attachment("cell.toml", cell.text));
@@ -93,12 +102,7 @@ Cell recorded_cell(RecordingReader& reader, const std::string& path) {
   const Attachment text = reader.attachment("cell.toml");
   const Attachment tools = reader.attachment("tools.json");
   CellFiles files;
-  try {
-    files.tools = tools_of(json::parse(tools.data.begin(), tools.data.end()), path);
-  } catch (const json::exception& error) {
-    throw InputError(path + ": attachment tools.json: " + error.what() +
-                     "; expected the tools that `glint run` put there");
-  }
+  files.tools = tools_from_json(std::string(tools.data.begin(), tools.data.end()), path);
   const auto names = reader.attachment_names();
   if (std::find(names.begin(), names.end(), "rays.f32") != names.end()) {
     const Attachment rays = reader.attachment("rays.f32");

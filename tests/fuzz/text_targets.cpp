@@ -1,10 +1,11 @@
-// Files of text: TOML, INI, CSV, YAML, trajectories, CAN logs, joint positions.
+// Files of text: TOML, INI, JSON, CSV, YAML, trajectories, CAN logs, joint positions.
 #include <array>
 #include <string>
 #include <string_view>
 
 #include "platform/budget/board_file.hpp"
 #include "platform/budget/plan_file.hpp"
+#include "platform/budget/report/json_view.hpp"
 #include "platform/can/candump_line.hpp"
 #include "platform/cells/calibration_files.hpp"
 #include "platform/cells/cell.hpp"
@@ -15,6 +16,7 @@
 #include "platform/robot/joint_file.hpp"
 #include "platform/sensors/camera.hpp"
 #include "platform/sensors/points_csv.hpp"
+#include "platform/session/recorded_cell.hpp"
 #include "platform/sim/trajectory.hpp"
 #include "schedules/task_model.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
@@ -72,6 +74,19 @@ void read_calibration(Bytes bytes) {
 
 void read_ini(Bytes bytes) { (void)tool_from_ini_text(text_of(bytes), "tool.ini"); }
 
+// A recording's attachment.
+void read_json_tools(Bytes bytes) { (void)tools_from_json(text_of(bytes), "run.mcap"); }
+
+// What a report asks of its files: each value as a list, a number and a text.
+void read_json_report(Bytes bytes) {
+  const JsonView file = JsonView::of_file(file_of(bytes));
+  for (const char* key : {"a", "frame_to_can_us", "rows"}) {
+    read_one([&] { return file.list(key); });
+    read_one([&] { return file.number(key); });
+    read_one([&] { return file.text_or(key, ""); });
+  }
+}
+
 void read_points(Bytes bytes) { (void)points_from_text(text_of(bytes), "points.csv"); }
 
 void read_trajectory(Bytes bytes) { (void)sim::trajectory_from_text(text_of(bytes), "pen.tum"); }
@@ -106,6 +121,8 @@ constexpr Target k_text_targets[] = {
     {"toml_plan", read_plan},
     {"toml_calibration", read_calibration},
     {"ini_tool", read_ini},
+    {"json_tools", read_json_tools},
+    {"json_report", read_json_report},
     {"csv_points", read_points},
     {"trajectory", read_trajectory},
     {"candump", read_candump},
