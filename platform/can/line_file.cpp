@@ -12,12 +12,6 @@
 #include "platform/part_file.hpp"
 
 namespace glint {
-namespace {
-
-constexpr std::size_t k_gather_bytes = 65536;
-constexpr std::size_t k_line_bytes_max = 4096;
-
-}  // namespace
 
 LineFile::LineFile(std::filesystem::path file) : file_(std::move(file)), written_as_(file_) {
   if (is_written_in_place(file_.string())) {
@@ -30,7 +24,6 @@ LineFile::LineFile(std::filesystem::path file) : file_(std::move(file)), written
   if (descriptor_ < 0)
     throw InputError(file_.string() + ": cannot be written: " + std::strerror(errno) +
                      "; expected a place for a log");
-  gathered_.reserve(k_gather_bytes + k_line_bytes_max);
 }
 
 LineFile::~LineFile() {
@@ -40,12 +33,10 @@ LineFile::~LineFile() {
 }
 
 void LineFile::add(std::string_view line) noexcept {
-  if (failed_ || line.size() > k_line_bytes_max) {
+  if (failed_)
     ++lines_lost_;
-    return;
-  }
-  gathered_.append(line);
-  if (gathered_.size() >= k_gather_bytes) write_out();
+  else
+    gathered_.append(line);
 }
 
 void LineFile::write_out() noexcept {

@@ -8,7 +8,7 @@
 
 namespace glint {
 
-// Gathers lines in memory and writes them in one piece. What is no regular file (a device, a pipe)
+// Gathers lines in memory; write_out() writes them in one piece. What is no regular file (a device, a pipe)
 // is written directly, without the temporary.
 class LineFile {
  public:
@@ -19,8 +19,7 @@ class LineFile {
   LineFile(const LineFile&) = delete;
   LineFile& operator=(const LineFile&) = delete;
 
-  // One line with its newline, at most 4096 bytes. Once the disk has refused, lines are only
-  // counted.
+  // One line with its newline. Once the disk has refused, lines are only counted.
   void add(std::string_view line) noexcept;
   // Hands what was gathered to the system.
   void write_out() noexcept;
