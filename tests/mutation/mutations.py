@@ -20,8 +20,8 @@ Mutation = collections.namedtuple("Mutation", "path number operator before after
 NOISE = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|'
                    r"(?<![0-9a-fA-F])'(?:\\.|[^'\\\n])'|^[ \t]*#(?:[^\n]*\\\n)*[^\n]*", re.S | re.M)
 # Checks by the compiler or by a debug build, and hints to the processor: no behaviour of theirs.
-NO_STATEMENT = re.compile(
-    r"\bstatic_assert\b|\bassert\(|__builtin_prefetch|^\s*(?:using|typedef)\b")
+CHECK = re.compile(r"\b(?:static_assert|assert)\s*\([^;]*;")
+NO_STATEMENT = re.compile(r"__builtin_prefetch|^\s*(?:using|typedef)\b")
 
 SWAPPED_PAIRS = {
     "boundary": [("<", "<="), (">", ">=")],
@@ -34,7 +34,9 @@ COMMUTATIVE = {"min", "max", "hypot", "swap"}  # with its arguments swapped each
 
 
 def without_noise(text):
-    return NOISE.sub(lambda m: re.sub(r"[^\n]", " ", m.group()), text)
+    def blanked(found):
+        return re.sub(r"[^\n]", " ", found.group())
+    return CHECK.sub(blanked, NOISE.sub(blanked, text))
 
 
 def inside_bodies(code):

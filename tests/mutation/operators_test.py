@@ -35,13 +35,14 @@ constexpr std::array<int, 2> table{1, 2};
 template <class T>
 T twice(T x) noexcept {
   /* if (x) */
-  static_assert(k > 2);
+  static_assert(k > std::max({1,
+                              2}));
   const char* s = "x + y";
   return 2 * x;
 }
 }
 """
-        self.assertEqual([line.number for line in lines_of(text)], [7, 9, 16, 17])
+        self.assertEqual([line.number for line in lines_of(text)], [7, 9, 17, 18])
 
 
 class Operators(unittest.TestCase):
