@@ -8,8 +8,8 @@
 
 namespace glint {
 
-// Gathers lines in memory; write_out() writes them in one piece. What is no regular file (a device, a pipe)
-// is written directly, without the temporary.
+// Gathers lines in memory; write_out() writes them in one piece. What is no regular file (a device,
+// a pipe) is written directly, without the temporary.
 class LineFile {
  public:
   // Throws InputError naming the file where it cannot be made.

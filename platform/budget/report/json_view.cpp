@@ -13,7 +13,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-// Copying and writing a value recurse as deep as the file nests; glint writes fewer levels than this.
+// Copying and writing a value recurse as deep as the file nests; glint nests less deep than this.
 constexpr int k_max_depth = 32;
 
 ordered_json parse(const std::string& text, const std::string& path) {
