@@ -12,9 +12,7 @@
 #include <cstdint>
 #include <cstring>
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
+#include "kernels/lanes.hpp"
 
 namespace glint {
 
@@ -38,7 +36,7 @@ inline void store_two(const TwoDoubles& from, double* to) { std::memcpy(to, &fro
 }
 
 [[nodiscard]] inline TwoDoubles lesser(const TwoDoubles& a, const TwoDoubles& b) {
-#ifdef __SSE2__
+#ifdef GLINT_SSE2
   return reinterpret_cast<TwoDoubles>(
       _mm_min_pd(reinterpret_cast<__m128d>(a), reinterpret_cast<__m128d>(b)));
 #else
@@ -46,7 +44,7 @@ inline void store_two(const TwoDoubles& from, double* to) { std::memcpy(to, &fro
 #endif
 }
 [[nodiscard]] inline TwoDoubles greater(const TwoDoubles& a, const TwoDoubles& b) {
-#ifdef __SSE2__
+#ifdef GLINT_SSE2
   return reinterpret_cast<TwoDoubles>(
       _mm_max_pd(reinterpret_cast<__m128d>(a), reinterpret_cast<__m128d>(b)));
 #else
@@ -56,7 +54,7 @@ inline void store_two(const TwoDoubles& from, double* to) { std::memcpy(to, &fro
 
 // Of numbers that are not negative.
 [[nodiscard]] inline TwoDoubles square_root(const TwoDoubles& of) {
-#ifdef __SSE2__
+#ifdef GLINT_SSE2
   return reinterpret_cast<TwoDoubles>(_mm_sqrt_pd(reinterpret_cast<__m128d>(of)));
 #else
   return TwoDoubles{std::sqrt(of[0]), std::sqrt(of[1])};

@@ -17,9 +17,7 @@
 #include <cstring>
 #include <type_traits>
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
+#include "kernels/lanes.hpp"
 
 namespace glint {
 
@@ -34,7 +32,7 @@ using BlockMask = std::conditional_t<sizeof(Pixel) == 1, std::uint64_t, std::uin
 
 namespace detail {
 
-#ifdef __SSE2__
+#ifdef GLINT_SSE2
 inline __m128i sixteen_bytes(const void* pixels) {
   return _mm_loadu_si128(static_cast<const __m128i*>(pixels));
 }
@@ -111,7 +109,7 @@ struct Block {
 // needs one instruction for numbers without a sign; narrowed with saturation it stays nonzero.
 template <class Pixel>
 BlockMask<Pixel> block_mask(const Pixel* pixels, Pixel threshold) {
-#ifdef __SSE2__
+#ifdef GLINT_SSE2
   if constexpr (sizeof(Pixel) == 1) {
     const __m128i most = _mm_set1_epi8(static_cast<char>(threshold));
     const auto bits = [&](int i) {

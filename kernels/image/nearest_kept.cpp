@@ -28,13 +28,13 @@ constexpr std::uint8_t k_stays = 0x80;  // in the place of a misfit: kept alread
 class Least {
  public:
   void see(Sums other) {
-#ifdef __SSE2__
+#ifdef GLINT_SSE2
     least_ = _mm_min_ps(least_, reinterpret_cast<__m128>(other | k_exponent));
 #else
     least_ = other < least_ ? other : least_;
 #endif
   }
-#ifdef __SSE2__
+#ifdef GLINT_SSE2
   [[nodiscard]] Sums value() const { return reinterpret_cast<Sums>(least_) ^ k_exponent; }
 
  private:

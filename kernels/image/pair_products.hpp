@@ -7,9 +7,7 @@
 
 #include <cstdint>
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
+#include "kernels/lanes.hpp"
 
 namespace glint {
 
@@ -18,7 +16,7 @@ using Sums = std::int32_t __attribute__((vector_size(16)));
 
 // Lane i: a[2 i] b[2 i] + a[2 i + 1] b[2 i + 1].
 inline Sums pair_products(Words a, Words b) {
-#ifdef __SSE2__
+#ifdef GLINT_SSE2
   return reinterpret_cast<Sums>(
       _mm_madd_epi16(reinterpret_cast<__m128i>(a), reinterpret_cast<__m128i>(b)));
 #else

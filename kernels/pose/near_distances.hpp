@@ -12,9 +12,7 @@
 #include <cstdint>
 #include <cstring>
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
+#include "kernels/lanes.hpp"
 
 namespace glint {
 
@@ -38,7 +36,7 @@ inline BitLanes near(FloatLanes distance, FloatLanes wanted, FloatLanes gate) {
 
 // A bit for each lane, side by side.
 inline std::uint64_t gathered(BitLanes lanes) {
-#ifdef __SSE2__
+#ifdef GLINT_SSE2
   return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(lanes)));
 #else
   return (lanes[0] & 1u) | (lanes[1] & 2u) | (lanes[2] & 4u) | (lanes[3] & 8u);
