@@ -13,3 +13,12 @@ if(GLINT_CCACHE)
     add_compile_options("SHELL:-Xclang -fno-pch-timestamp")
   endif()
 endif()
+
+# For a target whose call graph is read. ccache stores the account of the stack beside an object, but
+# not the call graph, so that takes its place.
+set(GLINT_CALL_GRAPH_OPTIONS -fstack-usage -fcallgraph-info=su,da)
+set(GLINT_CALL_GRAPH_LAUNCHER ${CMAKE_SOURCE_DIR}/tests/footprint/with_call_graph)
+if(GLINT_CCACHE)
+  set(GLINT_CALL_GRAPH_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_PREFIX=${GLINT_CALL_GRAPH_LAUNCHER}
+    ${CMAKE_CXX_COMPILER_LAUNCHER})
+endif()

@@ -25,10 +25,6 @@ if(GTest_FOUND)
   target_compile_options(glint_precompiled_tests PRIVATE ${test_options})
   target_precompile_headers(glint_precompiled_tests PRIVATE <gtest/gtest.h>)
 endif()
-# It has options of its own, so it reads them itself.
-if(TARGET footprint_core)
-  target_precompile_headers(footprint_core PRIVATE ${core_headers})
-endif()
 
 function(glint_precompile folder)
   get_property(folders DIRECTORY ${folder} PROPERTY SUBDIRECTORIES)
@@ -54,7 +50,8 @@ function(glint_precompile folder)
     endif()
     get_target_property(common ${variant} COMPILE_OPTIONS)
     foreach(list options common)  # a warning, and what code is made: neither changes what was read
-      list(REMOVE_ITEM ${list} "${GLINT_TOGETHER_OPTIONS}" "${GLINT_COVERAGE_OPTIONS}")
+      list(REMOVE_ITEM ${list} "${GLINT_TOGETHER_OPTIONS}" "${GLINT_COVERAGE_OPTIONS}"
+        ${GLINT_CALL_GRAPH_OPTIONS})
     endforeach()
     if(options STREQUAL common)  # else some of its own: what was read without them does not hold
       target_precompile_headers(${target} REUSE_FROM ${variant})
