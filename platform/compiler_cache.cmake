@@ -4,13 +4,17 @@
 find_program(GLINT_CCACHE ccache)
 if(GLINT_CCACHE)
   set(launcher ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=true
-    CCACHE_SLOPPINESS=pch_defines,time_macros ${GLINT_CCACHE})
+    CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_PCH_EXTSUM=true
+    CCACHE_EXTRAFILES=${CMAKE_SOURCE_DIR}/tests/unsanitized.txt ${GLINT_CCACHE})
   set(CMAKE_C_COMPILER_LAUNCHER ${launcher})
   set(CMAKE_CXX_COMPILER_LAUNCHER ${launcher})
   # Files compiled as one are included by their whole path: GoogleTest's __FILE__ would hold it.
   add_compile_options(-ffile-prefix-map=${CMAKE_SOURCE_DIR}/=)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")  # a time stamp would make each header differ
-    add_compile_options("SHELL:-Xclang -fno-pch-timestamp")
+  # Clang stores whole paths in a precompiled header: ccache compares the sum beside it instead, and
+  # the header is named by an option whose path ccache makes relative.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    set(GLINT_PRECOMPILED_LAUNCHER ${CMAKE_SOURCE_DIR}/platform/with_sum ${CMAKE_SOURCE_DIR})
+    set(CMAKE_CXX_COMPILE_OPTIONS_USE_PCH -include-pch <PCH_FILE>)
   endif()
 endif()
 

@@ -13,6 +13,10 @@ set(headers ${core_headers} <atomic> <chrono> <filesystem> <fstream> <functional
 foreach(variant precompiled precompiled_core precompiled_tests)
   add_library(glint_${variant} OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
   target_link_libraries(glint_${variant} PRIVATE Eigen3::Eigen)
+  if(GLINT_PRECOMPILED_LAUNCHER)
+    set_target_properties(glint_${variant} PROPERTIES
+      CXX_COMPILER_LAUNCHER "${GLINT_PRECOMPILED_LAUNCHER}")
+  endif()
 endforeach()
 target_precompile_headers(glint_precompiled_core PRIVATE ${core_headers})
 target_link_libraries(glint_precompiled_core PRIVATE glint_core_flags)
