@@ -166,7 +166,8 @@ def deleted_statements(line):
 
 def returned_constants(line):
     for m in re.finditer(r"\breturn ([^;]+);", line.code):
-        if m.group(1) not in ("0", "{}", "nullptr", "false", "true", "std::nullopt", "*this"):
+        if m.group(1) not in ("0", "{}", "nullptr", "false", "true", "std::nullopt", "*this",
+                              "Reason::none"):  # already what {} is, or no value
             yield "returned", replaced(line, m.start(1), m.end(1), "{}")
 
 
