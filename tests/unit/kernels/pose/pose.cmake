@@ -3,4 +3,4 @@ glint_test(glint_pose_test ../elementary_test.cpp best_rotation_test.cpp rigid_f
   correspond_prediction_test.cpp correspond_crowd_test.cpp partner_counts_test.cpp assign_test.cpp
   refine_pose_test.cpp weighted_fit_test.cpp marker_sight_test.cpp decide_labeling_test.cpp
   few_markers_test.cpp expected_pose_test.cpp agreed_pose_test.cpp blob_size_test.cpp
-  LIBS glint_kernels LABELS unit SHARDS 2)
+  LIBS glint_kernels LABELS unit SHARDS 2 COMPUTES)
