@@ -106,7 +106,6 @@ Reason MotionTrack::update(Time time, std::span<const MeasuredPoint> points,
       return Reason::out_of_range;
   }
   state_ = next;
-  loosened_.setZero();
   rest_.clear();
   return Reason::none;
 }

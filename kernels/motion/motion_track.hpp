@@ -83,7 +83,7 @@ class MotionTrack {
   MotionState state_;
   Time posed_;  // the newest pose: since then markers alone hold it
   NoiseScale scale_, briskest_;
-  Matrix6 loosened_ = Matrix6::Zero();  // since the newest measurement
+  Matrix6 loosened_ = Matrix6::Zero();  // since the newest pose
   RestWindow rest_;
   Correction correction_;
 };

@@ -55,6 +55,20 @@ TEST(CanResponse, AFifoDelaysAnUrgentFrameByAllThatMayStandBeforeIt) {
   EXPECT_EQ(queued[0].queued_ns, 2 * k_ms);
 }
 
+// Its frames come twice as often as another node's may hold the bus: each once, a first in 3 ms.
+TEST(CanResponse, AFifoThatFillsMostOfTheBusHasABound) {
+  std::vector<CanMessage> messages = davis_2007();
+  messages[0].period_ns = 20 * k_ms;
+  messages[1].period_ns = 2'500'000;
+  messages[2].period_ns = 3'500'000;
+  messages[1].node = messages[2].node = 7;
+  messages[1].fifo = messages[2].fifo = true;
+  const auto found = can_responses(messages, {.nominal = 125e3});
+  EXPECT_EQ(found[1].response_ns, 3 * k_ms);
+  EXPECT_EQ(found[2].response_ns, 3 * k_ms);
+  EXPECT_EQ(found[0].response_ns, 2 * k_ms);
+}
+
 TEST(CanResponse, AQueuesWaitIsJitterToOtherNodes) {
   std::vector<CanMessage> messages = davis_2007();
   for (CanMessage& message : messages) message.period_ns = message.deadline_ns = 20 * k_ms;

@@ -72,6 +72,27 @@ TEST(MovingLeastSquares, HasUnitNormalsAcrossTheSurface) {
   }
 }
 
+// Against as many points without neighbours, which take the same sorting.
+TEST(MovingLeastSquares, CountsTheStepsOfEachCandidateAndNeighbour) {
+  constexpr int k_crowd = 30;
+  const auto steps_of = [](const std::vector<Point>& points) {
+    TestSmoothing test(100);
+    const TestCloud cloud(points);
+    TestCloud out(100);
+    int steps = 0;
+    test.smoothing.begin(cloud.points);
+    for (bool done = false; !done; steps += test.smoothing.steps()) {
+      done = test.smoothing.step(1 << 20, out.points);
+    }
+    return steps;
+  };
+  std::vector<Point> lonely;
+  for (int i = 0; i < k_crowd; ++i) lonely.push_back({static_cast<float>(i), 0, 0});
+  EXPECT_GE(steps_of(std::vector<Point>(k_crowd, Point{0, 0, 0})) - steps_of(lonely),
+            k_crowd * (k_near_steps * (k_crowd - 1) + k_neighbour_steps * k_crowd) -
+                k_crowd * k_cell_steps_max);
+}
+
 TEST(MovingLeastSquares, LeavesOutPointsWithFewerThanThreeNeighboursAndCountsThem) {
   TestSmoothing test(100);
   EXPECT_TRUE(test.run({{0, 0, 0}}).empty());

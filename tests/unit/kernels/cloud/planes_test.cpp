@@ -77,6 +77,22 @@ std::vector<Oriented> room(std::uint64_t seed) {
   return out;
 }
 
+TEST(Planes, OfAsManyPointsAsAskedForAreFoundAndOfOneLessAreNot) {
+  std::vector<Oriented> tile;
+  for (int i = 0; i < 400; ++i) {
+    tile.push_back({{0.01f * static_cast<float>(i % 20), 0.01f * static_cast<float>(i / 20), 0.5f},
+                    {0, 0, 1}});
+  }
+  const TestCloud cloud = cloud_of(tile);
+  for (const int points_min : {400, 401}) {
+    PlaneSettings settings;
+    settings.points_min = points_min;
+    TestSearch test(1'000, settings);
+    test.run(cloud.points);
+    EXPECT_EQ(test.search.count(), points_min == 400 ? 1 : 0);
+  }
+}
+
 TEST(Planes, AreFoundLargestFirstAndFittedToTheirPoints) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const TestCloud cloud = cloud_of(room(seed));

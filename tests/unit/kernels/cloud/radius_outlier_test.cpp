@@ -89,6 +89,9 @@ TEST(RadiusOutlier, SaysWhenThereIsNoRoomAndKeepsTheFirst) {
   EXPECT_EQ(test.run(points, 4, 12).size(), 12u);
   EXPECT_EQ(test.filter.dropped(), 3);
   EXPECT_EQ(test.filter.reason(), Reason::cloud_full);
+  // Five more than the grid holds, and eight of its twenty that find no room.
+  EXPECT_EQ(test.run(std::vector<Point>(25, Point{0.5f, 0, 0}), 4, 12).size(), 12u);
+  EXPECT_EQ(test.filter.dropped(), 13);
 }
 
 // A crowd in the next cell, but out of reach: the search ends all the same.

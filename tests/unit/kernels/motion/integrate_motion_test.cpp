@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "kernels/motion/predict_motion.hpp"
+#include "kernels/motion/state_vector.hpp"
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/motion/motion_scene.hpp"
 
@@ -92,6 +93,53 @@ TEST(IntegrateMotion, AgreesWithTheClosedFormAboutOneAxis) {
   const Result<MovingPose> later = integrator.after(state, milliseconds(50));
   ASSERT_TRUE(later);
   EXPECT_LT(pose_difference(later.value.pose, closed.pose).norm(), 1e-5);
+}
+
+// Each operation, against SUNDIALS' own serial vector of the same numbers.
+TEST(StateVector, ComputesWhatSundialsOwnDoes) {
+  constexpr int k_count = 4, k_vectors = 3;
+  using Vector = StateVector<k_count>;
+  const Vector::Values values[k_vectors] = {
+      {0.5, -7.25, 3, 1.5}, {2, 0.125, -4, 8}, {-1, 6, 0.75, 0.0625}};
+  SUNContext context = nullptr;
+  ASSERT_EQ(SUNContext_Create(nullptr, &context), 0);
+  N_Vector ours[k_vectors + 1], theirs[k_vectors + 1];  // and one for results
+  for (std::size_t v = 0; v <= k_vectors; ++v) {
+    ours[v] = Vector::make(context);
+    theirs[v] = N_VNew_Serial(k_count, context);
+    if (v == k_vectors) break;
+    Vector::of(ours[v]) = values[v];
+    std::copy(values[v].begin(), values[v].end(), NV_DATA_S(theirs[v]));
+  }
+  const auto same = [&](const char* name, auto operation) {
+    operation(ours, ours[k_vectors]);
+    operation(theirs, theirs[k_vectors]);
+    for (std::size_t i = 0; i < k_count; ++i) {
+      EXPECT_DOUBLE_EQ(Vector::of(ours[k_vectors])[i], NV_DATA_S(theirs[k_vectors])[i])
+          << name << " " << i;
+    }
+  };
+  double factors[k_vectors] = {2, -3, 0.5};
+  same("sum", [](N_Vector* x, N_Vector z) { N_VLinearSum(2, x[0], -3, x[1], z); });
+  same("constant", [](N_Vector*, N_Vector z) { N_VConst(1.25, z); });
+  same("product", [](N_Vector* x, N_Vector z) { N_VProd(x[0], x[1], z); });
+  same("quotient", [](N_Vector* x, N_Vector z) { N_VDiv(x[0], x[1], z); });
+  same("scale", [](N_Vector* x, N_Vector z) { N_VScale(-2, x[0], z); });
+  same("absolute", [](N_Vector* x, N_Vector z) { N_VAbs(x[0], z); });
+  same("inverse", [](N_Vector* x, N_Vector z) { N_VInv(x[1], z); });
+  same("added", [](N_Vector* x, N_Vector z) { N_VAddConst(x[0], 3, z); });
+  same("combination", [&](N_Vector* x, N_Vector z) {
+    EXPECT_EQ(N_VLinearCombination(k_vectors, factors, x, z), 0);
+  });
+  EXPECT_EQ(N_VMaxNorm(ours[0]), N_VMaxNorm(theirs[0]));
+  EXPECT_EQ(N_VMin(ours[0]), N_VMin(theirs[0]));
+  EXPECT_DOUBLE_EQ(N_VWrmsNorm(ours[0], ours[1]), N_VWrmsNorm(theirs[0], theirs[1]));
+  EXPECT_EQ(N_VGetLength(ours[0]), k_count);
+  for (std::size_t v = 0; v <= k_vectors; ++v) {
+    N_VDestroy(ours[v]);
+    N_VDestroy(theirs[v]);
+  }
+  SUNContext_Free(&context);
 }
 
 TEST(IntegrateMotion, GivesTheSpeedsToo) {

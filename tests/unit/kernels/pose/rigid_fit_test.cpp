@@ -163,5 +163,18 @@ TEST(Tool, IsRefusedWhenItsMarkersFixNoPose) {
   EXPECT_EQ(prepare_tool(tool), Reason::out_of_range);
 }
 
+// Its numbers were sought for it: FNV-1a of them is zero.
+TEST(Tool, WhoseHashIsZeroStillHasAnIdentity) {
+  Tool tool;
+  tool.marker_count = 3;
+  tool.markers_m[0] = Vector3(0, 0, 0);
+  tool.markers_m[1] = Vector3(0.125, 0, 0);
+  tool.markers_m[2] = Vector3(0, 0.25, 0);
+  tool.marker_radius_m = 0.0078125;
+  tool.tip_m = Vector3(0, 0, 0x1.d51607cdp-8);
+  ASSERT_EQ(prepare_tool(tool), Reason::none);
+  EXPECT_EQ(tool.identity, 1u);
+}
+
 }  // namespace
 }  // namespace glint

@@ -162,6 +162,17 @@ TEST(FollowReference, WantsAReferenceAndNewerPictures) {
   EXPECT_EQ(none.prepare(k_pixels, 64), Reason::out_of_range);
 }
 
+TEST(FollowReference, LeavesAPictureUnfinishedWhenANewReferenceComes) {
+  World world;
+  world.draw({k_truth.rotation, k_truth.translation + Vector3(0.004, 0, 0)});
+  ASSERT_TRUE(world.follower.look(world.view(), at(1)));
+  ASSERT_TRUE(world.follower.step());
+  world.follower.begin(k_truth, Matrix6::Identity() * 1e-6, at(2));
+  EXPECT_TRUE(world.follower.idle());
+  EXPECT_FALSE(world.follower.step());
+  EXPECT_EQ(world.follower.reference(at(2)).T_world_base.translation, k_truth.translation);
+}
+
 TEST(FollowReference, TakesNoMoreSlicesThanItSaysAndNoHeap) {
   World world;
   world.follower.settings.alignment.rest_shift_m = 0;  // never at rest

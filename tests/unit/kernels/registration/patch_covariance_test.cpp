@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <random>
 
 #include "kernels/registration/align_model.hpp"
+#include "kernels/registration/match_points.hpp"
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/registration/box_model.hpp"
 
@@ -82,6 +84,37 @@ TEST(PatchCovariance, KnowsHowSureItIsWhereNeighboursErrAlike) {
   const Consistency mean = consistency(8);
   EXPECT_GT(mean.independent, 15);
   EXPECT_LT(mean.patches, 2);
+}
+
+// Eq. of the header, patch by patch from single pairs.
+TEST(PatchCovariance, IsThatOfTheSumsOfItsPatches) {
+  NoisyScene scene(8, 3);
+  const SceneView one[] = {scene.view()};
+  const Result<Matrix6> found = patch_covariance(one, k_truth, k_gate_m, scene.scratch);
+  ASSERT_EQ(found.reason, Reason::none);
+  const Vector3 middle = one[0].T_camera_world * k_truth.translation;
+  Matrix6 matrix = Matrix6::Zero();
+  std::map<std::pair<int, int>, Vector6> patches;
+  const AlignmentScratch::View& view = scene.scratch.views[0];
+  for (int i = 0; i < view.seen_count; ++i) {
+    const SeenPoint& point = view.seen[static_cast<std::size_t>(i)];
+    AlignmentSums pair;
+    add_pairs({&point, 1}, Pose{}, Matching::projective, k_gate_m, one[0], {},
+              one[0].T_camera_world.inverse().rotation, middle, pair);
+    if (pair.count == 0) continue;
+    matrix += pair.matrix;
+    const auto patch =
+        std::pair(point.pixel % k_width / k_patch_pixels, point.pixel / k_width / k_patch_pixels);
+    const auto [at, added] = patches.try_emplace(patch, Vector6::Zero());
+    at->second += pair.slope;
+  }
+  Matrix6 spread = Matrix6::Zero();
+  for (const auto& [patch, sum] : patches) spread += sum * sum.transpose();
+  const Matrix6 whole = matrix.selfadjointView<Eigen::Lower>();
+  const Matrix6 inverse = whole.inverse();
+  const double count = static_cast<double>(patches.size());
+  const Matrix6 expected = count / (count - 6) * inverse * spread * inverse;
+  EXPECT_LT((found.value - expected).norm(), 1e-9 * expected.norm());
 }
 
 TEST(PatchCovariance, TakesNothingFromTheHeap) {

@@ -42,6 +42,22 @@ TEST(RenderDepth, LeavesNoSeamAndNoHoleBetweenNeighbours) {
   }
 }
 
+TEST(RenderDepth, CoversThePixelsWhoseCentresLieOnItsOutline) {
+  Picture picture;
+  picture.camera.fx = picture.camera.fy = 64;
+  // From 10.5 to 18.5 across and from 8.5 to 16.5 down; an area that divides without rounding.
+  const float left = -21.5f / 64, right = -13.5f / 64, top = -15.5f / 64, bottom = -7.5f / 64;
+  ASSERT_EQ(picture.render({{left, top, 1}, {right, top, 1}, {right, bottom, 1}, {left, bottom, 1}},
+                           {{0, 1, 2}, {0, 2, 3}}),
+            Reason::none);
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const bool inside = x >= 10 && x <= 18 && y >= 8 && y <= 16;
+      EXPECT_EQ(picture.face[picture.at(x, y)] >= 0, inside) << x << " " << y;
+    }
+  }
+}
+
 TEST(RenderDepth, KeepsWhatIsNearerWhicheverCameFirst) {
   std::vector<Vector3f> points = {{-1, -1, 2}, {1, -1, 2}, {0, 1, 2},
                                   {-1, -1, 1}, {1, -1, 1}, {0, 1, 1}};

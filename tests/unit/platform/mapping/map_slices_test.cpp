@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <random>
 #include <vector>
 
@@ -60,6 +61,7 @@ struct Sliced {
   std::vector<std::byte> memory;
   MapSlices map;
   int dearest = 0;
+  std::map<MapSlices::Stage, std::pair<int, int>> taken_by;  // slices and steps
 
   Sliced(const MapSettings& settings, int pictures_a_map) : memory(MapSlices::bytes(settings)) {
     Arena arena(memory);
@@ -67,8 +69,11 @@ struct Sliced {
   }
   void run(int steps) {
     while (!map.idle()) {
-      const auto before = static_cast<int>(map.stage());
+      const MapSlices::Stage stage = map.stage();
+      const auto before = static_cast<int>(stage);
       const int taken = map.step(steps);
+      ++taken_by[stage].first;
+      taken_by[stage].second += taken;
       // A slice of one step is one thing done, whatever it says of itself.
       if (steps == 1 && !map.idle()) {
         ASSERT_LE(static_cast<int>(map.stage()), before + 1);
@@ -126,6 +131,23 @@ TEST_P(OfAnySize, SlicesGiveTheChainsBits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(MapSlices, OfAnySize, testing::Values(1, 137, 5'000, 50'000, 1 << 29));
+
+// More slices take no fewer steps: each call of a stage costs some of its own.
+TEST(MapSlices, CountTheStepsOfEachCall) {
+  const CornerOfARoom corner;
+  Sliced few(small_settings(), 1), many(small_settings(), 1);
+  for (const auto& [sliced, steps] : {std::pair{&few, 300}, std::pair{&many, 1}}) {
+    ASSERT_TRUE(sliced->map.look(corner.picture(0)));
+    sliced->run(steps);
+  }
+  ASSERT_EQ(many.taken_by.size(), 7u);
+  for (const auto& [stage, took] : many.taken_by) {
+    if (stage == MapSlices::Stage::points) continue;  // its slices all have eight pixels
+    const auto [slices, steps] = few.taken_by[stage];
+    EXPECT_GT(took.first, slices) << static_cast<int>(stage);
+    EXPECT_GE(took.second - steps, 16 * (took.first - slices)) << static_cast<int>(stage);
+  }
+}
 
 TEST(MapSlices, KeepWhatIsOutWholeWhileTheNextIsMade) {
   const CornerOfARoom corner;
@@ -186,6 +208,30 @@ TEST(MapSlices, RefuseWhatWouldMakeASliceLonger) {
   settings = small_settings();
   settings.voxels.voxel_m = 0;
   EXPECT_EQ(refusal(settings, 1), Reason::out_of_range);
+}
+
+TEST(MapSlices, TakeTheMostCandidatesAndRefuseOneMore) {
+  const auto reason_of = [](const MapSettings& settings) {
+    std::vector<std::byte> memory(std::size_t{1} << 26);
+    Arena arena(memory);
+    MapSlices map;
+    return map.prepare(settings, 1, arena);
+  };
+  for (const int more : {0, 1}) {
+    const Reason expected = more == 0 ? Reason::none : Reason::out_of_range;
+    MapSettings settings = small_settings();
+    settings.outliers.candidates_max = k_map_candidates_max + more;
+    EXPECT_EQ(reason_of(settings), expected) << "outliers, " << more;
+    settings = small_settings();
+    settings.smoothing.candidates_max = k_map_smoothed_over_max + more;
+    EXPECT_EQ(reason_of(settings), expected) << "smoothing, " << more;
+    settings = small_settings();
+    settings.support.candidates_max = k_map_candidates_max + more;
+    EXPECT_EQ(reason_of(settings), expected) << "support, " << more;
+    settings = small_settings();
+    settings.voxels_max = more == 0 ? 1 : 0;
+    EXPECT_EQ(reason_of(settings), expected) << "voxels, " << more;
+  }
 }
 
 TEST(MapSlices, RefuseAPictureThatIsNotWhole) {

@@ -295,7 +295,32 @@ TEST(Mcap, WithACompressedChunkIsRefusedByTheNameOfTheCompression) {
   append(bytes, std::uint32_t{0});
   append(bytes, k_mcap_magic);
   write_whole(path, bytes);
-  EXPECT_NE(refusal(path).find("compressed with 'zstd'"), std::string::npos) << refusal(path);
+  // Nothing is damaged, so reading what is whole is no way out.
+  for (const McapEnding ending : {McapEnding::required, McapEnding::optional}) {
+    const std::string why = refusal(path, ending);
+    EXPECT_NE(why.find("compressed with 'zstd'"), std::string::npos) << why;
+  }
+}
+
+// The checksum is right, so another program wrote it so; the rest of the chunk is not trusted.
+TEST(Mcap, WithAMessageOfNoChannelLosesTheRestOfItsChunk) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.mcap");
+  Bytes bytes(k_mcap_magic.begin(), k_mcap_magic.end());
+  append_header(bytes, "ros2", "other");
+  append_record(bytes, McapChannel{1, 0, "/one", "cdr", {}});
+  const auto add_chunk = [&bytes](std::initializer_list<std::uint16_t> channels) {
+    Bytes records;
+    for (const std::uint16_t channel : channels) append_record(records, {channel, 0, 1, 1}, {});
+    append_chunk_heading(bytes, {1, 2, records.size(), 0, "", records.size()});
+    append(bytes, records);
+  };
+  add_chunk({1, 9, 1});
+  add_chunk({1, 1});
+  write_whole(path, bytes);
+  McapReader reader(path, McapEnding::optional);
+  EXPECT_EQ(count_messages(reader), 3);
+  EXPECT_EQ(reader.losses().chunks, 1U);
 }
 
 TEST(Mcap, WithAMessageMissingDisagreesWithItsStatistics) {
