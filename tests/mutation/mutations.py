@@ -5,6 +5,7 @@ operators rely on clang-format, which puts spaces around binary operators and no
 brackets of templates and references.
 """
 import collections
+import hashlib
 import pathlib
 import random
 import re
@@ -196,26 +197,26 @@ def mutations_of(line):
 
 
 def drawn(root, random_seed, only=""):
-    """Draws without end: a line evenly, then an operator, then one of its mutations; each once."""
+    """Each line once, in an order that its own text and the random seed decide, as they do its
+    mutation: a sample changes only where the code does."""
     lines = [line for line in statement_lines(root) if line.path.startswith(only)]
     if not lines:
         raise SystemExit(f"tests/mutation: no statements in {only}; expected a folder below one of "
                          + ", ".join(FOLDERS))
-    generator = random.Random(random_seed)
-    seen = set()
-    while True:
-        line = lines[int(generator.random() * len(lines))]
+    alike = collections.Counter()
+    ordered = []
+    for line in lines:
+        words = line.path, line.text.strip()
+        alike[words] += 1
+        key = f"{random_seed} {words[0]} {alike[words]} {words[1]}"
+        ordered.append((hashlib.sha256(key.encode()).digest(), line))
+    for digest, line in sorted(ordered, key=lambda pair: pair[0]):
         by_operator = collections.defaultdict(list)
         for mutation in mutations_of(line):
             by_operator[mutation.operator].append(mutation)
-        if not by_operator:
-            continue
-        operator = sorted(by_operator)[int(generator.random() * len(by_operator))]
-        choices = by_operator[operator]
-        mutation = choices[int(generator.random() * len(choices))]
-        if mutation not in seen:
-            seen.add(mutation)
-            yield mutation
+        if by_operator:
+            generator = random.Random(digest)
+            yield generator.choice(by_operator[generator.choice(sorted(by_operator))])
 
 
 def write(root, mutation, overlay):

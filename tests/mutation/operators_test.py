@@ -79,6 +79,22 @@ class Operators(unittest.TestCase):
     def test_text_is_left_alone(self):
         self.assertEqual(mutated('g("1 + 2");  // 3 < 4', "arithmetic"), set())
 
+    def test_a_sample_changes_only_where_the_code_does(self):
+        lines = [f"  x{i} = y{i} + {i};" for i in range(3, 40)]
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "kernels" / "a.cpp"
+            file.parent.mkdir()
+
+            def sample():
+                file.write_text("\n".join(["void f() {", *lines, "}", ""]))
+                return [(m.before, m.after) for m in mutations.drawn(pathlib.Path(folder), 1)]
+
+            first = sample()
+            self.assertEqual(len(first), len(lines))
+            self.assertNotEqual(first, sorted(first))
+            lines.insert(10, "  z = 2 * y3;")
+            self.assertEqual([pair for pair in sample() if pair[0] != "z = 2 * y3;"], first)
+
 
 if __name__ == "__main__":
     unittest.main()
