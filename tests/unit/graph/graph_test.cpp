@@ -80,6 +80,21 @@ TEST(Graph, StopsPreparingAtTheFirstFailure) {
   EXPECT_EQ(prepared.reason, 3);
 }
 
+struct UnreadyBand {
+  bool is_ready = true;
+  Ready prepare() const { return is_ready ? Ready::yes : Ready::no_offset; }
+  void operator()(const Row&, Slice, Sum&) const noexcept {}
+};
+
+TEST(Graph, NamesTheCopyOfASplitThatFails) {
+  static Graph<Inputs<Row>, Outputs<Parts<Sum, 3>>, Split<UnreadyBand, 3>> graph;
+  EXPECT_TRUE(graph.prepare());
+  graph.node<UnreadyBand>(2).is_ready = false;
+  EXPECT_EQ(graph.prepare().node, 2);
+  graph.node<UnreadyBand>(1).is_ready = false;
+  EXPECT_EQ(graph.prepare().node, 1);
+}
+
 struct Seen {
   std::vector<int>* numbers;
   void on_node_begin(int node) { numbers->push_back(node); }

@@ -51,6 +51,14 @@ TEST_F(AnchorHeadByABody, ForgetsTheBodyWhereAnotherTookItsPlace) {
   EXPECT_FALSE(out_.state.known());
 }
 
+TEST_F(AnchorHeadByABody, CountsTheFramesThatShowTheBody) {
+  frame(1);
+  EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 1}}));
+  body().reason = Reason::no_labeling;
+  frame(2);
+  EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1}}));
+}
+
 // How long the head moved unseen is unknown then: its correction counts for nothing any more.
 TEST_F(AnchorHeadByABody, LosesItsCorrectionWhereTheClockRestarts) {
   for (int i = 1; i < 30; ++i) frame(i);

@@ -75,6 +75,15 @@ TEST_F(FollowMotion, KnowsARestingToolsMiddleInTheWorldBetterThanOneFrameCan) {
   EXPECT_LT(tool().estimate.covariance(0, 0), 0.1 * k_shift_sigma * k_shift_sigma);
 }
 
+TEST_F(FollowMotion, CountsItsToolsThoseItMovedAndTheirRestTests) {
+  frame(false);
+  EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 1}}));
+  for (int i = 0; i < 90; ++i) frame();
+  EXPECT_EQ(node_.counts()[1], 1);
+  EXPECT_EQ(node_.counts()[2], 1);
+  EXPECT_GT(node_.counts()[3], 0);
+}
+
 TEST_F(FollowMotion, FollowsAToolThatMoves) {
   for (int i = 0; i < 60; ++i) {
     T_camera_tool_.translation.x() = -0.2 + 0.3 * 0.022 * i;
@@ -82,6 +91,9 @@ TEST_F(FollowMotion, FollowsAToolThatMoves) {
   }
   const Vector3 velocity = anchor_.now.head.T_world_camera.rotation * Vector3(0.3, 0, 0);
   EXPECT_LT((tool().estimate.velocity_m_s - velocity).norm(), 0.1);
+  EXPECT_NE(tool().noise.linear, NoiseScale{}.linear);
+  EXPECT_EQ(tool().noise.linear, tool().motion.noise_scale().linear);
+  EXPECT_EQ(tool().noise.angular, tool().motion.noise_scale().angular);
 }
 
 TEST_F(FollowMotion, IsAsIfAnAbandonedFrameHadNeverBeen) {

@@ -11,8 +11,9 @@
 namespace glint {
 namespace {
 
-// Counts frames by identifier over one second of 250 Hz ticks.
-std::map<std::uint32_t, int> one_second(const PackCanSettings& settings, TrackState second_half) {
+// Counts frames by identifier over one second of 250 Hz ticks, and what the node counted.
+std::map<std::uint32_t, int> one_second(const PackCanSettings& settings, TrackState second_half,
+                                        graph::LoopCounts* counted = nullptr) {
   PackCan node;
   node.settings = settings;
   auto samples = std::make_unique<PoseSamples>();
@@ -26,6 +27,9 @@ std::map<std::uint32_t, int> one_second(const PackCanSettings& settings, TrackSt
     samples->items[0].state = i < 125 ? TrackState::measured : second_half;
     node(now, *samples, *frames);
     for (const CanFrame& frame : frames->frames()) ++seen[frame.identifier];
+    for (std::size_t loop = 0; counted != nullptr && loop < PackCan::k_loops.size(); ++loop) {
+      (*counted)[loop] += node.counts()[loop];
+    }
   }
   return seen;
 }
@@ -49,6 +53,15 @@ TEST(PackCan, SendsOneFdFrameATickInsteadWhereChosen) {
 
 TEST(PackCan, SendsOneEmergencyWhenAToolIsLost) {
   EXPECT_EQ(one_second({}, TrackState::lost).at(0x080 + 32), 1);
+}
+
+TEST(PackCan, CountsThePosesAndTheFramesOfItsOwn) {
+  graph::LoopCounts counted{};
+  const auto seen = one_second({}, TrackState::lost, &counted);
+  EXPECT_EQ(counted[0], 250);
+  EXPECT_EQ(counted[1], 250);
+  EXPECT_EQ(counted[2], seen.at(0x080 + 32));
+  EXPECT_EQ(counted[3], seen.at(0x720) + seen.at(0x1AE) + seen.at(0x1AF));
 }
 
 // The states of the heartbeats over three seconds in which frames arrive up to `last_frame`.

@@ -65,6 +65,13 @@ TEST_F(PredictTools, IsPredictedUpToLostAfterAndThenLostWithoutAPose) {
   EXPECT_TRUE(lost.pose.translation.isZero());
 }
 
+TEST_F(PredictTools, CountsItsToolsAndThoseWithAPose) {
+  (void)at(1010);
+  EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 1, 1}}));
+  (void)at(1251);
+  EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 1}}));
+}
+
 TEST_F(PredictTools, SaysThePensButtonsWhetherItIsSeenLostOrYetToBeSeen) {
   EXPECT_EQ(at(1010).buttons, 0);
   buttons_.held = 5;

@@ -83,6 +83,17 @@ TEST_F(PredictTracks, HasTheWholeFrameSearchedUnlessEachToolWasSeen) {
   EXPECT_FALSE(predictions_->narrowed) << "now and then the whole frame";
 }
 
+TEST_F(PredictTracks, CountsItsToolsThoseItMovedAndTheirMarkers) {
+  predict();
+  EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 1, 1, 3}}));
+  track().base = ReferenceFrame::world;  // and where the head is is not known
+  predict();
+  EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 1, 0, 3}}));
+  track().alive = false;
+  predict();
+  EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1}}));
+}
+
 TEST_F(PredictTracks, GoesOnWithTheMotionThatTheFilterFollowed) {
   track().motion.velocity_m_s = {0.5, 0, 0};
   track().motion.angular_velocity_rad_s = {0, 0, 2};

@@ -66,6 +66,13 @@ TEST_F(TrackToolsInTime, MakesAPoseByFewMarkersTheNewestAndKeepsWhyThereAreNoMor
   EXPECT_LT((middle - Vector3(0.1, 0, 0.5)).norm(), 1e-12);
 }
 
+TEST_F(TrackToolsInTime, CountsItsToolsAndThoseThatWereFound) {
+  (void)found();
+  EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 1, 1}}));
+  (void)few(true);
+  EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 1}}));
+}
+
 TEST_F(TrackToolsInTime, LosesAToolWhosePoseByFewMarkersIsTooUnsure) {
   (void)found();
   for (int i = 0; i < 11; ++i) {

@@ -143,6 +143,28 @@ TEST(MovingLeastSquares, SaysWhenThereIsNoRoomAndWhenCandidatesWereUsedUp) {
   EXPECT_EQ(far.smoothing.cut(), 50);
 }
 
+TEST(MovingLeastSquares, TakesNoMoreStepsThanItSaysForAPointAmongTheMostCandidates) {
+  MovingLeastSquaresSettings few;
+  few.candidates_max = 200;
+  TestSmoothing test(300, few);
+  const TestCloud cloud(std::vector<Point>(300, Point{0.25f, 0.5f, -0.75f}));
+  TestCloud out(300);
+  int most = 0;
+  test.smoothing.begin(cloud.points);
+  while (!test.smoothing.step(1, out.points)) most = std::max(most, test.smoothing.steps());
+  EXPECT_LE(most, 1 + MovingLeastSquares::steps_max(few));
+  EXPECT_GE(most, few.candidates_max * (k_near_steps + k_neighbour_steps));
+}
+
+TEST(MovingLeastSquares, RefusesAnyLessMemoryThanItAsksFor) {
+  const std::size_t whole = MovingLeastSquares::bytes({}, 10);
+  for (std::size_t part = 0; part < 50; ++part) {
+    TestMemory memory((whole - Arena::k_alignment) * part / 50);
+    MovingLeastSquares smoothing;
+    EXPECT_EQ(smoothing.prepare({}, 10, memory.arena()), Reason::not_prepared) << part;
+  }
+}
+
 TEST(MovingLeastSquares, RefusesWhatItCannotWorkWith) {
   TestMemory memory(MovingLeastSquares::bytes({}, 10));
   MovingLeastSquares smoothing;

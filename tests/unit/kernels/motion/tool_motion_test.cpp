@@ -43,6 +43,15 @@ TEST(ToolMotion, StandsStillAtRest) {
   EXPECT_EQ(state.time, test::frame_time(89));
 }
 
+TEST(ToolMotion, IsKnownFromItsFirstPoseUntilItIsForgotten) {
+  Followed tool;
+  EXPECT_FALSE(tool.motion->known());
+  tool.rest(1);
+  EXPECT_TRUE(tool.motion->known());
+  tool.motion->forget();
+  EXPECT_FALSE(tool.motion->known());
+}
+
 TEST(ToolMotion, RefusesStampsThatDoNotRiseAndKeepsItsState) {
   Followed tool;
   tool.rest(5);

@@ -203,6 +203,7 @@ TEST(ResampleStroke, RefusesSettingsThatNoStrokeCanHave) {
   }
   EXPECT_EQ(resampler.begin({.turn_rad = 3.2}), Reason::out_of_range);
   EXPECT_EQ(resampler.begin({.gap_max = {}}), Reason::out_of_range);
+  EXPECT_EQ(resampler.begin({.gap_max = Duration{1}}), Reason::none);
 }
 
 TEST(ResampleStroke, EndsAfterTheDeclaredPointsOfTheWorstSample) {

@@ -218,5 +218,20 @@ TEST(JudgeAlignment, TellsRightFromSeenThroughAndHidden) {
   EXPECT_LT(scene.judge(aside).mask_share(), 0.8);
 }
 
+TEST(JudgeAlignment, GivesTheMedianOfAFewDistances) {
+  Scene scene;
+  const std::vector<float> whole = scene.depth;
+  std::fill(scene.depth.begin(), scene.depth.end(), 0.0f);
+  const double shifts_m[] = {0.004, 0.012, 0.020};
+  int places = 0;
+  for (std::size_t i = 0; i < whole.size() && places < 3; i += 997) {
+    if (whole[i] < 1.8f) scene.depth[i] = whole[i] + static_cast<float>(shifts_m[places++]);
+  }
+  ASSERT_EQ(places, 3);
+  const Judgement judged = scene.judge(k_truth);
+  ASSERT_EQ(judged.measured, 3);
+  EXPECT_NEAR(judged.median_m, shifts_m[1], 0.15 * shifts_m[1]) << "along the ray, so some longer";
+}
+
 }  // namespace
 }  // namespace glint::align_model_test

@@ -210,6 +210,18 @@ TEST(MapSlices, RefuseWhatWouldMakeASliceLonger) {
   EXPECT_EQ(refusal(settings, 1), Reason::out_of_range);
 }
 
+TEST(MapSlices, RefuseAnyLessMemoryThanTheyAskFor) {
+  MapSettings settings = small_settings();
+  settings.voxels_max = 100;
+  const std::size_t whole = MapSlices::bytes(settings);
+  for (std::size_t part = 0; part < 200; ++part) {
+    std::vector<std::byte> memory((whole - Arena::k_alignment) * part / 200);
+    Arena arena(memory);
+    MapSlices map;
+    EXPECT_EQ(map.prepare(settings, 1, arena), Reason::not_prepared) << part;
+  }
+}
+
 TEST(MapSlices, TakeTheMostCandidatesAndRefuseOneMore) {
   const auto reason_of = [](const MapSettings& settings) {
     std::vector<std::byte> memory(std::size_t{1} << 26);

@@ -11,6 +11,12 @@
 namespace glint {
 namespace {
 
+PoseSample output_of_tool_3(std::uint32_t tick, TrackState state = TrackState::measured) {
+  PoseSample sample = sample_output(tick, state);
+  sample.tool = 3;
+  return sample;
+}
+
 std::vector<RecordedMessage> all_messages(RecordingReader& reader) {
   std::vector<RecordedMessage> messages;
   while (auto message = reader.next()) messages.push_back(std::move(*message));
@@ -36,8 +42,8 @@ RecordingOutcome write_sample(const std::string& path, RecordingLevel level, int
   writer.write_markers(sample_markers(3));
   writer.write_head_pose(sample_head_pose(1));
   writer.write_dropped({{1}, {2}, 3, Reason::frame_late});
-  writer.write_output(sample_output(5), record_of(sample_output(5)));
-  const PoseSample lost = sample_output(6, TrackState::lost);
+  writer.write_output(output_of_tool_3(5), record_of(output_of_tool_3(5)));
+  const PoseSample lost = output_of_tool_3(6, TrackState::lost);
   writer.write_output(lost, record_of(lost));
   writer.add_closing_fact("frames", "2");
   return writer.close();
@@ -66,8 +72,9 @@ TEST(Recording, GivesBackAllThatItsLevelKeepsInOrder) {
   EXPECT_EQ(dropped.sequence, 3U);
   EXPECT_EQ(dropped.reason, Reason::frame_late);
   const auto& output = std::get<OutputMessage>(messages[5]);
-  EXPECT_EQ(output.tick, sample_output(5).tick);
-  const auto record = record_of(sample_output(5));
+  EXPECT_EQ(output.tick, output_of_tool_3(5).tick);
+  EXPECT_EQ(output.tool, output_of_tool_3(5).tool);
+  const auto record = record_of(output_of_tool_3(5));
   EXPECT_EQ(output.record, std::vector<std::uint8_t>(record.begin(), record.end()));
 }
 
@@ -309,8 +316,8 @@ TEST(Recording, SaysTheHashOfItsOutputRecords) {
   const TemporaryFolder folder;
   const auto outcome = write_sample(folder.file("run.mcap"), RecordingLevel::roi);
   Sha256 hash;
-  hash.add(record_of(sample_output(5)));
-  hash.add(record_of(sample_output(6, TrackState::lost)));
+  hash.add(record_of(output_of_tool_3(5)));
+  hash.add(record_of(output_of_tool_3(6, TrackState::lost)));
   EXPECT_EQ(outcome.output_sha256, hash.hex());
   RecordingReader reader(folder.file("run.mcap"));
   EXPECT_EQ(reader.facts().at("output_sha256"), hash.hex());
