@@ -97,6 +97,10 @@ std::unique_ptr<PoseSamples> left() {
   PoseSample& sample = samples->items[0];
   sample.tick = Time{} + milliseconds(1000);
   sample.tick_number = 250;
+  sample.tool = 2;
+  sample.frame_sequence = 77;
+  sample.registration = RegistrationState::given;
+  sample.registration_rms_m = 0.002;
   sample.measurement = Time{} + milliseconds(990);
   sample.state = TrackState::measured;
   sample.reason = Reason::none;
@@ -140,6 +144,19 @@ TEST(TickOverrun, DeclaresTheToolLostWhenItStops) {
   EXPECT_EQ(sample.state, TrackState::lost);
   EXPECT_EQ(sample.reason, Reason::overrun_stopped);
   EXPECT_TRUE(sample.velocity_m_s.isZero());
+}
+
+TEST(TickOverrun, LeavesALostSampleWhoseItIsAndNoPose) {
+  const PoseSample lost = after(OverrunPolicy::stop_safe, 1008), was = left()->items[0];
+  EXPECT_EQ(lost.tick, Time{} + milliseconds(1008));
+  EXPECT_EQ(lost.tick_number, 252u);
+  EXPECT_EQ(lost.tool, was.tool);
+  EXPECT_EQ(lost.measurement, was.measurement);
+  EXPECT_EQ(lost.frame_sequence, was.frame_sequence);
+  EXPECT_EQ(lost.registration, was.registration);
+  EXPECT_EQ(lost.registration_rms_m, was.registration_rms_m);
+  EXPECT_FALSE(lost.has_pose());
+  EXPECT_TRUE(lost.angular_velocity_rad_s.isZero());
 }
 
 TEST(TickOverrun, LosesAToolThatIsHeldForTooLong) {

@@ -93,6 +93,28 @@ TEST(Planes, OfAsManyPointsAsAskedForAreFoundAndOfOneLessAreNot) {
   }
 }
 
+TEST(Planes, CountTheStepsOfEveryPassAndTry) {
+  std::vector<Oriented> tile;
+  for (int i = 0; i < 600; ++i) {
+    tile.push_back({{0.01f * static_cast<float>(i % 25), 0.01f * static_cast<float>(i / 25), 0.5f},
+                    {1, 0, 0}});  // no plane through them has this normal
+  }
+  const TestCloud cloud = cloud_of(tile);
+  const auto steps_of = [&](const PlaneSettings& settings) {
+    TestSearch test(1'000, settings);
+    test.search.begin(cloud.points);
+    int steps = 0;
+    for (bool done = false; !done; steps += test.search.steps()) done = test.search.step(1 << 20);
+    EXPECT_EQ(test.search.count(), 0);
+    return steps;
+  };
+  PlaneSettings few, many;
+  few.tries = 100;
+  many.tries = 1'100;
+  EXPECT_EQ(steps_of(many) - steps_of(few), 1'000 * k_plane_try_steps);
+  EXPECT_GE(steps_of(few), 600 * (k_plane_list_steps + k_plane_draw_steps));
+}
+
 TEST(Planes, AreFoundLargestFirstAndFittedToTheirPoints) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const TestCloud cloud = cloud_of(room(seed));

@@ -57,6 +57,12 @@ TEST(PointGrid, LeavesOutWhatIsNoPlace) {
   EXPECT_EQ(grid.size(), 1);
   EXPECT_EQ(grid.nearest({1, 0.05f, 0}, 0.1f).index, 3);
   EXPECT_EQ(grid.nearest({nan, 0, 0}, 0.1f).index, -1);
+  // Ten kilometres off there are no more cells, along any axis and either way.
+  for (const float end : {-1e4f, 1e4f}) {
+    const std::vector<Vector3f> far = {{end, 0, 0}, {0, end, 0}, {0, 0, end}, {1, 0, 0}};
+    ASSERT_EQ(grid.build(far, 0.1), Reason::none);
+    EXPECT_EQ(grid.size(), 1);
+  }
 }
 
 TEST(PointGrid, HoldsNothingWhereNothingWasGiven) {
