@@ -91,13 +91,13 @@ TEST(FrameOverrun, DeclaresEveryToolLostWhenItStops) {
 }
 
 // What left at tick 1000 ms, from a measurement 10 ms older, at 2 m/s along y; draw was held.
-std::unique_ptr<PoseSamples> left() {
+std::unique_ptr<PoseSamples> left(int tool = 0) {
   auto samples = std::make_unique<PoseSamples>();
   samples->count = 1;
   PoseSample& sample = samples->items[0];
   sample.tick = Time{} + milliseconds(1000);
   sample.tick_number = 250;
-  sample.tool = 2;
+  sample.tool = tool;
   sample.frame_sequence = 77;
   sample.registration = RegistrationState::given;
   sample.registration_rms_m = 0.002;
@@ -110,10 +110,11 @@ std::unique_ptr<PoseSamples> left() {
   return samples;
 }
 
-PoseSample after(OverrunPolicy policy, std::int64_t tick_ms, PenButtons buttons = {}) {
+PoseSample after(OverrunPolicy policy, std::int64_t tick_ms, PenButtons buttons = {},
+                 int tool = 0) {
   auto out = std::make_unique<PoseSamples>();
   const Now now{Time{} + milliseconds(tick_ms), static_cast<std::uint32_t>(tick_ms / 4), 0};
-  EXPECT_TRUE(substitute(policy, {now, k_lost_after, buttons}, *left(), *out));
+  EXPECT_TRUE(substitute(policy, {now, k_lost_after, buttons}, *left(tool), *out));
   EXPECT_EQ(out->count, 1);
   return out->items[0];
 }
@@ -147,10 +148,11 @@ TEST(TickOverrun, DeclaresTheToolLostWhenItStops) {
 }
 
 TEST(TickOverrun, LeavesALostSampleWhoseItIsAndNoPose) {
-  const PoseSample lost = after(OverrunPolicy::stop_safe, 1008), was = left()->items[0];
+  const PoseSample lost = after(OverrunPolicy::stop_safe, 1008, {}, 2);
+  const PoseSample was = left(2)->items[0];
   EXPECT_EQ(lost.tick, Time{} + milliseconds(1008));
   EXPECT_EQ(lost.tick_number, 252u);
-  EXPECT_EQ(lost.tool, was.tool);
+  EXPECT_EQ(lost.tool, 2);
   EXPECT_EQ(lost.measurement, was.measurement);
   EXPECT_EQ(lost.frame_sequence, was.frame_sequence);
   EXPECT_EQ(lost.registration, was.registration);
