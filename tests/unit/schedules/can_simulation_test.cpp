@@ -7,11 +7,12 @@
 
 #include "can_simulator.hpp"
 #include "schedules/can_response.hpp"
+#include "tests/unit/repetitions.hpp"
 
 namespace glint::can_simulation_test {
 namespace {
 
-constexpr int k_message_sets = 1000;
+const int k_message_sets = test::repetitions(1000, 100);
 constexpr std::int64_t k_simulated_ns = 400'000'000;
 constexpr CanBitRates k_rates{.nominal = 500e3, .data = 2e6};
 

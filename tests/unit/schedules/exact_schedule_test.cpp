@@ -8,6 +8,7 @@
 #include "random_groups.hpp"
 #include "schedules/makespan_bound.hpp"
 #include "schedules/static_order.hpp"
+#include "tests/unit/repetitions.hpp"
 
 namespace glint::exact_schedule_test {
 namespace {
@@ -37,7 +38,7 @@ std::int64_t brute_force(const TaskGroup& group, int cores, std::int64_t handove
 
 TEST(ExactSchedule, AgreesWithBruteForceOnSmallGraphs) {
   std::mt19937_64 random(1974);
-  for (int i = 0; i < 240; ++i) {
+  for (int i = 0; i < test::repetitions(240, 48); ++i) {
     // Few different bounds: many nodes look alike, and must not be taken for copies.
     const TaskGroup group = random_group(random, 3 + i % 3, 15 + 15 * (i % 4), i % 2 == 0 ? 2 : 9);
     const std::int64_t handover = i % 3 * 3;

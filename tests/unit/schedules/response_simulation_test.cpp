@@ -7,11 +7,12 @@
 
 #include "fixed_priority_simulator.hpp"
 #include "schedules/response_time.hpp"
+#include "tests/unit/repetitions.hpp"
 
 namespace glint::response_simulation_test {
 namespace {
 
-constexpr int k_task_sets = 1000;
+const int k_task_sets = test::repetitions(1000, 100);
 constexpr std::int64_t k_simulated_ns = 400'000;
 
 std::vector<SimulatedTask> random_tasks(std::mt19937_64& random) {

@@ -10,6 +10,7 @@
 #include "kernels/motion/interpolate.hpp"
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
+#include "tests/unit/repetitions.hpp"
 
 namespace glint {
 namespace {
@@ -129,7 +130,7 @@ double normalised_error(double speed_m_s, Noise noise) {
   };
   double sum = 0;
   std::int64_t count = 0;
-  for (int stroke = 0; stroke < 100; ++stroke) {
+  for (int stroke = 0; stroke < test::repetitions(100, 25); ++stroke) {
     std::vector<UncertainPose> samples;
     Eigen::Matrix<double, 6, 1> walk = drawn();
     const double seconds = 0.1 / speed_m_s;
@@ -159,7 +160,8 @@ TEST(ResampleStroke, ComesBackWithinItsCovarianceHoweverTheNoiseIsCorrelated) {
   for (const double speed : {0.01, 0.05, 0.2, 0.8}) {
     // One error for the whole stroke: what a covariance of (1 - u) Ca + u Cb is exact for.
     // Standard deviation of the mean of 100 chi-squares: 0.35.
-    EXPECT_NEAR(normalised_error(speed, Noise::common), 6, 1.1) << speed;
+    EXPECT_NEAR(normalised_error(speed, Noise::common), 6, test::repetitions(11, 22) / 10.0)
+        << speed;
     EXPECT_LT(normalised_error(speed, Noise::filtered), 6.5) << speed;
     // A point between two samples of white noise is better than it says, at best by half.
     const double white = normalised_error(speed, Noise::white);

@@ -8,6 +8,7 @@
 
 #include "kernels/pose/correspond.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
+#include "tests/unit/repetitions.hpp"
 
 namespace glint::correspond_crowd_test {
 namespace {
@@ -87,7 +88,8 @@ TEST(CorrespondCrowd, LosesNothingToTheBudgetsOfACell) {
   CorrespondSettings unhurried = within_a_cell();
   unhurried.search_steps_max = 1'000'000;
   for (const bool predicted : {false, true}) {
-    for (const double sigma_m : {0.0, 0.001, 0.002, 0.003, 0.005}) {
+    for (int millimetres = 0; millimetres <= 5; millimetres += test::repetitions(1, 3)) {
+      const double sigma_m = 1e-3 * millimetres;
       const Outcome free = outcome_of(sigma_m, unhurried, predicted);
       const Outcome cell = outcome_of(sigma_m, within_a_cell(), predicted);
       std::printf(

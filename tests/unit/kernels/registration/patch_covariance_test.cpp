@@ -9,6 +9,7 @@
 #include "kernels/registration/match_points.hpp"
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/registration/box_model.hpp"
+#include "tests/unit/repetitions.hpp"
 
 namespace glint::patch_covariance_test {
 namespace {
@@ -53,10 +54,10 @@ struct Consistency {
   double independent = 0, patches = 0;
 };
 Consistency consistency(int block) {
-  constexpr unsigned k_scenes = 60;
+  const int scenes = test::repetitions(60, 15);
   Consistency mean;
-  for (unsigned seed = 1; seed <= k_scenes; ++seed) {
-    NoisyScene scene(block, seed);
+  for (int seed = 1; seed <= scenes; ++seed) {
+    NoisyScene scene(block, static_cast<unsigned>(seed));
     const SceneView one[] = {scene.view()};
     const ModelAlignment end = align_model(one, k_truth, {}, scene.scratch);
     EXPECT_EQ(end.reason, Reason::none);
@@ -66,8 +67,8 @@ Consistency consistency(int block) {
     Vector6 off;
     off << end.T_world_base.translation - k_truth.translation,
         2 * turn.vec() * (turn.w() < 0 ? -1 : 1);
-    mean.independent += off.dot(end.covariance.inverse() * off) / 6 / k_scenes;
-    mean.patches += off.dot(honest.value.inverse() * off) / 6 / k_scenes;
+    mean.independent += off.dot(end.covariance.inverse() * off) / 6 / scenes;
+    mean.patches += off.dot(honest.value.inverse() * off) / 6 / scenes;
   }
   return mean;
 }

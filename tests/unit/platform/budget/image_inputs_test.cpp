@@ -1,4 +1,5 @@
 #include "platform/budget/inputs/image_inputs.hpp"
+#include "tests/unit/repetitions.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,8 +37,8 @@ TEST(ImageInputs, NeverDriveALoopBeyondItsMaximum) {
   for (const auto& kernel : image_kernels()) {
     for (const Limits& limits : several_limits()) {
       for (const InputKind kind : k_kinds) {
-        for (std::uint64_t number = 0; number < 40; ++number) {
-          kernel->set_input(kind, number, limits);
+        for (int number = 0; number < test::repetitions(40, 6); ++number) {
+          kernel->set_input(kind, static_cast<std::uint64_t>(number), limits);
           kernel->run();
           const graph::LoopCounts n = kernel->counts(), most = kernel->worst(limits);
           for (std::size_t loop = 0; loop < graph::k_loops_max; ++loop) {

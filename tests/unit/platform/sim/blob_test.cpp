@@ -5,6 +5,7 @@
 
 #include "platform/sim/scene.hpp"
 #include "small_scene.hpp"
+#include "tests/unit/repetitions.hpp"
 
 namespace glint::sim {
 namespace {
@@ -87,7 +88,7 @@ TEST(Blob, HasItsDeclaredErrorsAsLongAsItIsAHalfMetreAway) {
   Scenario noisy = dark_scene();
   noisy.noise = NoiseSettings{};
   noisy.signal.sphere_limb = 0.6;
-  noisy.duration = milliseconds(9000);
+  noisy.duration = milliseconds(test::repetitions(9000, 1800));
   const Simulator simulator(noisy);
   SimFrame reference, frame;
   Simulator(clean).render(0, reference);
@@ -108,7 +109,7 @@ TEST(Blob, HasItsDeclaredErrorsAsLongAsItIsAHalfMetreAway) {
       ++n;
     }
   }
-  ASSERT_GT(n, 2000);
+  ASSERT_GT(n, test::repetitions(2000, 400));
   EXPECT_NEAR(std::sqrt(pixel2 / n), 0.1, 0.006);
   EXPECT_NEAR(std::sqrt(range2 / n), 0.0015, 0.0001);
   EXPECT_NEAR(range1 / n, 0, 0.0001);

@@ -1,0 +1,14 @@
+// How often a test repeats what it judges by many cases. A sanitized or emulated build runs fewer
+// of them (GLINT_FEW_REPETITIONS, set by tests/CMakeLists.txt): it checks memory and bits, the
+// release build the figures.
+#pragma once
+
+#include <cstdlib>
+
+namespace glint::test {
+
+inline int repetitions(int all, int few) {
+  return std::getenv("GLINT_FEW_REPETITIONS") == nullptr ? all : few;
+}
+
+}  // namespace glint::test
