@@ -162,7 +162,6 @@ TEST_F(FollowRobotTest, IsNotReadyWithoutPosesOfAllItsLinks) {
 }
 
 TEST_F(FollowRobotTest, IsPosedWithoutTheHeap) {
-  if (!AllocationCounter::available()) GTEST_SKIP() << "allocations are not counted here";
   FollowRobot node = this->node(5'000, {&given_, 0});
   const ShownDepth shown = picture(1, {&shown_, 1});
   RobotProgress progress;

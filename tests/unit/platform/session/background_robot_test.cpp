@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "platform/rt/allocation_counter.hpp"
 #include "platform/session/background_group.hpp"
+#include "tests/unit/heap_count.hpp"
 #include "tests/unit/platform/session/box_on_a_slide.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
 
@@ -154,14 +154,13 @@ TEST_F(HeardJointsOfASlide, ArePassedOverWithTheReasonWhereTheyCannotBe) {
 }
 
 TEST_F(HeardJointsOfASlide, PoseItByTheNewestStateOnceAndWithoutMemory) {
-  if (!AllocationCounter::available()) GTEST_SKIP() << "allocations are not counted here";
   say(heard_, {"slide"}, {0.3});
   say(heard_, {"slide"}, {0.4});
-  const std::uint64_t before = AllocationCounter::count();
-  AllocationCounter::arm();
-  robot_.update(heard_);
-  AllocationCounter::disarm();
-  EXPECT_EQ(AllocationCounter::count(), before);
+  {
+    const HeapCount heap;
+    robot_.update(heard_);
+    EXPECT_EQ(heap.count(), 0u);
+  }
   EXPECT_TRUE(stands_at(0.4));
   robot_.update(heard_);
   EXPECT_EQ(robot_.used(), 1);
