@@ -2,10 +2,16 @@
 // missing; its own verdict, where it comes that far. What went wrong goes to standard error.
 #pragma once
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
+#include <new>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -52,6 +58,20 @@ struct GivenCommand {
   return std::string("unknown ") + kind + " " + word + nearest_name_text(word, known) + list;
 }
 
+// Before a file is opened: the first would get the number of a standard stream that is closed, and
+// the table would go into it. A write beyond the limit of a file's size is an error to report.
+inline void guard_files() {
+  for (int stream = 0; stream <= 2; ++stream) {
+    if (fcntl(stream, F_GETFD) != -1) continue;
+    const int null = open("/dev/null", stream == 0 ? O_RDONLY : O_WRONLY);
+    if (null >= 0 && null != stream) {
+      (void)dup2(null, stream);
+      (void)close(null);
+    }
+  }
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
 // body(): parses by `app`, does the work and gives the program's own verdict.
 template <class Body>
 [[nodiscard]] int exit_code_of(const CLI::App& app, const char* program, const Body& body) {
@@ -59,6 +79,7 @@ template <class Body>
     std::fprintf(stderr, "%s: %s\n", program, one_line(error.what()).c_str());
     return code;
   };
+  guard_files();
   try {
     const int code = body();
     // A table that went to a full disk was not printed.
@@ -78,6 +99,8 @@ template <class Body>
     return fails(error, 2);
   } catch (const MissingDevice& error) {
     return fails(error, 3);
+  } catch (const std::bad_alloc&) {
+    return fails(std::runtime_error("not enough memory"), 1);
   } catch (const std::exception& error) {
     return fails(error, 1);
   }

@@ -1,4 +1,5 @@
-// SIGINT (Ctrl-C) and SIGTERM end a run at once, with its figures and everything written.
+// SIGINT (Ctrl-C), SIGTERM and SIGHUP (its terminal closed) end a run at once, with its figures and
+// everything written.
 #pragma once
 
 #include <atomic>
@@ -9,11 +10,11 @@ namespace glint {
 inline std::atomic<bool> g_stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler stores it");
 
-// Set by either signal from now on.
+// Set by each of the signals from now on; a SIGHUP that is ignored (nohup) stays so.
 [[nodiscard]] inline const std::atomic<bool>& stop_on_signals() noexcept {
-  for (const int signal : {SIGINT, SIGTERM}) {
-    std::signal(signal, [](int) { g_stop_requested = true; });
-  }
+  const auto stop = [](int) { g_stop_requested = true; };
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, stop);
+  if (std::signal(SIGHUP, stop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   return g_stop_requested;
 }
 

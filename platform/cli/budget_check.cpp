@@ -13,6 +13,7 @@
 #include "platform/cli/cell_option.hpp"
 #include "platform/cli/measure_request.hpp"
 #include "platform/cli/output_file.hpp"
+#include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
 
@@ -79,7 +80,7 @@ void add_budget_check(CLI::App& budget, int& exit_code) {
   command->add_option("--foreign", options.foreign, "file of other nodes' CAN frames");
   command->add_option("--scale", arguments->scale, "NODE=FACTOR: what if it were slower");
   command->add_option("--clock", options.clock, "fraction of the declared clock: what if")
-      ->check(CLI::Range(0.001, 1000.0))
+      ->check(in_range(0.001, 1000.0))
       ->capture_default_str();
   command->add_option("--margin", options.margin_percent, "least slack of the system in %")
       ->capture_default_str();

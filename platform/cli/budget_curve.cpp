@@ -10,6 +10,7 @@
 #include "platform/cli/measure_request.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/progress.hpp"
+#include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
 
@@ -98,7 +99,7 @@ void add_budget_curve(CLI::App& budget, int& exit_code) {
       ->check(CLI::IsMember({"x86-64", "arm64"}))
       ->capture_default_str();
   command->add_option("--frames", arguments->frames, "at each point")
-      ->check(CLI::Range(20, 100'000))
+      ->check(in_range(20, 100'000))
       ->capture_default_str();
   command->add_option("--measure-program", arguments->target.program_file,
                       "glint_measure_crowd, where it is not ours");

@@ -6,6 +6,7 @@
 #include "platform/budget/compare/budget_diff.hpp"
 #include "platform/cli/budget_commands.hpp"
 #include "platform/cli/output_file.hpp"
+#include "platform/in_range.hpp"
 #include "platform/printable.hpp"
 
 namespace glint {
@@ -62,12 +63,12 @@ void add_budget_diff(CLI::App& budget, int& exit_code) {
   command
       ->add_option("--tolerance", arguments->settings.tolerance_percent, "percent that may be lost")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1000.0));
+      ->check(in_range(0.0, 1000.0));
   command
       ->add_option("--confidence", arguments->settings.confidence,
                    "that nothing is called slower by chance, for all rows together")
       ->capture_default_str()
-      ->check(CLI::Range(0.5, 0.9999));
+      ->check(in_range(0.5, 0.9999));
   command->add_option("--json", arguments->json, "write the table's figures here");
   command->callback([arguments, &exit_code] { exit_code = print_diff(*arguments); });
 }

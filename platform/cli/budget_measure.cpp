@@ -12,6 +12,7 @@
 #include "platform/cli/measure_request.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/progress.hpp"
+#include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
 #include "platform/rt/processor_name.hpp"
@@ -215,7 +216,7 @@ void add_budget_measure(CLI::App& budget, int& exit_code) {
       ->check(CLI::IsMember({"x86-64", "arm64"}))
       ->capture_default_str();
   command->add_option("--inputs", arguments->inputs, "of each kernel")
-      ->check(CLI::Range(20, 10'000'000))
+      ->check(in_range(20, 10'000'000))
       ->capture_default_str();
   command->add_option("--kernel", arguments->kernel, "this one only");
   command->add_option("--board", arguments->board, "judge this board's costs, fit none");
@@ -223,12 +224,12 @@ void add_budget_measure(CLI::App& budget, int& exit_code) {
                       "make this board file of the costs; with --kernel: put "
                       "that one's into the file");
   command->add_option("--margin", arguments->margin_percent, "percent on top of fitted costs")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(in_range(0.0, 100.0))
       ->capture_default_str();
   command
       ->add_option("--ns-per-instruction", arguments->ns_per_instruction,
                    "declared in the board file")
-      ->check(CLI::Range(0.001, 1000.0))
+      ->check(in_range(0.001, 1000.0))
       ->capture_default_str();
   command->add_option("--cache", arguments->cache, "warm, or evicted before each call")
       ->check(CLI::IsMember({"warm", "cold"}))
@@ -236,12 +237,12 @@ void add_budget_measure(CLI::App& budget, int& exit_code) {
   command
       ->add_option("--passes", arguments->passes,
                    "over all inputs; of each input the least time counts")
-      ->check(CLI::Range(1, 100))
+      ->check(in_range(1, 100))
       ->capture_default_str();
   command->add_option("--enemy", arguments->enemies, "what to be measured beside, too")
       ->check(CLI::IsMember({"none", "cache", "bandwidth", "other_core", "interrupts"}));
   command->add_option("--jobs", arguments->jobs, "kernels counted at a time; 0: one a core")
-      ->check(CLI::Range(0, 256));
+      ->check(in_range(0, 256));
   command->add_option("--measure-program", arguments->program,
                       "glint_measure, where it is not ours");
   command->add_option("--json", arguments->json, "write the figures here");

@@ -6,6 +6,7 @@
 #include "platform/budget/report/budget_report.hpp"
 #include "platform/cli/budget_commands.hpp"
 #include "platform/cli/output_file.hpp"
+#include "platform/in_range.hpp"
 #include "platform/printable.hpp"
 
 namespace glint {
@@ -55,7 +56,7 @@ void add_budget_report(CLI::App& budget, int& exit_code) {
   command->add_option("--footprint", arguments->paths.footprint, "memory, stack and code by node");
   command->add_option("--worst", arguments->options.worst_frames, "how many worst frames to list")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
+      ->check(in_range(1, 1000));
   command->add_option("--out", arguments->out, "folder of budget.html, budget.md and figures/")
       ->capture_default_str();
   command->callback([arguments, &exit_code] { exit_code = write_report(*arguments); });

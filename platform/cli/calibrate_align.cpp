@@ -5,6 +5,7 @@
 #include "platform/calibrate/align.hpp"
 #include "platform/calibrate/say.hpp"
 #include "platform/cli/calibrate_commands.hpp"
+#include "platform/in_range.hpp"
 
 namespace glint {
 namespace {
@@ -107,7 +108,7 @@ void add_calibrate_align(CLI::App& calibrate, int& exit_code) {
   command
       ->add_option("--max-offset-s", arguments->offset_max_s,
                    "how far the clocks may differ, either way")
-      ->check(CLI::Range(0.0, 60.0))
+      ->check(in_range(0.0, 60.0))
       ->capture_default_str();
   command->add_flag("--align-starts", arguments->align_starts,
                     "the clocks have nothing in common: take both series to start at once");

@@ -6,6 +6,7 @@
 #include "platform/calibrate/lens_fit.hpp"
 #include "platform/calibrate/say.hpp"
 #include "platform/cli/calibrate_commands.hpp"
+#include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
 #include "platform/sensors/npy.hpp"
 
@@ -97,7 +98,7 @@ void add_calibrate_camera(CLI::App& calibrate, int& exit_code) {
   command->add_option("--board", arguments->board, "inner corners or circles, COLUMNSxROWS")
       ->capture_default_str();
   command->add_option("--spacing-mm", arguments->spacing_mm, "from corner to corner")
-      ->check(CLI::Range(0.1, 1000.0))
+      ->check(in_range(0.1, 1000.0))
       ->capture_default_str();
   command->add_option("--pattern", arguments->pattern, "what the board shows")
       ->check(CLI::IsMember({"chessboard", "circles"}))
@@ -107,7 +108,7 @@ void add_calibrate_camera(CLI::App& calibrate, int& exit_code) {
       ->capture_default_str();
   command->add_option("--ray-table", arguments->ray_table, "unit rays, float32 (.npy)");
   command->add_option("--width", arguments->width, "of the image, where the table is flat")
-      ->check(CLI::Range(0, 100000));
+      ->check(in_range(0, 100000));
   add_output_options(*command, arguments->output);
   command->callback([arguments, &exit_code] {
     if (arguments->images.empty() == arguments->ray_table.empty()) {

@@ -6,6 +6,7 @@
 #include "platform/calibrate/say.hpp"
 #include "platform/cli/calibrate_commands.hpp"
 #include "platform/cli/progress.hpp"
+#include "platform/in_range.hpp"
 
 namespace glint {
 namespace {
@@ -121,14 +122,14 @@ void add_calibrate_motion(CLI::App& calibrate, int& exit_code) {
       ->required();
   command->add_option("--tool", arguments->tool, "of an .mcap: which of its tools");
   command->add_option("--position-sigma-mm", arguments->position_sigma_mm, "of a pose, an axis")
-      ->check(CLI::Range(0.001, 100.0))
+      ->check(in_range(0.001, 100.0))
       ->capture_default_str();
   command->add_option("--rotation-sigma-deg", arguments->rotation_sigma_deg, "of a pose, an axis")
-      ->check(CLI::Range(0.001, 30.0))
+      ->check(in_range(0.001, 30.0))
       ->capture_default_str();
   command
       ->add_option("--rate-hz", arguments->rate_hz, "the camera's: faster recordings are thinned")
-      ->check(CLI::Range(1.0, 1000.0))
+      ->check(in_range(1.0, 1000.0))
       ->capture_default_str();
   command->add_flag("--add-noise", arguments->add_noise,
                     "the recordings are the truth: add the declared noise to them");

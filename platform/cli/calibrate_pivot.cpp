@@ -5,6 +5,7 @@
 #include "platform/calibrate/say.hpp"
 #include "platform/cells/tool_writer.hpp"
 #include "platform/cli/calibrate_commands.hpp"
+#include "platform/in_range.hpp"
 
 namespace glint {
 namespace {
@@ -80,7 +81,7 @@ void add_calibrate_pivot(CLI::App& calibrate, int& exit_code) {
   command
       ->add_option("--sigma-mm", arguments->sigma_mm,
                    "stop as soon as the tip is known this well; 0: use every pose")
-      ->check(CLI::Range(0.0, 1000.0));
+      ->check(in_range(0.0, 1000.0));
   add_output_options(*command, arguments->output);
   command->callback([arguments, &exit_code] { exit_code = run_pivot(*arguments); });
 }

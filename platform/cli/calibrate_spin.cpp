@@ -5,6 +5,7 @@
 #include "platform/calibrate/spin.hpp"
 #include "platform/cells/tool_writer.hpp"
 #include "platform/cli/calibrate_commands.hpp"
+#include "platform/in_range.hpp"
 
 namespace glint {
 namespace {
@@ -88,7 +89,7 @@ void add_calibrate_spin(CLI::App& calibrate, int& exit_code) {
   command
       ->add_option("--sigma-deg", arguments->sigma_deg,
                    "stop as soon as the axis is known this well; 0: use every pose")
-      ->check(CLI::Range(0.0, 90.0));
+      ->check(in_range(0.0, 90.0));
   add_output_options(*command, arguments->output);
   command->callback([arguments, &exit_code] { exit_code = run_spin(*arguments); });
 }

@@ -6,6 +6,7 @@
 #include "platform/cells/tool_formats.hpp"
 #include "platform/cells/tool_writer.hpp"
 #include "platform/cli/calibrate_commands.hpp"
+#include "platform/in_range.hpp"
 
 namespace glint {
 namespace {
@@ -75,14 +76,14 @@ void add_calibrate_tool(CLI::App& calibrate, int& exit_code) {
   command
       ->add_option("--longest-mm", arguments->longest_mm,
                    "the known distance of the two markers farthest apart; 0: as measured")
-      ->check(CLI::Range(0.0, 2000.0));
+      ->check(in_range(0.0, 2000.0));
   command
       ->add_option("--noise-mm", arguments->noise_mm,
                    "of a measured marker, an axis, roughly; it is found anew")
-      ->check(CLI::Range(0.01, 20.0))
+      ->check(in_range(0.01, 20.0))
       ->capture_default_str();
   command->add_option("--radius-mm", arguments->radius_mm, "of a marker, for the tool file")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(in_range(0.0, 100.0))
       ->capture_default_str();
   command->add_option("--shape", arguments->shape, "of a marker, for the tool file")
       ->check(CLI::IsMember({"sphere", "disc"}))

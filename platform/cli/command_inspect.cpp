@@ -13,6 +13,7 @@
 #include "platform/cli/cell_option.hpp"
 #include "platform/cli/commands.hpp"
 #include "platform/cli/output_file.hpp"
+#include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
 #include "platform/report/picture.hpp"
@@ -168,7 +169,7 @@ void add_inspect(CLI::App& app, int& exit_code) {
   command->add_option("--tool", arguments->tools, "tool files, or pen (built in)");
   add_cell_option(*command, arguments->config, "cell file with camera and tools");
   command->add_option("--threshold", arguments->threshold, "reflectivity of a marker, raw counts")
-      ->check(CLI::Range(1, 65534));
+      ->check(in_range(1, 65534));
   command->add_option("--out", arguments->out, "folder of the picture")->capture_default_str();
   command->add_option("--json", arguments->json, "write what was seen here");
   command->callback([arguments, &exit_code] { exit_code = inspect_frame(*arguments); });

@@ -9,6 +9,7 @@
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/progress.hpp"
 #include "platform/cli/publishing.hpp"
+#include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
 #include "platform/mapping/cloud_files.hpp"
 #include "platform/mapping/depth_png.hpp"
@@ -170,19 +171,19 @@ void add_map(CLI::App& app, int& exit_code) {
       "--dds: rt/glint/map_points and, with --octomap, rt/glint/octomap, in frame hmd_world.");
   command->add_option("--data", arguments->data, "folder of the pictures")->required();
   command->add_option("--voxel-mm", arguments->voxel_mm, "side of a voxel")
-      ->check(CLI::Range(1.0, 100.0))
+      ->check(in_range(1.0, 100.0))
       ->capture_default_str();
   command->add_option("--depth-max", arguments->depth_max_m, "metres; what is further is left out")
-      ->check(CLI::Range(0.2, 20.0))
+      ->check(in_range(0.2, 20.0))
       ->capture_default_str();
   command->add_option("--stride", arguments->stride, "every n-th pixel of every n-th row")
-      ->check(CLI::Range(1, 64))
+      ->check(in_range(1, 64))
       ->capture_default_str();
   command->add_flag("--keep-uneven", arguments->keep_uneven, "do not move points onto planes");
   command->add_option("--octomap", arguments->octomap,
                       "write what is occupied, free and unknown here (.bt)");
   command->add_option("--resolution", arguments->occupancy.resolution_m, "metres; of the octomap")
-      ->check(CLI::Range(0.002, 1.0))
+      ->check(in_range(0.002, 1.0))
       ->capture_default_str();
   add_publish_options(*command, arguments->publish);
   command->add_option("--out", arguments->out, "folder of the files")->capture_default_str();

@@ -13,6 +13,7 @@
 #include "platform/cli/losses_json.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/publishing.hpp"
+#include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
 #include "platform/programming/path_csv.hpp"
 #include "platform/programming/press_times.hpp"
@@ -132,7 +133,7 @@ void add_length(CLI::App* command, const std::string& name, double& metres, cons
   const std::map<std::string, double> units{{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}};
   command->add_option(name, metres, what + ", with its unit: mm, cm or m")
       ->transform(CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::UNIT_REQUIRED, "LENGTH"))
-      ->check(CLI::Range(least, most))
+      ->check(in_range(least, most))
       ->default_str(std::to_string(static_cast<int>(1e3 * metres + 0.5)) + "mm");
 }
 
@@ -156,19 +157,19 @@ void add_path(CLI::App& app, int& exit_code) {
   add_length(command, "--spacing", capture.stroke.spacing_m, "from point to point of a stroke",
              1e-4, 0.1);
   command->add_option("--points-max", capture.points_max, "room for so many points")
-      ->check(CLI::Range(1, 1 << 22))
+      ->check(in_range(1, 1 << 22))
       ->capture_default_str();
   command->add_option("--csv", arguments->csv, "write the points and their covariances here");
   command->add_option("--urscript", arguments->urscript, "write the robot's program here");
   UrScriptSettings& script = arguments->script;
   command->add_option("--stroke-speed", script.stroke_m_s, "m/s along strokes")
-      ->check(CLI::Range(1e-3, 2.0))
+      ->check(in_range(1e-3, 2.0))
       ->capture_default_str();
   command->add_option("--travel-speed", script.travel_m_s, "m/s to waypoints and strokes")
-      ->check(CLI::Range(1e-3, 2.0))
+      ->check(in_range(1e-3, 2.0))
       ->capture_default_str();
   command->add_option("--acceleration", script.acceleration_m_s2, "m/s^2")
-      ->check(CLI::Range(1e-2, 10.0))
+      ->check(in_range(1e-2, 10.0))
       ->capture_default_str();
   add_length(command, "--blend", script.blend_m, "largest blend radius", 0, 0.1);
   add_publish_options(*command, arguments->publish);

@@ -8,6 +8,7 @@
 #include "platform/cli/publishing.hpp"
 #include "platform/cli/reference_inputs.hpp"
 #include "platform/cli/reference_report.hpp"
+#include "platform/in_range.hpp"
 #include "platform/robot/sample_robot.hpp"
 
 namespace glint {
@@ -79,7 +80,7 @@ void add_reference(CLI::App& app, int& exit_code) {
                    "hear over DDS, for at most so many seconds, what is not given: the robot's "
                    "description (/robot_description), joint positions for every picture "
                    "(/joint_states), T_camera_base (/initialpose)")
-      ->check(CLI::Range(0.1, 86400.0));
+      ->check(in_range(0.1, 86400.0));
   add_network_options(*command, arguments->network);
   command->add_option("--export-model", arguments->exported,
                       "write joints and points of the links' surfaces here, as PLY: what a board "

@@ -9,6 +9,7 @@
 #include "platform/cli/losses_json.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/progress.hpp"
+#include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
 #include "platform/session/replay.hpp"
@@ -114,7 +115,7 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->add_option("--tool", arguments->tool,
                       "the tool to find in them (.toml, .rom, .ini), or pen (built in)");
   command->add_option("--workers", arguments->workers, "threads: 1 or 2, the same bytes")
-      ->check(CLI::Range(1, 2));
+      ->check(in_range(1, 2));
   command->add_flag("--allow-truncated", arguments->tolerance.truncated,
                     "read a file that was cut short or damaged but for what is not whole, and "
                     "count what is missing: exit code 1");

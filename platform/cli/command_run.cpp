@@ -20,6 +20,7 @@
 #include "platform/cli/run_output.hpp"
 #include "platform/cli/run_report.hpp"
 #include "platform/folder_lock.hpp"
+#include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
 #include "platform/programming/key_buttons.hpp"
 #include "platform/programming/key_terminal.hpp"
@@ -148,9 +149,9 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_option("--can", arguments->can, "log:FILE or socketcan:IF, instead of the cell's");
   command->add_option("--record-level", arguments->level, "full, roi, blobs or outputs");
   command->add_option("--duration", arguments->duration_s, "seconds, instead of the cell's")
-      ->check(CLI::Range(0.1, 3600.0));
+      ->check(in_range(0.1, 3600.0));
   command->add_option("--workers", arguments->workers, "threads of the frame group: 1 or 2")
-      ->check(CLI::Range(1, 2));
+      ->check(in_range(1, 2));
   command
       ->add_option("--method", arguments->method,
                    "glint, or seed: the method as published, the baseline")
@@ -164,7 +165,7 @@ void add_run(CLI::App& app, int& exit_code) {
   command
       ->add_option("--source-frame-ms", arguments->source_frame_ms,
                    "time the source needs for each frame from when it is due, ms; default: 0")
-      ->check(CLI::Range(0.0, 10'000.0));
+      ->check(in_range(0.0, 10'000.0));
   command->add_flag("--trace", arguments->trace, "when every node ran: trace.spans in --out");
   command->add_flag("--no-dds", arguments->no_dds, "send nothing over DDS");
   command->add_flag("--keys", arguments->keys,

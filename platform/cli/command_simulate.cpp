@@ -11,6 +11,7 @@
 #include "platform/cli/commands.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/cli/progress.hpp"
+#include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
 #include "platform/record/recording_writer.hpp"
@@ -130,7 +131,7 @@ void add_simulate(CLI::App& app, int& exit_code) {
       "localisation, and the reference tracker's poses.");
   add_cell_option(*command, arguments->config);
   command->add_option("--duration", arguments->duration_s, "seconds, instead of the cell's")
-      ->check(CLI::Range(0.1, 3600.0));
+      ->check(in_range(0.1, 3600.0));
   command->add_flag("--no-frames", arguments->without_pixels, "only the trajectories");
   command
       ->add_option("--frame-files", arguments->file_every,

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <thread>
 
+#include "platform/in_range.hpp"
+
 namespace glint {
 namespace {
 
@@ -17,7 +19,7 @@ void add_network_options(CLI::App& command, DdsSettings& settings) {
   command.add_option("--dds-interface", settings.interface, "network interface")
       ->capture_default_str();
   command.add_option("--dds-domain", settings.domain, "ROS_DOMAIN_ID")
-      ->check(CLI::Range(0, 232))
+      ->check(in_range(0, 232))
       ->capture_default_str();
 }
 
@@ -25,7 +27,7 @@ void add_publish_options(CLI::App& command, PublishOptions& options) {
   command
       .add_option("--dds", options.seconds,
                   "publish it over DDS for so many seconds, for listeners that come later too")
-      ->check(CLI::Range(0.1, 86400.0));
+      ->check(in_range(0.1, 86400.0));
   add_network_options(command, options.settings);
 }
 

@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "platform/dds/status_reader.hpp"
+#include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
 
 namespace {
@@ -54,7 +55,7 @@ int main(int argc, char** argv) {
   app.add_option("--peer", settings.peers, "address to look for the sink at; may be repeated");
   app.add_option("--search", search_s, "seconds to look for a sink")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 86400.0));
+      ->check(glint::in_range(0.0, 86400.0));
   app.add_option("--out", out, "JSON file for the result")->required();
   try {
     app.parse(argc, argv);
