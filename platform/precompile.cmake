@@ -59,9 +59,6 @@ function(glint_precompile folder)
     foreach(list options common)  # a warning, and what code is made: neither changes what was read
       list(REMOVE_ITEM ${list} "${GLINT_TOGETHER_OPTIONS}" "${GLINT_COVERAGE_OPTIONS}"
         ${GLINT_CALL_GRAPH_OPTIONS})
-      if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # clang refuses a header of another level
-        list(REMOVE_ITEM ${list} -O1)
-      endif()
     endforeach()
     if(options STREQUAL common)  # else some of its own: what was read without them does not hold
       target_precompile_headers(${target} REUSE_FROM ${variant})

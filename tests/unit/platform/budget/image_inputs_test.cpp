@@ -1,9 +1,10 @@
 #include "platform/budget/inputs/image_inputs.hpp"
-#include "tests/unit/repetitions.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "tests/unit/repetitions.hpp"
 
 namespace glint {
 namespace {
