@@ -1,11 +1,11 @@
 // What a run saw, held against what a check computed.
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "platform/budget/check.hpp"
 #include "platform/budget/task_model_of.hpp"
 #include "platform/input_error.hpp"
+#include "platform/read_file.hpp"
 
 namespace glint {
 namespace {
@@ -52,11 +52,10 @@ void compare(const nlohmann::json& summary, const std::string& summary_file, Che
 }  // namespace
 
 void compare_observed(const std::string& summary_file, CheckResult& result) {
-  std::ifstream in(summary_file);
-  if (!in)
-    throw InputError(summary_file + ": cannot be read; expected a summary.json of `glint run`");
+  const std::string text =
+      read_file(summary_file, k_text_bytes_max, "a summary.json of `glint run`");
   try {
-    compare(nlohmann::json::parse(in, nullptr, false), summary_file, result);
+    compare(nlohmann::json::parse(text, nullptr, false), summary_file, result);
   } catch (const nlohmann::json::exception& error) {  // a value of another type
     throw InputError(summary_file + ":1: " + error.what() +
                      "; expected a summary.json of `glint run`");

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "platform/calibrate/say.hpp"
 #include "platform/input_error.hpp"
-#include "platform/sensors/read_picture.hpp"
+#include "platform/sensors/picture_file.hpp"
 
 namespace glint {
 namespace {
@@ -31,8 +30,9 @@ cv::Mat eight_bits(const cv::Mat& picture) {
 }
 
 cv::Mat load(const std::string& path, const cv::Size& size) {
-  const cv::Mat picture =
-      read_picture(path, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH, "a PNG or PGM picture");
+  Picture read = read_picture(path);
+  cv::Mat picture(read.height, read.width, CV_16UC(read.channels), read.values.data());
+  if (read.channels == 3) cv::cvtColor(picture, picture, cv::COLOR_RGB2GRAY);
   if (size.area() > 0 && picture.size() != size) {
     throw InputError(path + ": " + std::to_string(picture.cols) + " x " +
                      std::to_string(picture.rows) + " pixels; expected " +

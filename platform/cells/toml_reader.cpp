@@ -1,21 +1,18 @@
 #include "platform/cells/toml_reader.hpp"
 
 #include <algorithm>
-#include <array>
-#include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <string_view>
 
 #include "platform/cells/toml_keys.hpp"
 #include "platform/input_error.hpp"
+#include "platform/read_file.hpp"
 #include "platform/nearest_name.hpp"
 #include "platform/printable.hpp"
 
 namespace glint {
 namespace {
 
-constexpr std::size_t k_text_bytes_max = 64 << 20;
 constexpr const char* k_text_expected = "a text in quotes, of printable UTF-8";
 
 std::string place(const std::string& file, const toml::source_region& region) {
@@ -64,22 +61,7 @@ std::size_t line_that_breaks(const std::string& text) {
 }  // namespace
 
 std::string read_text(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  const bool folder = std::filesystem::is_directory(file);
-  if (!in || folder) {
-    throw InputError(file + ": " + (folder ? "is a folder" : "cannot be read") +
-                     "; expected a TOML file there");
-  }
-  std::string text;
-  std::array<char, 1 << 16> part;
-  while (in.read(part.data(), part.size()), in.gcount() > 0) {
-    text.append(part.data(), static_cast<std::size_t>(in.gcount()));
-    if (text.size() > k_text_bytes_max) {  // a device never ends
-      throw InputError(file + ": longer than " + std::to_string(k_text_bytes_max) +
-                       " bytes; expected a TOML file there");
-    }
-  }
-  return text;
+  return read_file(file, k_text_bytes_max, "a TOML file there");
 }
 
 void refuse_toml_state() { throw BrokenState(); }

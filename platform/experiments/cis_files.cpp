@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "platform/input_error.hpp"
+#include "platform/read_file.hpp"
 
 namespace glint {
 namespace {
@@ -38,8 +38,7 @@ std::vector<Vector3> CisFile::points_m(std::size_t first, std::size_t count) con
 }
 
 CisFile load_cis(const std::string& path) {
-  std::ifstream in(path);
-  if (!in) throw InputError(path + ": cannot be read; expected points of a calibration problem");
+  std::istringstream in(read_file(path, k_text_bytes_max, "points of a calibration problem"));
   CisFile file;
   file.path = path;
   std::string line;

@@ -1,15 +1,14 @@
 #include "platform/mapping/file_text.hpp"
 
 #include <charconv>
-#include <filesystem>
-#include <fstream>
+#include <algorithm>
 
 #include "platform/input_error.hpp"
+#include "platform/read_file.hpp"
 
 namespace glint {
 namespace {
 
-constexpr std::uintmax_t k_bytes_max = std::uintmax_t{1} << 30;
 constexpr std::size_t k_word_shown = 40;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
@@ -20,21 +19,8 @@ std::string shown(std::string_view word) {
 
 }  // namespace
 
-FileText::FileText(std::string path, const std::string& expected) : path_(std::move(path)) {
-  if (!std::filesystem::is_regular_file(path_)) {
-    throw InputError(path_ + ": is no file; expected " + expected);
-  }
-  const std::uintmax_t size = std::filesystem::file_size(path_);
-  if (size > k_bytes_max) {
-    throw InputError(path_ + ": " + std::to_string(size) + " bytes; expected at most " +
-                     std::to_string(k_bytes_max));
-  }
-  std::ifstream file(path_, std::ios::binary);
-  bytes_.resize(static_cast<std::size_t>(size));
-  if (!file.read(bytes_.data(), static_cast<std::streamsize>(size))) {
-    throw InputError(path_ + ": cannot be read; expected " + expected);
-  }
-}
+FileText::FileText(std::string path, const std::string& expected)
+    : path_(std::move(path)), bytes_(read_file(path_, k_data_bytes_max, expected)) {}
 
 bool FileText::next_line(std::vector<std::string_view>& words) {
   words.clear();

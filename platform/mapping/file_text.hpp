@@ -9,7 +9,7 @@ namespace glint {
 
 class FileText {
  public:
-  // Throws InputError: cannot be opened, not a regular file, or larger than a GiB.
+  // Throws InputError as read_file does (k_data_bytes_max).
   FileText(std::string path, const std::string& expected);
 
   // The next line without its end, split at blanks. False: none is left.

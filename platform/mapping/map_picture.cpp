@@ -1,39 +1,47 @@
 #include "platform/mapping/map_picture.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "platform/input_error.hpp"
-#include "platform/part_file.hpp"
+#include "platform/sensors/picture_file.hpp"
 
 namespace glint {
 namespace {
 
 constexpr int k_splat = 3;  // half a point's width in pixels
 
-cv::Vec3b colour_of(std::uint8_t plane, double facing) {
-  constexpr int k_colours = 8;
-  static const cv::Vec3d colours[k_colours] = {{80, 160, 255}, {90, 200, 90},   {230, 150, 70},
-                                               {90, 90, 220},  {200, 100, 200}, {210, 210, 80},
-                                               {60, 200, 220}, {150, 120, 90}};
+using Colour = std::array<std::uint8_t, 3>;  // red, green, blue
+
+Colour colour_of(std::uint8_t plane, double facing) {
+  static constexpr std::array<Colour, 8> colours{{{255, 160, 80},
+                                                  {90, 200, 90},
+                                                  {70, 150, 230},
+                                                  {220, 90, 90},
+                                                  {200, 100, 200},
+                                                  {80, 210, 210},
+                                                  {220, 200, 60},
+                                                  {120, 120, 150}}};
   const bool on = plane != PlaneSearch::k_no_plane;
-  const cv::Vec3d full = on ? colours[plane % k_colours] : cv::Vec3d(170, 170, 170);
-  const double part = 0.3 + 0.7 * facing;
-  return {static_cast<std::uint8_t>(full[0] * part), static_cast<std::uint8_t>(full[1] * part),
-          static_cast<std::uint8_t>(full[2] * part)};
+  Colour colour = on ? colours[plane % colours.size()] : Colour{170, 170, 170};
+  for (std::uint8_t& part : colour) {
+    part = static_cast<std::uint8_t>(part * (0.3 + 0.7 * facing));
+  }
+  return colour;
 }
 
 }  // namespace
 
 void write_map_picture(const std::string& path, const PointCloud& map, const PlaneSupport& planes,
                        const CameraModel& camera, const Pose& T_world_camera) {
-  cv::Mat image(camera.height, camera.width, CV_8UC3, cv::Scalar(30, 30, 30));
-  cv::Mat depth(camera.height, camera.width, CV_64F, std::numeric_limits<double>::infinity());
+  const auto pixels =
+      static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  std::vector<Colour> image(pixels, {30, 30, 30});
+  std::vector<double> depth(pixels, std::numeric_limits<double>::infinity());
   const Pose T_camera_world = T_world_camera.inverse();
   for (int i = 0; i < map.count; ++i) {
     const Vector3 point =
@@ -45,23 +53,20 @@ void write_map_picture(const std::string& path, const PointCloud& map, const Pla
     const Vector3 normal(static_cast<double>(map.normal_x[i]), static_cast<double>(map.normal_y[i]),
                          static_cast<double>(map.normal_z[i]));
     const double facing = std::abs((T_camera_world.rotation * normal).dot(point.normalized()));
-    const cv::Vec3b colour = colour_of(planes.plane_of(i), std::min(facing, 1.0));
+    const Colour colour = colour_of(planes.plane_of(i), std::min(facing, 1.0));
     const int u = static_cast<int>(std::floor(std::clamp(pixel.value.x(), -1e6, 1e6)));
     const int v = static_cast<int>(std::floor(std::clamp(pixel.value.y(), -1e6, 1e6)));
-    for (int y = std::max(v - k_splat, 0); y <= std::min(v + k_splat, image.rows - 1); ++y) {
-      for (int x = std::max(u - k_splat, 0); x <= std::min(u + k_splat, image.cols - 1); ++x) {
-        if (depth.at<double>(y, x) <= point.z()) continue;
-        depth.at<double>(y, x) = point.z();
-        image.at<cv::Vec3b>(y, x) = colour;
+    for (int y = std::max(v - k_splat, 0); y <= std::min(v + k_splat, camera.height - 1); ++y) {
+      for (int x = std::max(u - k_splat, 0); x <= std::min(u + k_splat, camera.width - 1); ++x) {
+        const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) +
+                        static_cast<std::size_t>(x);
+        if (depth[at] <= point.z()) continue;
+        depth[at] = point.z();
+        image[at] = colour;
       }
     }
   }
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".png", image, bytes);
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (const std::string reason = write_whole_file(path, text); !reason.empty()) {
-    throw InputError(path + ": cannot be written: " + reason + "; expected a place for a picture");
-  }
+  write_png(path, camera.width, camera.height, 3, image.data()->data(), "a place for a picture");
 }
 
 }  // namespace glint

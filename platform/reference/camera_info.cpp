@@ -3,11 +3,12 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <map>
+#include <sstream>
 #include <vector>
 
 #include "platform/input_error.hpp"
+#include "platform/read_file.hpp"
 
 namespace glint {
 namespace {
@@ -45,8 +46,7 @@ void add_numbers(const std::string& text, Entry& entry) {
 
 // The names of nested keys are joined: camera_matrix/data.
 Entries entries_of(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw InputError(path + ": cannot be opened; expected a camera_info YAML file");
+  std::istringstream file(read_file(path, k_text_bytes_max, "a camera_info YAML file"));
   Entries entries;
   std::string line, above, key;
   for (int number = 1; std::getline(file, line); ++number) {

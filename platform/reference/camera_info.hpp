@@ -13,7 +13,7 @@ namespace glint {
 [[nodiscard]] CameraModel read_camera_info(const std::string& path);
 
 // The frame that such a message names (header: frame_id); empty: none, as in a calibration file.
-// Throws InputError where it cannot be opened.
+// Throws InputError where it cannot be read.
 [[nodiscard]] std::string read_camera_frame(const std::string& path);
 
 }  // namespace glint

@@ -5,12 +5,11 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 
 #include "platform/input_error.hpp"
 #include "platform/mapping/cloud_files.hpp"
 #include "platform/sensors/npy.hpp"
-#include "platform/sensors/read_picture.hpp"
+#include "platform/sensors/picture_file.hpp"
 
 namespace glint {
 namespace {
@@ -45,10 +44,10 @@ NpyNumbers npy_picture(const std::string& path, const CameraModel& camera) {
   return array;
 }
 
-cv::Mat png_picture(const std::string& path, const CameraModel& camera) {
-  cv::Mat picture = read_picture(path, cv::IMREAD_UNCHANGED, "a PNG picture");
-  check_size(path, static_cast<std::size_t>(picture.cols), static_cast<std::size_t>(picture.rows),
-             camera);
+Picture png_picture(const std::string& path, const CameraModel& camera) {
+  Picture picture = read_png(path, "a PNG picture");
+  check_size(path, static_cast<std::size_t>(picture.width),
+             static_cast<std::size_t>(picture.height), camera);
   return picture;
 }
 
@@ -67,15 +66,11 @@ DepthImage read_depth(const std::string& path, const CameraModel& camera) {
     const double scale = array.integer ? 1e-3 : 1;
     for (const double value : array.values) out.z_m.push_back(depth_of(value * scale));
   } else if (kind == ".png") {
-    const cv::Mat picture = png_picture(path, camera);
-    if (picture.type() != CV_16UC1) {
+    const Picture picture = png_picture(path, camera);
+    if (picture.channels != 1 || picture.bits != 16) {
       throw InputError(path + ": expected one channel of 16 bit, millimetres");
     }
-    for (int y = 0; y < picture.rows; ++y) {
-      for (int x = 0; x < picture.cols; ++x) {
-        out.z_m.push_back(depth_of(1e-3 * picture.at<std::uint16_t>(y, x)));
-      }
-    }
+    for (const std::uint16_t value : picture.values) out.z_m.push_back(depth_of(1e-3 * value));
   } else {
     throw InputError(path + ": expected depth as .npy, .png, .pcd or .ply");
   }
@@ -112,12 +107,12 @@ MaskPicture read_mask(const std::string& path, const CameraModel& camera) {
   if (kind_of(path) == ".npy") {
     for (const double value : npy_picture(path, camera).values) out.on.push_back(value != 0);
   } else if (kind_of(path) == ".png") {
-    const cv::Mat picture = png_picture(path, camera);
-    if (picture.depth() != CV_8U) throw InputError(path + ": expected a mask of 8 bit");
-    for (int y = 0; y < picture.rows; ++y) {
-      for (int x = 0; x < picture.cols; ++x) {
-        out.on.push_back(picture.ptr(y)[x * picture.channels()] != 0);
-      }
+    const Picture picture = png_picture(path, camera);
+    if (picture.bits != 8) throw InputError(path + ": expected a mask of 8 bit");
+    const auto channels = static_cast<std::size_t>(picture.channels);
+    for (std::size_t i = 0; i < picture.values.size(); i += channels) {
+      const auto* pixel = picture.values.data() + i;
+      out.on.push_back(std::any_of(pixel, pixel + channels, [](int value) { return value != 0; }));
     }
   } else {
     throw InputError(path + ": expected a mask as .png or .npy");

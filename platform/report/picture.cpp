@@ -4,13 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <string_view>
 #include <vector>
 
 #include "platform/input_error.hpp"
-#include "platform/part_file.hpp"
+#include "platform/sensors/picture_file.hpp"
 
 namespace glint {
 namespace {
@@ -86,16 +84,6 @@ void draw_blobs(cv::Mat& picture, const Blobs& blobs, const Markers& markers) {
   }
 }
 
-void save(const std::string& path, const cv::Mat& picture) {
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".png", picture, bytes);
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (const std::string reason = write_whole_file(path, text); !reason.empty()) {
-    throw InputError(path + ": cannot be written: " + reason +
-                     "; expected a path in a writable folder");
-  }
-}
-
 }  // namespace
 
 void write_picture(const std::string& path, const Frame& frame, const Rois& rois,
@@ -118,7 +106,8 @@ void write_picture(const std::string& path, const Frame& frame, const Rois& rois
     write_text(picture, line, {6, baseline}, k_text_colour);
     baseline += k_line_height;
   }
-  save(path, picture);
+  cv::cvtColor(picture, picture, cv::COLOR_BGR2RGB);
+  write_png(path, picture.cols, picture.rows, 3, picture.data, "a path in a writable folder");
 }
 
 }  // namespace glint

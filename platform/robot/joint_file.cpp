@@ -4,11 +4,12 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <optional>
+#include <sstream>
 
 #include "kernels/robot/forward_kinematics.hpp"
 #include "platform/input_error.hpp"
+#include "platform/read_file.hpp"
 #include "platform/sensors/npy.hpp"
 
 namespace glint {
@@ -41,8 +42,7 @@ std::vector<std::string> words_of(const std::string& line) {
 }
 
 std::vector<Position> text_positions(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw InputError(path + ": cannot be opened; expected joint positions");
+  std::istringstream file(read_file(path, k_text_bytes_max, "joint positions"));
   std::vector<Position> positions;
   std::string line, name;
   for (int number = 1; std::getline(file, line); ++number) {

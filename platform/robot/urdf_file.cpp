@@ -5,20 +5,18 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <string_view>
 
 #include "kernels/robot/joint_tree.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
+#include "platform/read_file.hpp"
 
 namespace glint {
 namespace {
 
-constexpr std::uintmax_t k_urdf_bytes_max = 16u << 20;
+constexpr std::size_t k_urdf_bytes_max = 16u << 20;
 constexpr int k_nesting_max = 64;     // XML parsers recurse for every level; a URDF has five
 constexpr int k_attributes_max = 64;  // of one element
 
@@ -39,18 +37,6 @@ class Complaints : public console_bridge::OutputHandler {
  private:
   std::string first_;
 };
-
-std::string text_of(const std::string& path) {
-  std::error_code failed;
-  const std::uintmax_t size = std::filesystem::file_size(path, failed);
-  std::ifstream file(path, std::ios::binary);
-  if (failed || !file) throw InputError(path + ": cannot be opened; expected a URDF file");
-  if (size > k_urdf_bytes_max) {
-    throw InputError(path + ": " + std::to_string(size) + " bytes; expected a URDF of at most " +
-                     std::to_string(k_urdf_bytes_max));
-  }
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 [[noreturn]] void refuse(const std::string& path, int line, const std::string& found) {
   throw InputError(path + ":" + std::to_string(line) + ": " + found + "; expected a URDF");
@@ -179,7 +165,7 @@ void check_tree(const tinyxml2::XMLElement& robot, const std::string& path) {
 
 }  // namespace
 
-UrdfFile read_urdf(const std::string& path) { return read_urdf_text(text_of(path), path); }
+UrdfFile read_urdf(const std::string& path) { return read_urdf_text(read_file(path, k_urdf_bytes_max, "a URDF file"), path); }
 
 UrdfFile read_urdf_text(const std::string& text, const std::string& from) {
   tinyxml2::XMLDocument document;

@@ -7,13 +7,12 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "kernels/geometry.hpp"
+#include "platform/read_file.hpp"
 
 namespace glint {
 
@@ -33,10 +32,8 @@ struct C3dTrial {
 
 class C3dFile {
  public:
-  explicit C3dFile(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    bytes_.assign(std::istreambuf_iterator<char>(in), {});
-  }
+  explicit C3dFile(const std::string& path)
+      : bytes_(read_file(path, k_data_bytes_max, "a C3D file")) {}
 
   // No frames where the file is not of this kind.
   [[nodiscard]] C3dTrial read() const {
@@ -112,7 +109,7 @@ class C3dFile {
     return result;
   }
 
-  std::vector<char> bytes_;
+  std::string bytes_;
 };
 
 }  // namespace glint

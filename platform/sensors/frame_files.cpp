@@ -1,10 +1,11 @@
 #include "platform/sensors/frame_files.hpp"
 
-#include <fstream>
-#include <iterator>
+#include <cstdint>
 
+#include "kernels/limits.hpp"
 #include "platform/input_error.hpp"
-#include "platform/sensors/pgm.hpp"
+#include "platform/read_file.hpp"
+#include "platform/sensors/picture_file.hpp"
 
 namespace glint {
 namespace {
@@ -17,9 +18,7 @@ constexpr int k_adi_brightness_shift = 32;
 constexpr std::size_t k_adi_pixel_bytes = 5;
 
 std::string read_exactly(const std::string& path, std::size_t expected, const std::string& what) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path + ": cannot be opened; expected " + what);
-  std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::string bytes = read_file(path, k_data_bytes_max, what);
   if (bytes.size() != expected) {
     throw InputError(path + ": " + std::to_string(bytes.size()) + " bytes; expected " +
                      std::to_string(expected) + ", " + what);
@@ -79,8 +78,9 @@ FrameBuffer load_pgm_pair(const std::string& path) {
   const std::string ending = "_ab.pgm";
   const std::string name = ends_with(path, ending) ? path.substr(0, path.size() - ending.size())
                                                    : path.substr(0, path.size() - 4);
-  Pgm depth = read_pgm_16(name + ".pgm");
-  Pgm brightness = read_pgm_16(name + ending);
+  const PgmLimits limits{k_width_max, k_height_max, 16};
+  Picture depth = read_pgm(name + ".pgm", limits);
+  Picture brightness = read_pgm(name + ending, limits);
   if (depth.width != brightness.width || depth.height != brightness.height) {
     throw InputError(name + ending + ": " + std::to_string(brightness.width) + " x " +
                      std::to_string(brightness.height) + "; expected " +
@@ -90,8 +90,8 @@ FrameBuffer load_pgm_pair(const std::string& path) {
   FrameBuffer buffer;
   buffer.width = depth.width;
   buffer.height = depth.height;
-  buffer.depth = std::move(depth.pixels);
-  buffer.reflectivity_16 = std::move(brightness.pixels);
+  buffer.depth = std::move(depth.values);
+  buffer.reflectivity_16 = std::move(brightness.values);
   return buffer;
 }
 

@@ -3,10 +3,9 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 
 #include "platform/input_error.hpp"
+#include "platform/read_file.hpp"
 
 namespace glint {
 namespace {
@@ -17,7 +16,7 @@ static_assert(std::endian::native == std::endian::little);
 // on u32), then a Python dictionary with descr, fortran_order and shape.
 constexpr char k_magic[] = "\x93NUMPY";
 constexpr std::size_t k_magic_length = 6;
-constexpr std::streamoff k_bytes_max = 256 << 20;
+constexpr std::size_t k_npy_bytes_max = 256 << 20;
 
 std::string value_after(const std::string& header, const std::string& key) {
   const std::size_t at = header.find("'" + key + "'");
@@ -52,15 +51,8 @@ struct NpyFile {
 };
 
 NpyFile read_npy(const std::string& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) throw InputError(path + ": cannot be opened; expected a .npy file");
-  if (file.tellg() > k_bytes_max) {
-    throw InputError(path + ": " + std::to_string(file.tellg()) + " bytes; expected at most " +
-                     std::to_string(k_bytes_max));
-  }
-  file.seekg(0);
   NpyFile out;
-  out.bytes.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  out.bytes = read_file(path, k_npy_bytes_max, "a .npy file");
   const std::string& bytes = out.bytes;
   if (bytes.size() < 12 || std::memcmp(bytes.data(), k_magic, k_magic_length) != 0) {
     throw InputError(path + ":byte 0: no NumPy magic; expected a .npy file");

@@ -1,13 +1,12 @@
-#include "platform/sensors/pgm.hpp"
-
-#include <fstream>
-#include <iterator>
-
-#include "kernels/limits.hpp"
 #include "platform/input_error.hpp"
+#include "platform/read_file.hpp"
+#include "platform/sensors/picture_file.hpp"
 
 namespace glint {
 namespace {
+
+constexpr std::uint64_t k_pixels_max = 64'000'000;
+constexpr std::size_t k_pgm_bytes_max = 2 * k_pixels_max + 4096;  // and a head with comments
 
 struct Reader {
   const std::string& path;
@@ -48,30 +47,46 @@ struct Reader {
 
 }  // namespace
 
-Pgm read_pgm_16(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path + ": cannot be opened; expected a 16-bit PGM picture");
-  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+void check_picture_size(const std::string& path, std::size_t place, std::uint64_t width,
+                        std::uint64_t height) {
+  if (width <= k_picture_side_max && height <= k_picture_side_max && width * height <= k_pixels_max) return;
+  throw InputError(path + ":byte " + std::to_string(place) + ": " + std::to_string(width) + " x " +
+                   std::to_string(height) + " pixels; expected at most " +
+                   std::to_string(k_picture_side_max) + " a side and " + std::to_string(k_pixels_max) +
+                   " in all");
+}
+
+Picture read_pgm(const std::string& path, const PgmLimits& limits) {
+  const std::string bytes = read_file(path, k_pgm_bytes_max, "a binary PGM picture");
   if (bytes.compare(0, 2, "P5") != 0) {
     throw InputError(path + ":byte 0: does not begin with P5; expected a binary PGM picture");
   }
   Reader reader{path, bytes};
-  Pgm out;
-  out.width = reader.number("a width", 1, k_width_max);
-  out.height = reader.number("a height", 1, k_height_max);
-  reader.number("a maxval for 16 bits", 256, 65535);
+  Picture out;
+  out.width = reader.number("a width", 1, limits.width);
+  out.height = reader.number("a height", 1, limits.height);
+  check_picture_size(path, reader.at, static_cast<std::uint64_t>(out.width),
+                     static_cast<std::uint64_t>(out.height));
+  const bool deep = limits.bits_min > 8;
+  out.bits = reader.number(deep ? "a maxval for 16 bits" : "a maxval", deep ? 256 : 1, 65535) > 255
+                 ? 16
+                 : 8;
   ++reader.at;  // the single blank before the pixels
+  const std::size_t size = out.bits == 16 ? 2 : 1;
   const std::size_t count =
       static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height);
   const std::size_t found = bytes.size() > reader.at ? bytes.size() - reader.at : 0;
-  if (found != 2 * count) {
-    reader.fail(std::to_string(found) + " bytes of pixels", std::to_string(2 * count));
+  if (found != size * count) {
+    reader.fail(std::to_string(found) + " bytes of pixels", std::to_string(size * count));
   }
-  out.pixels.resize(count);
+  out.values.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto high = static_cast<std::uint8_t>(bytes[reader.at + 2 * i]);
-    const auto low = static_cast<std::uint8_t>(bytes[reader.at + 2 * i + 1]);
-    out.pixels[i] = static_cast<std::uint16_t>(high << 8 | low);
+    std::uint16_t value = 0;
+    for (std::size_t k = 0; k < size; ++k) {  // the high byte comes first
+      value = static_cast<std::uint16_t>(
+          value << 8 | static_cast<std::uint8_t>(bytes[reader.at + size * i + k]));
+    }
+    out.values[i] = value;
   }
   return out;
 }

@@ -3,10 +3,9 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "platform/input_error.hpp"
+#include "platform/read_file.hpp"
 
 namespace glint {
 namespace {
@@ -97,12 +96,8 @@ std::vector<PointFrame> points_from_text(std::string_view text, const std::strin
 }
 
 std::vector<PointFrame> load_points(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) {
-    throw InputError(path + ": cannot be read; expected a file of rows " + std::string(k_heading));
-  }
-  return points_from_text(text.str(), path);
+  const std::string expected = "a file of rows " + std::string(k_heading);
+  return points_from_text(read_file(path, k_data_bytes_max, expected), path);
 }
 
 Markers markers_from_points(const std::vector<Vector3>& points_m) {

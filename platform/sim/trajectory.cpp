@@ -4,12 +4,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <string_view>
 #include <utility>
 
 #include "platform/input_error.hpp"
+#include "platform/read_file.hpp"
 
 namespace glint::sim {
 namespace {
@@ -125,11 +124,8 @@ Trajectory trajectory_from_text(const std::string& text, const std::string& name
 }
 
 Trajectory load_trajectory(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path + ": cannot be read; expected a trajectory, " + k_tum);
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.bad()) throw InputError(path + ": reading failed; expected a trajectory");
-  return trajectory_from_text(text, path);
+  return trajectory_from_text(read_file(path, k_data_bytes_max, std::string("a trajectory, ") + k_tum),
+                              path);
 }
 
 }  // namespace glint::sim

@@ -13,7 +13,7 @@
 #include "platform/robot/urdf_file.hpp"
 #include "platform/sensors/c3d_reader.hpp"
 #include "platform/sensors/npy.hpp"
-#include "platform/sensors/pgm.hpp"
+#include "platform/sensors/picture_file.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/memory_file.hpp"
 
@@ -24,15 +24,15 @@ void read_rom(Bytes bytes) { (void)tool_from_rom_bytes(text_of(bytes), "tool.rom
 
 void read_npy(Bytes bytes) { (void)read_npy_numbers(file_of(bytes)); }
 
-void read_pgm(Bytes bytes) {
-  const Pgm picture = read_pgm_16(file_of(bytes));
-  expect(picture.pixels.size() ==
+void read_pgm_file(Bytes bytes) {
+  const Picture picture = read_pgm(file_of(bytes));
+  expect(picture.values.size() ==
              static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height),
          "as many pixels as its size says");
 }
 
-// OpenCV decodes it, after its size was compared.
-void read_png(Bytes bytes) {
+// libspng decodes it, after its size was compared.
+void read_png_file(Bytes bytes) {
   CameraModel camera;
   camera.width = 8;
   camera.height = 4;
@@ -71,8 +71,8 @@ void read_c3d(Bytes bytes) { (void)C3dFile(file_of(bytes)).read(); }
 constexpr Target k_file_targets[] = {
     {"rom_tool", read_rom},
     {"npy", read_npy},
-    {"pgm", read_pgm},
-    {"png", read_png},
+    {"pgm", read_pgm_file},
+    {"png", read_png_file},
     {"pcd", read_pcd_cloud},
     {"ply", read_ply_cloud},
     {"robot_cloud", read_robot_cloud_file},

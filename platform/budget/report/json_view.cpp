@@ -1,11 +1,10 @@
 #include "platform/budget/report/json_view.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
-#include <sstream>
 
 #include "platform/input_error.hpp"
+#include "platform/read_file.hpp"
 
 namespace glint {
 
@@ -27,12 +26,7 @@ ordered_json parse(const std::string& text, const std::string& path) {
 }  // namespace
 
 JsonView JsonView::of_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  if (!file || !(text << file.rdbuf())) {
-    throw InputError(path + ": cannot be read; expected a JSON file of glint");
-  }
-  const std::string content = text.str();
+  const std::string content = read_file(path, k_text_bytes_max, "a JSON file of glint");
   JsonView view;
   try {
     view.root_ = std::make_shared<const ordered_json>(parse(content, path));

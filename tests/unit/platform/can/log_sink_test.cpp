@@ -7,6 +7,7 @@
 #include "platform/can/can_sink.hpp"
 #include "platform/can/candump_line.hpp"
 #include "tests/unit/platform/can/temporary_folder.hpp"
+#include "tests/unit/text_of.hpp"
 
 namespace glint::log_sink_test {
 namespace {

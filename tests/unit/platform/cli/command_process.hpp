@@ -9,14 +9,13 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "tests/unit/beside_test.hpp"
+#include "tests/unit/text_of.hpp"
 
 namespace glint {
 
@@ -73,10 +72,7 @@ class CommandProcess {
   void interrupt() {
     if (!has_ended()) kill(process_, SIGINT);
   }
-  [[nodiscard]] std::string words() const {
-    std::ifstream file(log_);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  [[nodiscard]] std::string words() const { return text_of(log_); }
 
  private:
   // Under a sanitizer on a busy machine, too.

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "platform/record/mcap_writer.hpp"
 #include "tests/unit/platform/record/recording_samples.hpp"
+#include "tests/unit/text_of.hpp"
 
 namespace glint::mcap_bytes_test {
 namespace {
@@ -98,8 +98,7 @@ class McapBytes : public testing::Test {
       }
       EXPECT_TRUE(writer.close("closing", {{"b", "2"}, {"c", ""}}));
     }
-    std::ifstream in(path_, std::ios::binary);
-    file_.assign(std::istreambuf_iterator<char>(in), {});
+    file_ = text_of(path_);
     EXPECT_GT(file_.size(), 100U);
     const Text magic = "\x89MCAP0\r\n";
     EXPECT_EQ(file_.substr(0, 8), magic);

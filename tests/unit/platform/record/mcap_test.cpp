@@ -9,6 +9,7 @@
 #include "platform/record/crc32.hpp"
 #include "platform/record/mcap_writer.hpp"
 #include "tests/unit/platform/record/recording_samples.hpp"
+#include "tests/unit/text_of.hpp"
 
 namespace glint {
 namespace {
@@ -33,8 +34,8 @@ void write_file(const std::string& path) {
 }
 
 Bytes read_whole(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  const std::string text = text_of(path);
+  return {text.begin(), text.end()};
 }
 
 void write_whole(const std::string& path, const Bytes& bytes) {

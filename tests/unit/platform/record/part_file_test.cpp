@@ -11,7 +11,6 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 
 #include "platform/folder_lock.hpp"
@@ -19,14 +18,10 @@
 #include "platform/record/recording_reader.hpp"
 #include "platform/record/recording_writer.hpp"
 #include "tests/unit/platform/record/recording_samples.hpp"
+#include "tests/unit/text_of.hpp"
 
 namespace glint {
 namespace {
-
-std::string text_in(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 TEST(PartFile, HasANameOfItsOwn) {
   const TemporaryFolder folder;
@@ -43,7 +38,7 @@ TEST(WriteWholeFile, ReplacesAFileAndLeavesNothingElse) {
   const std::string path = folder.file("a.json");
   EXPECT_EQ(write_whole_file(path, "one"), "");
   EXPECT_EQ(write_whole_file(path, "two"), "");
-  EXPECT_EQ(text_in(path), "two");
+  EXPECT_EQ(text_of(path), "two");
   EXPECT_FALSE(std::filesystem::exists(path + ".part"));
   EXPECT_NE(write_whole_file(folder.file("nowhere/a"), "three"), "");
 }
@@ -66,8 +61,8 @@ TEST(WriteWholeFile, ReplacesASymbolicLinkAndNotItsTarget) {
   std::ofstream(folder.file("target")) << "kept";
   std::filesystem::create_symlink(folder.file("target"), folder.file("link"));
   EXPECT_EQ(write_whole_file(folder.file("link"), "new"), "");
-  EXPECT_EQ(text_in(folder.file("target")), "kept");
-  EXPECT_EQ(text_in(folder.file("link")), "new");
+  EXPECT_EQ(text_of(folder.file("target")), "kept");
+  EXPECT_EQ(text_of(folder.file("link")), "new");
 }
 
 void record_one_choice(const std::string& path) {
@@ -82,7 +77,7 @@ TEST(Recording, KeepsTheUnfinishedFileOfACrashedRun) {
   std::ofstream(path + ".part") << "of a crashed run";
   record_one_choice(path);
   RecordingReader reader(path);
-  EXPECT_EQ(text_in(path + ".part"), "of a crashed run");
+  EXPECT_EQ(text_of(path + ".part"), "of a crashed run");
 }
 
 TEST(Recording, FollowsNoSymbolicLink) {
@@ -151,7 +146,7 @@ TEST(FolderLock, FollowsNoSymbolicLink) {
   std::ofstream(folder.file("target")) << "kept";
   std::filesystem::create_symlink(folder.file("target"), folder.file(".glint.lock"));
   EXPECT_THROW(FolderLock lock(folder.file("")), InputError);
-  EXPECT_EQ(text_in(folder.file("target")), "kept");
+  EXPECT_EQ(text_of(folder.file("target")), "kept");
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ TEST(DepthPicture, RefusesAnotherSizeNoDepthAndUnknownKinds) {
   expect_input_error([&] { (void)read_depth(files.write("a.png", "no"), camera(2, 1)); },
                      {"a.png", "PNG"});
   expect_input_error([&] { (void)read_mask(files.folder() + "/m.png", camera(2, 1)); },
-                     {"m.png", "cannot be opened"});
+                     {"m.png", "cannot be read"});
 }
 
 // OpenCV takes memory for every pixel that the head of a file names.

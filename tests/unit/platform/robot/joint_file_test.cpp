@@ -43,7 +43,7 @@ TEST(JointFile, NamesWhatIsWrong) {
   expect_input_error([&] { (void)read(files, "pan 1\nlift 3"); }, {"'slide'"});
   expect_input_error([&] { (void)read(files, "pan one"); }, {"joints.txt:1", "'one'"});
   expect_input_error([&] { (void)read_joint_positions(files.folder() + "/no.txt", k_inputs); },
-                     {"no.txt", "cannot be opened"});
+                     {"no.txt", "cannot be read"});
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ TEST(RobotModel, RefusesWhatIsNoUrdfWithItsLine) {
       [&] {
         (void)load_robot({files.folder() + "/none.urdf", {}});
       },
-      {"none.urdf", "cannot be opened"});
+      {"none.urdf", "cannot be read"});
   std::string deep;
   for (int i = 0; i < 100'000; ++i) deep += "<a>";
   expect_input_error(

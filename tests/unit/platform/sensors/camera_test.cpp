@@ -112,7 +112,7 @@ TEST(RayTableFile, IsRefusedByNameWithWhatWasExpected) {
   }
   EXPECT_NE(message_of<InputError>([&] {
               (void)with_ray_table(small_camera(), folder.path("none.npy"));
-            }).find("cannot be opened"),
+            }).find("cannot be read"),
             std::string::npos);
 }
 

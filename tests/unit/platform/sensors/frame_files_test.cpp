@@ -76,7 +76,7 @@ TEST(FrameFiles, RefuseAWrongSizeSayingFoundAndExpected) {
             0u);
   const std::string longer = folder.write("g.bin", std::string(k_pixels * 4 + 1, 'x'));
   EXPECT_NE(refusal(longer, FrameFileLayout::ahat).find("1048577 bytes"), std::string::npos);
-  EXPECT_NE(refusal(folder.path("none"), FrameFileLayout::adi).find("cannot be opened"),
+  EXPECT_NE(refusal(folder.path("none"), FrameFileLayout::adi).find("cannot be read"),
             std::string::npos);
 }
 
@@ -108,7 +108,7 @@ TEST(FrameFiles, RefusePicturesThatAreNotSixteenBitPgm) {
 TEST(FrameFiles, RefuseAPgmWithoutItsTwinOrWithOneOfAnotherSize) {
   const TemporaryFolder folder;
   const std::string depth = folder.write("1.pgm", "P5 2 1 65535 abcd");
-  EXPECT_NE(refusal(depth, FrameFileLayout::pgm).find("1_ab.pgm: cannot be opened"),
+  EXPECT_NE(refusal(depth, FrameFileLayout::pgm).find("1_ab.pgm: cannot be read"),
             std::string::npos);
   folder.write("1_ab.pgm", "P5 1 2 65535 abcd");
   EXPECT_NE(refusal(depth, FrameFileLayout::pgm).find("1 x 2; expected 2 x 1"), std::string::npos);

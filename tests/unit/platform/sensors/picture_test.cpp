@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 #include <vector>
 
 #include "platform/input_error.hpp"
+#include "platform/sensors/picture_file.hpp"
 #include "tests/unit/platform/sensors/temporary_folder.hpp"
 
 namespace glint {
@@ -24,13 +24,11 @@ struct Scene {
   Scene() { frame.reflectivity_16 = {pixels.data(), 64, 48}; }
 };
 
-int coloured(const cv::Mat& picture) {
+int coloured(const Picture& picture) {
   int count = 0;
-  for (int y = 0; y < picture.rows; ++y) {
-    for (int x = 0; x < picture.cols; ++x) {
-      const auto& p = picture.at<cv::Vec3b>(y, x);
-      count += p[0] != p[1] || p[1] != p[2];
-    }
+  for (std::size_t i = 0; i < picture.values.size(); i += 3) {
+    const std::uint16_t* pixel = picture.values.data() + i;
+    count += pixel[0] != pixel[1] || pixel[1] != pixel[2];
   }
   return count;
 }
@@ -40,9 +38,9 @@ TEST(Picture, DrawsRoisAndBlobsInColourOnTheGreyFrame) {
   Scene scene;
   const std::string path = folder.path("p.png");
   write_picture(path, scene.frame, scene.rois, *scene.blobs, *scene.markers, {});
-  const cv::Mat plain = cv::imread(path);
-  ASSERT_EQ(plain.cols, 128);
-  ASSERT_EQ(plain.rows, 96);
+  const Picture plain = read_png(path, "");
+  ASSERT_EQ(plain.width, 128);
+  ASSERT_EQ(plain.height, 96);
   EXPECT_EQ(coloured(plain), 0);
 
   scene.rois.items[0] = {4, 4, 60, 40};
@@ -53,9 +51,9 @@ TEST(Picture, DrawsRoisAndBlobsInColourOnTheGreyFrame) {
   scene.blobs->count = 1;
   const std::vector<std::string> lines{"tools: none", "blobs: 1"};
   write_picture(path, scene.frame, scene.rois, *scene.blobs, *scene.markers, lines);
-  const cv::Mat drawn = cv::imread(path);
-  EXPECT_EQ(drawn.cols, 128);
-  EXPECT_GT(drawn.rows, 96 + 2 * 16);
+  const Picture drawn = read_png(path, "");
+  EXPECT_EQ(drawn.width, 128);
+  EXPECT_GT(drawn.height, 96 + 2 * 16);
   EXPECT_GT(coloured(drawn), 200);
   EXPECT_FALSE(std::filesystem::exists(path + ".part"));
 }
@@ -65,8 +63,8 @@ TEST(Picture, ShowsADimRoomBesideABrightMarker) {
   Scene scene;
   scene.pixels[20 * 64 + 30] = 60000;
   write_picture(folder.path("p.png"), scene.frame, scene.rois, *scene.blobs, *scene.markers, {});
-  const cv::Mat picture = cv::imread(folder.path("p.png"));
-  EXPECT_GT(picture.at<cv::Vec3b>(10, 10)[0], 50);
+  const Picture picture = read_png(folder.path("p.png"), "");
+  EXPECT_GT(picture.values[3 * (10 * 128 + 10)], 50);
 }
 
 TEST(Picture, RefusesAPathThatCannotBeWritten) {

@@ -1,7 +1,5 @@
 // Buttons pressed while a run goes on: what left of them comes out of its recording again.
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <span>
 
 #include "platform/session/replay.hpp"
@@ -9,6 +7,7 @@
 #include "tests/unit/platform/session/overrun_log.hpp"
 #include "tests/unit/platform/session/run_with_buttons.hpp"
 #include "tests/unit/platform/session/same_bytes.hpp"
+#include "tests/unit/text_of.hpp"
 
 namespace glint {
 namespace {
@@ -39,11 +38,6 @@ SessionResult pressed_run(const Cell& cell, const std::string& folder) {
   options.out = folder;
   options.injections = {{"", 1, true, k_late, cell.deadlines.tick + Duration{1}}};
   return run_with_buttons(cell, pressed_on_the_way(), options);
-}
-
-std::string text_of(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 class ButtonsReplay : public testing::TestWithParam<const char*> {};

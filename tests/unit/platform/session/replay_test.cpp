@@ -2,7 +2,6 @@
 
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <string_view>
 
 #include "platform/cells/tool_writer.hpp"
@@ -12,6 +11,7 @@
 #include "platform/session/choices.hpp"
 #include "tests/unit/platform/session/same_bytes.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
+#include "tests/unit/text_of.hpp"
 
 namespace glint {
 namespace {
@@ -56,17 +56,12 @@ TEST(Replay, GivesTheSameBytesAsARunWithTwoWorkers) {
   EXPECT_EQ(short_run(cell, two.path()).output_sha256, expected);
 }
 
-std::string bytes_of_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 // A run of chunks of a second each, at every level that decides again.
 class ReplayOfWhatIsLeft : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
     run_ = short_run(short_cell(seconds(), GetParam()), folder_.path());
-    bytes_ = bytes_of_file(run_.recording_file);
+    bytes_ = text_of(run_.recording_file);
   }
   // At level full a chunk has few frames, at others a second's.
   static double seconds() { return std::string_view(GetParam()) == "full" ? 1.4 : 3.5; }
