@@ -5,7 +5,7 @@
 
 #include "platform/calibrate/align_refine.hpp"
 #include "platform/calibrate/align_start.hpp"
-#include "platform/calibrate/largest_sigma.hpp"
+#include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/robust.hpp"
 #include "platform/calibrate/say.hpp"
 #include "platform/calibrate/smooth_series.hpp"

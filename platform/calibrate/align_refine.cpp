@@ -2,8 +2,7 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/Eigenvalues>
-
+#include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/pose_block.hpp"
 #include "platform/calibrate/robust.hpp"
 
@@ -74,11 +73,11 @@ void invert(const Information& information, LeverArm lever_arm, AlignFit& fit) {
   const Eigen::MatrixXd part = information.jacobians(free, free);
   const Eigen::VectorXd unit = part.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = unit.asDiagonal() * part * unit.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
-  fit.determined = solver.eigenvalues()[0] > k_eigenvalue_min;
+  fit.determined = symmetric_eigen(scaled).values[0] > k_eigenvalue_min;
   if (!fit.determined) return;
-  const Eigen::MatrixXd inverse = unit.asDiagonal() * scaled.inverse() * unit.asDiagonal();
-  const Eigen::MatrixXd covariance = inverse * information.scores(free, free) * inverse;
+  const Eigen::MatrixXd inverse = unit.asDiagonal() * inverse_of(scaled) * unit.asDiagonal();
+  const Eigen::MatrixXd left = inverse.lazyProduct(information.scores(free, free));
+  const Eigen::MatrixXd covariance = left.lazyProduct(inverse);
   for (std::size_t i = 0; i < free.size(); ++i)
     for (std::size_t j = 0; j < free.size(); ++j)
       fit.covariance(free[i], free[j]) =

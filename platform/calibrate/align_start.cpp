@@ -1,10 +1,10 @@
 #include "platform/calibrate/align_start.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "kernels/pose/best_rotation.hpp"
+#include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/robust.hpp"
 
 namespace glint {
@@ -79,7 +79,7 @@ void translations(std::span<const AlignSample> samples, LeverArm lever_arm, Alig
       right += weights[i] * row.transpose() * seen;
     }
     if (lever_arm == LeverArm::none) normal.topLeftCorner<3, 3>().setIdentity();
-    const Eigen::Matrix<double, 6, 1> solution = normal.ldlt().solve(right);
+    const Eigen::Matrix<double, 6, 1> solution = solve_symmetric(normal, right);
     start.y.translation = solution.head<3>();
     start.x.translation = solution.tail<3>();
     for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -1,8 +1,9 @@
 #include "platform/calibrate/bundle.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+
+#include "platform/calibrate/dense.hpp"
 
 namespace glint {
 
@@ -40,17 +41,17 @@ std::vector<double> marker_sigmas(const Bundle& bundle, std::span<const Labelled
       mixed.middleRows<3>(at) += row;
       pose += row.transpose() * row;
     }
-    information -=
-        mixed * pose.completeOrthogonalDecomposition().pseudoInverse() * mixed.transpose();
+    const Eigen::MatrixXd taken = mixed.lazyProduct(pseudo_inverse_of(pose));
+    information -= taken.lazyProduct(mixed.transpose());
   }
   // The tool's own place and turn are no property of it: six free ways are left out.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
+  const SymmetricEigen ways = symmetric_eigen(information);
   std::vector<double> sigmas;
   for (Eigen::Index at = 0; at < size; at += 3) {
     double variance = 0;
     for (Eigen::Index i = 6; i < size; ++i) {
-      variance += solver.eigenvectors().col(i).segment<3>(at).squaredNorm() /
-                  std::max(solver.eigenvalues()[i], 1e-12);
+      variance += ways.vectors.col(i).segment<3>(at).squaredNorm() /
+                  std::max(ways.values[i], 1e-12);
     }
     sigmas.push_back(noise_m * std::sqrt(variance / 3));
   }

@@ -2,11 +2,10 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <memory>
 
 #include "platform/calibrate/correlation.hpp"
+#include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/pose_block.hpp"
 #include "platform/calibrate/robust.hpp"
 
@@ -77,8 +76,8 @@ void judge(const std::vector<RangedFrame>& frames, Brightness brightness, DepthF
   for (const RangedFrame& frame : frames) {
     const FrameRows rows = rows_of(frame, fit.bias);
     if (rows.residuals.size() < 9) continue;  // fewer than three markers
-    const Eigen::LDLT<Matrix6> of_pose(rows.by_pose.transpose() * rows.by_pose);
-    const Eigen::MatrixXd pose_part = of_pose.solve(rows.by_pose.transpose());  // 6 x rows
+    const Eigen::MatrixXd pose_part =  // 6 x rows
+        solve_symmetric(rows.by_pose.transpose() * rows.by_pose, rows.by_pose.transpose());
     const BiasRows free = rows.by_bias - rows.by_pose * (pose_part * rows.by_bias);
     information += free.transpose() * free;
     scores.push_back(free.transpose() * rows.residuals);
@@ -93,10 +92,12 @@ void judge(const std::vector<RangedFrame>& frames, Brightness brightness, DepthF
   fit.range_variance = squares[1] / std::max(redundancy[1], 1.0);
   const Vector3 unit = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Matrix3 scaled = unit.asDiagonal() * information * unit.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(scaled);
-  fit.determined = solver.eigenvalues()[0] > k_bias_eigenvalue_min;
+  const SymmetricEigen axes = symmetric_eigen(scaled);
+  fit.determined = axes.values[0] > k_bias_eigenvalue_min;
   if (!fit.determined) return;
-  const Matrix3 root = solver.operatorInverseSqrt();
+  const Matrix3 directions = axes.vectors;
+  const Matrix3 root =
+      directions * axes.values.cwiseSqrt().cwiseInverse().asDiagonal() * directions.transpose();
   for (Vector3& score : scores) score = root * (unit.asDiagonal() * score);
   fit.correlated = correlation_factor(scores);
   fit.covariance = fit.correlated * (unit.asDiagonal() * scaled.inverse() * unit.asDiagonal());

@@ -2,8 +2,9 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
+
+#include "platform/calibrate/dense.hpp"
 
 namespace glint {
 namespace {
@@ -68,8 +69,7 @@ void judge(const MotionSeries& series, MotionPart part, const LikelihoodSettings
   }
   curvature = (0.5 * (curvature + curvature.transpose())).eval();
   curvature(1, 1) += k_log_damping_information;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(curvature);
-  fit.determined = solver.eigenvalues()[0] > 0;
+  fit.determined = symmetric_eigen(curvature).values[0] > 0;
   if (!fit.determined) return;
   const Likelihood found = likelihood_of(series, part, fit.unknowns, settings);
   Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "platform/calibrate/correlation.hpp"
-#include "platform/calibrate/largest_sigma.hpp"
+#include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/pivot_linear.hpp"
 #include "platform/calibrate/pivot_refine.hpp"
 #include "platform/calibrate/robust.hpp"
@@ -62,7 +62,7 @@ Matrix3 tip_covariance(const std::vector<PivotSample>& kept, const PivotPoint& p
     sum += chi_square(sample, point);
   }
   const double freedom = 3.0 * static_cast<double>(kept.size()) - 6.0;
-  return information.inverse().topLeftCorner<3, 3>() * (sum / freedom);
+  return inverse_of(information).topLeftCorner<3, 3>() * (sum / freedom);
 }
 
 // Whether the beginning of the series is enough for the wanted sigma; by the linear start alone.

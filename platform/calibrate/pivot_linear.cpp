@@ -1,10 +1,10 @@
 #include "platform/calibrate/pivot_linear.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/robust.hpp"
 
 namespace glint {
@@ -29,7 +29,7 @@ PivotPoint weighted_pivot(std::span<const PivotSample> samples, std::span<const 
     normal += weights[i] * row.transpose() * row;
     right -= weights[i] * row.transpose() * samples[i].centre_m;
   }
-  const Eigen::Matrix<double, 6, 1> solution = normal.ldlt().solve(right);
+  const Eigen::Matrix<double, 6, 1> solution = solve_symmetric(normal, right);
   return {solution.head<3>(), solution.tail<3>()};
 }
 

@@ -1,6 +1,6 @@
 #include "platform/calibrate/rotation_spread.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "platform/calibrate/dense.hpp"
 
 namespace glint {
 
@@ -15,9 +15,9 @@ RotationSpread rotation_spread(std::span<const StampedPose> poses) {
     const Matrix3 off = pose.pose.rotation.toRotationMatrix() - mean;
     squares += off.transpose() * off;
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(squares / static_cast<double>(poses.size()));
-  result.spread_rad = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  result.directions = solver.eigenvectors();
+  const SymmetricEigen axes = symmetric_eigen(squares / static_cast<double>(poses.size()));
+  result.spread_rad = axes.values.cwiseMax(0.0).cwiseSqrt();
+  result.directions = axes.vectors;
   return result;
 }
 

@@ -1,7 +1,8 @@
 #include "platform/calibrate/smooth_series.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
+
+#include "platform/calibrate/dense.hpp"
 
 namespace glint {
 namespace {
@@ -27,7 +28,7 @@ Pose smoothed(std::span<const StampedPose> near, const StampedPose& middle) {
     ++count;
   }
   if (count < k_samples_min) return middle.pose;
-  const Eigen::Matrix<double, 3, 6> solution = normal.ldlt().solve(right);
+  const Eigen::Matrix<double, 3, 6> solution = solve_symmetric(normal, right);
   return {(middle.pose.rotation * from_rotation_vector(solution.row(0).tail<3>().transpose()))
               .normalized(),
           solution.row(0).head<3>().transpose()};

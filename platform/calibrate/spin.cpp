@@ -1,11 +1,10 @@
 #include "platform/calibrate/spin.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "platform/calibrate/correlation.hpp"
-#include "platform/calibrate/largest_sigma.hpp"
+#include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/robust.hpp"
 #include "platform/calibrate/say.hpp"
 #include "platform/calibrate/spin_refine.hpp"
@@ -88,11 +87,11 @@ void find_foot(std::span<const StampedPose> poses, const SpinAxis& axis, SpinRes
     normal += row.transpose() * row;
     right -= row.transpose() * project * pose.pose.translation;
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(normal);
-  const Eigen::Matrix<double, 6, 1> along = solver.eigenvectors().transpose() * right;
+  const SymmetricEigen ways = symmetric_eigen(normal);
+  const Eigen::Matrix<double, 6, 1> along = ways.vectors.transpose().lazyProduct(right);
   Eigen::Matrix<double, 6, 1> solution = Eigen::Matrix<double, 6, 1>::Zero();
   for (int i = 2; i < 6; ++i) {  // the two least belong to the free ways along the axis
-    solution += solver.eigenvectors().col(i) * (along[i] / solver.eigenvalues()[i]);
+    solution += ways.vectors.col(i) * (along[i] / ways.values[i]);
   }
   result.foot_m = solution.head<3>() - axis.tool * axis.tool.dot(solution.head<3>());
   double squares = 0;

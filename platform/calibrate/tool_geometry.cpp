@@ -1,12 +1,12 @@
 #include "platform/calibrate/tool_geometry.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
 
 #include "kernels/pose/rigid_fit.hpp"
+#include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/frame_labels.hpp"
 #include "platform/calibrate/rotation_spread.hpp"
 #include "platform/calibrate/say.hpp"
@@ -89,10 +89,10 @@ void turn_to_axes(std::vector<Vector3>& markers) {
     m -= middle;
     spread += m * m.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(spread);
+  const SymmetricEigen principal = symmetric_eigen(spread);
   Matrix3 axes;
   for (int axis = 0; axis < 2; ++axis) {
-    Vector3 direction = solver.eigenvectors().col(2 - axis);
+    Vector3 direction = principal.vectors.col(2 - axis);
     const auto farther = [&](const Vector3& a, const Vector3& b) {
       return std::abs(direction.dot(a)) < std::abs(direction.dot(b));
     };
@@ -111,8 +111,7 @@ bool on_a_line(const std::vector<Vector3>& markers, double noise_m) {
   for (const Vector3& m : markers) middle += m / static_cast<double>(markers.size());
   Matrix3 spread = Matrix3::Zero();
   for (const Vector3& m : markers) spread += (m - middle) * (m - middle).transpose();
-  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(spread / static_cast<double>(markers.size()));
-  return solver.eigenvalues()[1] < k_line_noises * k_line_noises * noise_m * noise_m;
+  return symmetric_eigen(spread / static_cast<double>(markers.size())).values[1] < k_line_noises * k_line_noises * noise_m * noise_m;
 }
 
 void check_enough(const ToolRound& round, std::size_t frames, const std::string& what) {
