@@ -38,4 +38,15 @@ struct Pose {
   return m;
 }
 
+// The smallest turn that carries the direction `from` to `to`; about any axis across where they are
+// opposite. Eigen's FromTwoVectors gives it, too, by a decomposition that is slow to compile.
+[[nodiscard]] inline Quaternion turn_between(const Vector3& from, const Vector3& to) {
+  const Vector3 a = from.normalized(), b = to.normalized();
+  const double w = 1 + a.dot(b);
+  const Vector3 across = a.unitOrthogonal();
+  if (w < 1e-12) return {0, across.x(), across.y(), across.z()};
+  const Vector3 axis = a.cross(b);
+  return Quaternion(w, axis.x(), axis.y(), axis.z()).normalized();
+}
+
 }  // namespace glint

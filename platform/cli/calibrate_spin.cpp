@@ -25,7 +25,7 @@ Vector3 upwards(const Tool& tool) {
 
 // The tool with its tip where it was and its z along the axis.
 Tool turned_to_axis(Tool tool, const Vector3& axis) {
-  const Quaternion turn = Quaternion::FromTwoVectors(axis, Vector3::UnitZ());
+  const Quaternion turn = turn_between(axis, Vector3::UnitZ());
   for (int i = 0; i < tool.marker_count; ++i) {
     Vector3& marker = tool.markers_m[static_cast<std::size_t>(i)];
     marker = turn * (marker - tool.tip_m) + tool.tip_m;

@@ -95,9 +95,9 @@ DrawnPose draw_pose(const PointTool& tool, double range_m, double tilt_rad,
   const double tilt_axis = numbers.within(0, full), spin = numbers.within(0, full);
   const Vector3 sight =
       from_rotation_vector(off * Vector3(std::cos(side), std::sin(side), 0)) * Vector3::UnitZ();
-  const Quaternion facing = Quaternion::FromTwoVectors(tool.normal, -Vector3::UnitZ());
+  const Quaternion facing = turn_between(tool.normal, -Vector3::UnitZ());
   const Quaternion turned = from_rotation_vector(Vector3(0, 0, spin)) * facing;
-  const Quaternion towards = Quaternion::FromTwoVectors(Vector3::UnitZ(), sight);
+  const Quaternion towards = turn_between(Vector3::UnitZ(), sight);
   const Vector3 mean = marker_mean(tool.tool);
   const auto tilted_by = [&](double tilt) {
     const Vector3 axis(std::cos(tilt_axis), std::sin(tilt_axis), 0);

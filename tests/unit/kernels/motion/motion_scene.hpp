@@ -10,8 +10,7 @@ template <int N>
 Eigen::Matrix<double, N, N> random_covariance(Random& random, double sigma) {
   Eigen::Matrix<double, N, N> root;
   for (int i = 0; i < N * N; ++i) root(i % N, i / N) = sigma * random.normal();
-  return root.lazyProduct(root.transpose()) +
-         0.01 * sigma * sigma * Eigen::Matrix<double, N, N>::Identity();
+  return root * root.transpose() + 0.01 * sigma * sigma * Eigen::Matrix<double, N, N>::Identity();
 }
 
 inline MotionState random_state(Random& random) {

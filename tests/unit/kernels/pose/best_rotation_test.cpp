@@ -7,7 +7,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
+#include "kernels/motion/interpolate.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
 
 namespace glint {
@@ -97,6 +99,20 @@ TEST(BestRotation, GivesTheSameBitsEverywhere) {
     hash.add(Pose{best_rotation(matrix_of(random, i % k_kinds.size())), Vector3::Zero()});
   }
   EXPECT_EQ(hash.value(), 15648917445715279792u);
+}
+
+TEST(TurnBetween, CarriesADirectionByTheLeastTurn) {
+  test::Random random(9);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Vector3 from = random.vector(1);
+    const double angle = trial < 100 ? random.within(0, 3.14) : std::numbers::pi - 1e-9 * trial;
+    const Vector3 axis = from.unitOrthogonal();
+    const Vector3 to = 3 * (from_rotation_vector(angle * axis) * from);
+    const Quaternion turn = turn_between(from, to);
+    EXPECT_LT((turn * from.normalized() - to.normalized()).norm(), 3e-7) << angle;
+    EXPECT_NEAR(turn.norm(), 1, 1e-15);
+    EXPECT_NEAR(rotation_vector(turn).norm(), angle, 3e-7);
+  }
 }
 
 }  // namespace
