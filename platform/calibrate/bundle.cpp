@@ -50,8 +50,8 @@ std::vector<double> marker_sigmas(const Bundle& bundle, std::span<const Labelled
   for (Eigen::Index at = 0; at < size; at += 3) {
     double variance = 0;
     for (Eigen::Index i = 6; i < size; ++i) {
-      variance += ways.vectors.col(i).segment<3>(at).squaredNorm() /
-                  std::max(ways.values[i], 1e-12);
+      variance +=
+          ways.vectors.col(i).segment<3>(at).squaredNorm() / std::max(ways.values[i], 1e-12);
     }
     sigmas.push_back(noise_m * std::sqrt(variance / 3));
   }

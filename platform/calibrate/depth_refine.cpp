@@ -76,7 +76,7 @@ void judge(const std::vector<RangedFrame>& frames, Brightness brightness, DepthF
   for (const RangedFrame& frame : frames) {
     const FrameRows rows = rows_of(frame, fit.bias);
     if (rows.residuals.size() < 9) continue;  // fewer than three markers
-    const Eigen::MatrixXd pose_part =  // 6 x rows
+    const Eigen::MatrixXd pose_part =         // 6 x rows
         solve_symmetric(rows.by_pose.transpose() * rows.by_pose, rows.by_pose.transpose());
     const BiasRows free = rows.by_bias - rows.by_pose * (pose_part * rows.by_bias);
     information += free.transpose() * free;

@@ -111,7 +111,8 @@ bool on_a_line(const std::vector<Vector3>& markers, double noise_m) {
   for (const Vector3& m : markers) middle += m / static_cast<double>(markers.size());
   Matrix3 spread = Matrix3::Zero();
   for (const Vector3& m : markers) spread += (m - middle) * (m - middle).transpose();
-  return symmetric_eigen(spread / static_cast<double>(markers.size())).values[1] < k_line_noises * k_line_noises * noise_m * noise_m;
+  return symmetric_eigen(spread / static_cast<double>(markers.size())).values[1] <
+         k_line_noises * k_line_noises * noise_m * noise_m;
 }
 
 void check_enough(const ToolRound& round, std::size_t frames, const std::string& what) {

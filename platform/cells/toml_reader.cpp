@@ -6,9 +6,9 @@
 
 #include "platform/cells/toml_keys.hpp"
 #include "platform/input_error.hpp"
-#include "platform/read_file.hpp"
 #include "platform/nearest_name.hpp"
 #include "platform/printable.hpp"
+#include "platform/read_file.hpp"
 
 namespace glint {
 namespace {

@@ -13,8 +13,9 @@ DepthFrame read_depth_png(const std::string& path) {
     throw InputError(path + ": is no PNG with one plane of 16 bits; expected depth in millimetres");
   }
   if (image.width > k_depth_side_max || image.height > k_depth_side_max) {
-    throw InputError(path + ": " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-                     " pixels; expected 1 to " + std::to_string(k_depth_side_max) + " a side");
+    throw InputError(path + ": " + std::to_string(image.width) + " x " +
+                     std::to_string(image.height) + " pixels; expected 1 to " +
+                     std::to_string(k_depth_side_max) + " a side");
   }
   DepthFrame out{image.width, image.height, {}, {}, {}};
   out.depth_m.reserve(image.values.size());

@@ -1,7 +1,7 @@
 #include "platform/mapping/file_text.hpp"
 
-#include <charconv>
 #include <algorithm>
+#include <charconv>
 
 #include "platform/input_error.hpp"
 #include "platform/read_file.hpp"

@@ -165,7 +165,9 @@ void check_tree(const tinyxml2::XMLElement& robot, const std::string& path) {
 
 }  // namespace
 
-UrdfFile read_urdf(const std::string& path) { return read_urdf_text(read_file(path, k_urdf_bytes_max, "a URDF file"), path); }
+UrdfFile read_urdf(const std::string& path) {
+  return read_urdf_text(read_file(path, k_urdf_bytes_max, "a URDF file"), path);
+}
 
 UrdfFile read_urdf_text(const std::string& text, const std::string& from) {
   tinyxml2::XMLDocument document;

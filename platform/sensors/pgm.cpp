@@ -49,11 +49,12 @@ struct Reader {
 
 void check_picture_size(const std::string& path, std::size_t place, std::uint64_t width,
                         std::uint64_t height) {
-  if (width <= k_picture_side_max && height <= k_picture_side_max && width * height <= k_pixels_max) return;
+  if (width <= k_picture_side_max && height <= k_picture_side_max && width * height <= k_pixels_max)
+    return;
   throw InputError(path + ":byte " + std::to_string(place) + ": " + std::to_string(width) + " x " +
                    std::to_string(height) + " pixels; expected at most " +
-                   std::to_string(k_picture_side_max) + " a side and " + std::to_string(k_pixels_max) +
-                   " in all");
+                   std::to_string(k_picture_side_max) + " a side and " +
+                   std::to_string(k_pixels_max) + " in all");
 }
 
 Picture read_pgm(const std::string& path, const PgmLimits& limits) {

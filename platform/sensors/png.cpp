@@ -90,7 +90,8 @@ Picture read_png(const std::string& path, const std::string& expected) {
   std::vector<std::uint8_t> bytes(size);
   error = spng_decode_image(context.get(), bytes.data(), bytes.size(), format, 0);
   if (error != 0) fail(std::string("no whole picture: ") + spng_strerror(error));
-  Picture picture{static_cast<int>(header.width), static_cast<int>(header.height),
+  Picture picture{static_cast<int>(header.width),
+                  static_cast<int>(header.height),
                   header.color_type == SPNG_COLOR_TYPE_GRAYSCALE ? 1 : 3,
                   header.bit_depth == 16 ? 16 : 8,
                   {}};

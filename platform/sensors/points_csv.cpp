@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <sstream>
 
 #include "platform/input_error.hpp"
 #include "platform/read_file.hpp"

@@ -124,8 +124,8 @@ Trajectory trajectory_from_text(const std::string& text, const std::string& name
 }
 
 Trajectory load_trajectory(const std::string& path) {
-  return trajectory_from_text(read_file(path, k_data_bytes_max, std::string("a trajectory, ") + k_tum),
-                              path);
+  return trajectory_from_text(
+      read_file(path, k_data_bytes_max, std::string("a trajectory, ") + k_tum), path);
 }
 
 }  // namespace glint::sim

@@ -62,7 +62,8 @@ TEST(DepthSequence, RefusesWhatIsMissingOrWrongByNameAndPlace) {
 
 TEST(DepthSequence, RefusesAFolderWithoutPicturesOrAPictureWithoutPose) {
   const TemporaryFolder folder;
-  EXPECT_NE(complaint_about(folder).find("camera-intrinsics.txt: cannot be read"), std::string::npos);
+  EXPECT_NE(complaint_about(folder).find("camera-intrinsics.txt: cannot be read"),
+            std::string::npos);
   folder.write("camera-intrinsics.txt", k_pinhole);
   EXPECT_NE(complaint_about(folder).find("0 depth pictures"), std::string::npos);
   folder.write("a.depth.png", "no picture");

@@ -24,8 +24,8 @@ std::string big_endian(std::uint32_t value) {
 
 std::string chunk(const std::string& kind, const std::string& data) {
   const std::string named = kind + data;
-  const auto sum = crc32(0, reinterpret_cast<const Bytef*>(named.data()),
-                         static_cast<uInt>(named.size()));
+  const auto sum =
+      crc32(0, reinterpret_cast<const Bytef*>(named.data()), static_cast<uInt>(named.size()));
   return big_endian(static_cast<std::uint32_t>(data.size())) + named +
          big_endian(static_cast<std::uint32_t>(sum));
 }
@@ -62,10 +62,16 @@ TEST(PictureFile, ReadsEachKindOfPng) {
       {"grey, 1 bit", png(3, 1, 1, 0, bytes({0, 0xA0})), 1, 8, {255, 0, 255}},
       {"grey and alpha", png(1, 1, 8, 4, bytes({0, 7, 0})), 3, 8, {7, 7, 7}},
       {"colours", png(1, 2, 8, 2, bytes({0, 1, 2, 3, 0, 4, 5, 6})), 3, 8, {1, 2, 3, 4, 5, 6}},
-      {"colours, 16 bits", png(1, 1, 16, 2, bytes({0, 1, 0, 2, 0, 3, 9})), 3, 16,
+      {"colours, 16 bits",
+       png(1, 1, 16, 2, bytes({0, 1, 0, 2, 0, 3, 9})),
+       3,
+       16,
        {0x100, 0x200, 0x309}},
       {"colours and alpha", png(1, 1, 8, 6, bytes({0, 1, 2, 3, 0})), 3, 8, {1, 2, 3}},
-      {"palette", png(2, 1, 8, 3, bytes({0, 1, 0}), chunk("PLTE", bytes({1, 2, 3, 4, 5, 6}))), 3, 8,
+      {"palette",
+       png(2, 1, 8, 3, bytes({0, 1, 0}), chunk("PLTE", bytes({1, 2, 3, 4, 5, 6}))),
+       3,
+       8,
        {4, 5, 6, 1, 2, 3}},
   };
   for (const auto& c : cases) {
