@@ -53,9 +53,9 @@ Json output_of(const TicksLeft& left) {
           {"longest_without_measurement_ms", tool.longest_without_measurement.seconds() * 1e3}};
 }
 
-Json losses_of(const BoardResult& result) {
+Json losses_json(const SinkOutcome& result) {
   Json losses = Json::array();
-  for (const Loss& loss : losses_of(result.sinks)) {
+  for (const Loss& loss : losses_of(result)) {
     losses.push_back({{"kind", loss.kind}, {"count", loss.count}, {"text", loss.text}});
   }
   return losses;
@@ -80,33 +80,33 @@ Json as_json(const BoardResult& result) {
       {"sampling_us", as_json(figures_of(result.latencies, &FrameToCan::sampling))},
       {"sending_us", as_json(figures_of(result.latencies, &FrameToCan::sending))},
       {"output", output_of(result.sent)},
-      {"losses", losses_of(result)},
+      {"losses", losses_json(result)},
       {"latencies_left_out", result.latencies_left_out},
       {"frame_wake_up_us", spread_us(result.frame_wake_up_ns)},
       {"tick_wake_up_us", spread_us(result.tick_wake_up_ns)},
       {"can",
        {{"frames", result.can_frames},
-        {"sent", result.sinks.can.sent},
-        {"dropped", result.sinks.can.dropped},
-        {"failed", result.sinks.can.failed}}},
+        {"sent", result.can.sent},
+        {"dropped", result.can.dropped},
+        {"failed", result.can.failed}}},
       {"can_heard",
-       {{"buttons", result.sinks.can_heard.heard},
-        {"refused", result.sinks.can_heard.refused},
-        {"why_not", result.sinks.can_not_heard}}},
+       {{"buttons", result.can_heard.heard},
+        {"refused", result.can_heard.refused},
+        {"why_not", result.can_not_heard}}},
       {"dds",
-       {{"offered", result.sinks.dds.offered},
-        {"written", result.sinks.dds.written},
-        {"ring_dropped", result.sinks.dds.ring_dropped},
-        {"others_lost", result.sinks.dds.others_lost}}},
+       {{"offered", result.dds.offered},
+        {"written", result.dds.written},
+        {"ring_dropped", result.dds.ring_dropped},
+        {"others_lost", result.dds.others_lost}}},
       {"heap_counted", result.heap_counted},
-      {"heap_allocations", result.heap_allocations},
-      {"page_faults", result.page_faults},
+      {"heap_allocations", result.heap_allocations_after_start},
+      {"page_faults", result.page_faults_after_start},
       {"output_sha256", result.output_sha256},
       {"decision_sha256", result.decision_sha256},
       {"best_effort", result.refused},
   };
   if (result.background) json["background"] = as_json(*result.background);
-  if (!result.sinks.recording_file.empty()) json["recording"] = recording_of(result.sinks);
+  if (!result.recording_file.empty()) json["recording"] = recording_of(result);
   return json;
 }
 

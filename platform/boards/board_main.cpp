@@ -55,8 +55,8 @@ void write(const std::string& file, const nlohmann::ordered_json& figures) {
 
 // Why the run ends with 1, one line each.
 std::vector<std::string> failures_of(const BoardResult& result, const BoardOptions& options) {
-  std::vector<std::string> lines = lines_of(losses_of(result.sinks));
-  if (!result.sinks.fault.empty()) lines.push_back(result.sinks.fault);
+  std::vector<std::string> lines = lines_of(losses_of(result));
+  if (!result.fault.empty()) lines.push_back(result.fault);
   if (options.frames > 0 && result.frames != options.frames && !*options.stop) {
     lines.push_back(std::to_string(result.frames) + " frames processed; expected " +
                     std::to_string(options.frames));

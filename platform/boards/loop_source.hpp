@@ -18,8 +18,7 @@ namespace glint {
 struct ArrivalSettings {
   std::int64_t frames = 0;  // how many arrive in all; 0: until `stop`
   Duration period;
-  Time first;  // of the first one's arrival, monotonic
-  Time epoch;  // monotonic; frames are stamped with the time since then
+  Duration first;  // of the first one's arrival, of the session's time
   int priority = 0;
   int core = -1;
   const std::atomic<bool>* stop = nullptr;  // set: no further frame arrives
@@ -30,7 +29,13 @@ class LoopSource final : public FrameSource {
   LoopSource(const FrameLoop& loop, const ArrivalSettings& settings);
   ~LoopSource() override;  // at the next arrival
 
-  void start();  // frames begin to arrive
+  void start(const SourceClock& clock) override;  // frames begin to arrive
+  [[nodiscard]] std::size_t frame_count() const noexcept override {
+    return static_cast<std::size_t>(settings_.frames);
+  }
+  [[nodiscard]] Duration duration() const noexcept override {
+    return settings_.period * settings_.frames;
+  }
 
   // A frame that waits in memory while an older one is worked on is not lost: it comes next, and
   // its latency counts from its own arrival.
@@ -43,6 +48,7 @@ class LoopSource final : public FrameSource {
     return wake_ups_ns_.entries();
   }
   [[nodiscard]] std::int64_t worst_shown() const { return worst_shown_; }
+  // Of the thread that lets frames arrive, in a live run.
   [[nodiscard]] const ThreadReport& report() const { return arrivals_->report(); }
 
  private:
@@ -53,6 +59,7 @@ class LoopSource final : public FrameSource {
 
   const FrameLoop& loop_;
   ArrivalSettings settings_;
+  SourceClock clock_;
   Release arrived_;
   std::atomic<std::int64_t> arrived_count_{0};
   std::atomic<bool> stop_{false};

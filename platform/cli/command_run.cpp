@@ -25,7 +25,7 @@
 #include "platform/programming/key_buttons.hpp"
 #include "platform/programming/key_terminal.hpp"
 #include "platform/session/injection_text.hpp"
-#include "platform/session/session.hpp"
+#include "platform/session/simulated_run.hpp"
 #include "platform/stop_signals.hpp"
 
 namespace glint {
@@ -118,13 +118,13 @@ int run(const RunArguments& arguments) {
   Progress progress("tracking");
   options.out = arguments.out;
   options.progress = [&](double done_s, double all_s) { progress.show(done_s, all_s); };
-  options.rendering = [&](int rendered, int wanted) {
+  options.preparing = [&](int rendered, int wanted) {
     progress.show(
         0, 1,
         "renders ahead: " + std::to_string(rendered) + " of " + std::to_string(wanted) + " frames");
   };
-  options.source_frame_time = {static_cast<std::int64_t>(arguments.source_frame_ms * 1e6)};
-  SessionResult result = run_session(cell, options);
+  const Duration frame_time{static_cast<std::int64_t>(arguments.source_frame_ms * 1e6)};
+  SessionResult result = run_simulated(cell, options, frame_time);
   progress.clear();
   room.release();
   return report(cell, options, arguments.json, result);

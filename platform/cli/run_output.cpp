@@ -47,7 +47,7 @@ ordered_json source_late_part(const SessionResult& result) {
 }
 
 std::string source_late_text(const SessionResult& result) {
-  return "the simulator: " + std::to_string(result.late_renders) + " frames late, " +
+  return "the simulator: " + std::to_string(result.frames_late) + " frames late, " +
          percent(source_late_part(result)) + " of the ticks without a measurement for it";
 }
 
@@ -98,7 +98,7 @@ std::vector<std::pair<std::string, std::string>> output_rows(const ordered_json&
                       in_milliseconds(tool.at("longest_without_measurement_ms"), result));
   }
   rows.emplace_back("longest gap of ticks", in_milliseconds(output.at("longest_gap_ms"), result));
-  if (result.late_renders > 0) rows.emplace_back("LATE SOURCE", source_late_text(result));
+  if (result.frames_late > 0) rows.emplace_back("LATE SOURCE", source_late_text(result));
   for (const Loss& loss : losses_of(result)) rows.emplace_back("LOST, " + loss.kind, loss.text);
   return rows;
 }

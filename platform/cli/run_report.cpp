@@ -138,7 +138,7 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
       {"workers", cell.workers},
       {"frames", result.frames},
       {"frames_refused", accuracy.refused},
-      {"frames_late_rendered", result.late_renders},
+      {"frames_late_rendered", result.frames_late},
       {"ticks_source_late", result.ticks_source_late},
       {"output", output_of(cell, result)},
       {"frames_trackable", accuracy.trackable},

@@ -25,7 +25,7 @@ bool lies_on(const Tool& tool, const ToolOutcome& found, const Tool& other, cons
 
 }  // namespace
 
-void ClutterTally::add(const FrameOutcome& outcome, const sim::SimTruth& truth) {
+void ClutterTally::add(const FrameOutcome& outcome, const FrameTruth& truth) {
   const Pose T_camera_world = truth.T_world_camera.inverse();
   for (int t = 0; t < tools_.count; ++t) {
     const auto i = static_cast<std::size_t>(t);

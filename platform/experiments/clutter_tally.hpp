@@ -22,7 +22,7 @@ class ClutterTally {
  public:
   explicit ClutterTally(const ToolSet& tools) : tools_(tools) {}
 
-  void add(const FrameOutcome& outcome, const sim::SimTruth& truth);
+  void add(const FrameOutcome& outcome, const FrameTruth& truth);
 
   [[nodiscard]] std::int64_t trackable() const { return trackable_; }  // tools and frames
   [[nodiscard]] std::int64_t tracked() const { return tracked_; }      // of those, fresh

@@ -32,8 +32,7 @@ struct Disc {
   double radius_px = 0;
 };
 
-std::vector<Disc> markers_in(const Camera& camera, const ToolSet& tools,
-                             const sim::SimTruth& truth) {
+std::vector<Disc> markers_in(const Camera& camera, const ToolSet& tools, const FrameTruth& truth) {
   std::vector<Disc> discs;
   const Pose T_camera_world = truth.T_world_camera.inverse();
   int lens_steps = 0;

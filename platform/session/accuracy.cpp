@@ -71,7 +71,7 @@ FrameOutcome outcome_of(const Estimates& estimates, const Tracker* tracker) {
   return outcome;
 }
 
-Accuracy judge(const std::vector<FrameOutcome>& outcomes, const std::vector<sim::SimTruth>& truths,
+Accuracy judge(const std::vector<FrameOutcome>& outcomes, const std::vector<FrameTruth>& truths,
                const ToolSet& tools) {
   Accuracy result;
   double tip_sum = 0, angle_sum = 0;
@@ -82,7 +82,7 @@ Accuracy judge(const std::vector<FrameOutcome>& outcomes, const std::vector<sim:
   result.frames = static_cast<std::int64_t>(count);
   for (std::size_t f = 0; f < count; ++f) {
     const FrameOutcome& outcome = outcomes[f];
-    const sim::SimTruth& truth = truths[f];
+    const FrameTruth& truth = truths[f];
     const bool overrun = is_overrun(outcome.verdict);
     result.refused += outcome.verdict != Reason::none && !overrun ? 1 : 0;
     if (!exposed.insert(truth.mid_exposure.nanoseconds).second) continue;

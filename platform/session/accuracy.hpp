@@ -83,7 +83,7 @@ struct Accuracy {
 
 // outcomes[i] and truths[i] belong to the i-th frame delivered.
 [[nodiscard]] Accuracy judge(const std::vector<FrameOutcome>& outcomes,
-                             const std::vector<sim::SimTruth>& truths, const ToolSet& tools);
+                             const std::vector<FrameTruth>& truths, const ToolSet& tools);
 
 // `tracker`: the one that made the estimates, its tokens still those of this frame; null: another
 // method or an overrun's substitute made them, which states neither covariance nor assignment.

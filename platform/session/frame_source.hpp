@@ -1,9 +1,14 @@
-// Where frames come from, as the frame group sees it: it waits for the next one, and gives its
-// pixels back when it is done with them.
+// Where frames come from: a run waits for the next one, and gives its pixels back when it is done
+// with them. The same source serves a live run and one in order.
 #pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
 
 #include "kernels/image/frame.hpp"
 #include "kernels/pose/head_pose.hpp"
+#include "platform/sensors/frame_truth.hpp"
 
 namespace glint {
 
@@ -13,16 +18,43 @@ struct ArrivedFrame {
   int slot = -1;  // the source's own number for the pixels' place
 };
 
+// The session's clock.
+struct SourceClock {
+  bool live = false;          // false: frames are asked for in order, as fast as they come
+  Time epoch;                 // monotonic: where the session's time begins
+  std::function<Time()> now;  // of the session; any thread
+};
+
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
+
+  // Does what is better done before the session's clock starts. `go_on(ready, wanted)`, frames,
+  // ends it early with false.
+  virtual void prepare(const std::function<bool(int, int)>& /*go_on*/) {}
+  // Once, before the first wait().
+  virtual void start(const SourceClock& clock) = 0;
   // Blocks until a frame has arrived; false: there are no more. The only blocking call of the
   // frame group.
   [[nodiscard]] virtual bool wait(ArrivedFrame& arrived) = 0;
   virtual void give_back(const ArrivedFrame& arrived) noexcept = 0;
-  // Whether the newest frame that is due at this time came late, or has not come yet. From any
-  // thread.
+
+  // Whether the newest frame that is due at this time came late, or has not come yet; how many came
+  // late. From any thread.
   [[nodiscard]] virtual bool late(Time /*now*/) const noexcept { return false; }
+  [[nodiscard]] virtual int late_frames() const noexcept { return 0; }
+
+  // What a source knows of its end: frames in all and their duration; 0: nothing.
+  [[nodiscard]] virtual std::size_t frame_count() const noexcept { return 0; }
+  [[nodiscard]] virtual Duration duration() const noexcept { return {}; }
+  // Part of all frames that was delivered, where their number is known. From any thread.
+  [[nodiscard]] virtual double delivered_part() const noexcept { return 0; }
+  // One for each frame delivered, in the order of delivery, complete once wait() returned false;
+  // empty: it has no truth.
+  [[nodiscard]] virtual const std::vector<FrameTruth>& truths() const noexcept {
+    static const std::vector<FrameTruth> none;
+    return none;
+  }
 };
 
 }  // namespace glint

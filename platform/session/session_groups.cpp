@@ -1,17 +1,21 @@
 #include "platform/session/session_groups.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "graph/describe.hpp"
+#include "platform/input_error.hpp"
 #include "platform/session/pipeline.hpp"
-#include "platform/session/seed_method.hpp"
 
 namespace glint {
 namespace {
 
-std::unique_ptr<FrameMethod> method_of(const Cell& cell) {
-  if (cell.method == Method::seed) return std::make_unique<SeedMethod>(cell);
-  return nullptr;  // the tracker
+std::unique_ptr<FrameMethod> method_of(const Cell& cell, const SessionOptions& options) {
+  if (cell.method == Method::glint) return nullptr;
+  if (options.method) return options.method(cell);
+  throw InputError(cell.file +
+                   ": method is \"seed\", which this program does not have; expected "
+                   "\"glint\"");
 }
 
 template <class G>
@@ -62,7 +66,7 @@ nlohmann::ordered_json group_json(const char* name, const GroupPlan<G>& plan) {
 
 }  // namespace
 
-SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, std::size_t frames,
+SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, KeptFrames kept,
                              Sinks& sinks, TraceWriter* trace, const Clock& now,
                              std::int64_t unix_offset_ns, BackgroundScene scene)
     : frame_runner_(runner_settings(options.plan.frame, k_frame_group, cell, options, trace)),
@@ -71,15 +75,16 @@ SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, st
       roster_(cell, &sinks.tool_requests()),
       frame_(cell, roster_.published(), now, frame_runner_,
              sinks.recorder() != nullptr ? &sinks.recorder()->frame_lane() : nullptr,
-             method_of(cell)),
+             method_of(cell, options)),
       tick_(cell, frame_.estimates(), robot_, sinks.held_buttons(), now,
             {sinks.can(), sinks.dds(), sinks.files(),
              sinks.recorder() != nullptr ? &sinks.recorder()->tick_lane() : nullptr,
              sinks.recorder(), &sinks.losses()},
-            unix_offset_ns, frames, tick_runner_, frame_.overrun_notes()) {
+            unix_offset_ns, kept.latencies > 0 ? kept.latencies : LatencyLog::k_entries_max,
+            tick_runner_, frame_.overrun_notes()) {
   robot_.write_slot() = declared_robot_frame(cell);
   robot_.publish(1, 0);
-  outcomes_.resize(frames);
+  outcomes_.resize(kept.outcomes);
   frame_.tell_transforms_to(sinks.dds());
   if (options.plan.background) {
     Recorder* const recorder = sinks.recorder();
@@ -94,25 +99,33 @@ SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, st
 void SessionGroups::process(const ArrivedFrame& arrived) noexcept {
   frame_.process(arrived);
   counters_->frame.store(frame_runner_.overruns().total(), std::memory_order_relaxed);
-  if (processed_ < outcomes_.size())
-    outcomes_[processed_++] = outcome_of(frame_.newest(), frame_.tracker());
+  const Estimates& newest = frame_.newest();
+  if (processed_ < outcomes_.size()) {
+    outcomes_[processed_] = outcome_of(newest, frame_.tracker());
+  }
+  ++processed_;
+  if (decisions_.add(arrived.frame.sequence, newest, frame_runner_)) ++tracked_;
   if (background_ == nullptr) return;
-  background_->tracked().write_slot() = capsules_of(frame_.newest());
+  background_->tracked().write_slot() = capsules_of(newest);
   background_->tracked().publish(processed_, arrived.frame.arrival.nanoseconds);
 }
 
 void SessionGroups::tick(std::uint64_t number, Time nominal, Time woken) noexcept {
   tick_.tick(number, nominal, woken);
+  decisions_.add(number, tick_.samples(), tick_runner_);
   counters_->tick.store(tick_runner_.overruns().total(), std::memory_order_relaxed);
   counters_->source.store(tick_.ticks_source_late(), std::memory_order_relaxed);
 }
 
 void SessionGroups::report(SessionResult& result) {
-  outcomes_.resize(processed_);
+  outcomes_.resize(std::min(processed_, outcomes_.size()));
   result.outcomes = std::move(outcomes_);
   result.frames = static_cast<std::int64_t>(processed_);
-  result.sent = tick_.sent().left();
-  result.latencies = tick_.sent().latencies().entries();
+  result.frames_tracked = static_cast<std::int64_t>(tracked_);
+  const SentTicks& sent = tick_.sent();
+  result.sent = sent.left();
+  result.latencies = sent.latencies().entries();
+  result.latencies_left_out = sent.latencies().left_out();
   result.ticks_source_late = tick_.ticks_source_late();
   result.worker_overruns = frame_runner_.late_waits() + tick_runner_.late_waits();
   result.frame_overruns = frame_runner_.overruns();
@@ -120,6 +133,7 @@ void SessionGroups::report(SessionResult& result) {
   if (background_ != nullptr) result.background = background_->counts();
   result.can_frames = tick_.can_frames();
   result.output_sha256 = tick_.output_sha256();
+  result.decision_sha256 = decisions_.hex();
   for (const auto& reports : {frame_runner_.reports(), tick_runner_.reports()}) {
     for (const ThreadReport& report : reports) {
       if (!report.refused.empty()) result.refused.push_back(report.name + ": " + report.refused);

@@ -1,5 +1,5 @@
-// What a live run and one in order have in common: the groups, what they exchange, how they are
-// run and watched, and where their output goes.
+// What every run has in common, live or in order, on a desktop or a board: the groups, what they
+// exchange, how they are run and watched, and where their output goes.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,7 @@
 #include "platform/rt/trace_writer.hpp"
 #include "platform/session/accuracy.hpp"
 #include "platform/session/background_group.hpp"
+#include "platform/session/decision_hash.hpp"
 #include "platform/session/frame_group.hpp"
 #include "platform/session/session.hpp"
 #include "platform/session/sinks.hpp"
@@ -17,15 +18,21 @@
 
 namespace glint {
 
+// Of how many frames something is kept.
+struct KeptFrames {
+  std::size_t latencies = 0;  // 0: no end is known, and the newest are kept
+  std::size_t outcomes = 0;   // to be judged by a truth
+};
+
 class SessionGroups {
  public:
   // `trace` may be null; it is not yet started.
-  SessionGroups(const Cell& cell, const SessionOptions& options, std::size_t frames, Sinks& sinks,
+  SessionGroups(const Cell& cell, const SessionOptions& options, KeptFrames kept, Sinks& sinks,
                 TraceWriter* trace, const Clock& now, std::int64_t unix_offset_ns,
                 BackgroundScene scene);
 
-  void process(const ArrivedFrame& arrived) noexcept;
-  void tick(std::uint64_t number, Time nominal, Time woken) noexcept;
+  void process(const ArrivedFrame& arrived) noexcept;                  // frame thread
+  void tick(std::uint64_t number, Time nominal, Time woken) noexcept;  // tick thread
   // In place of the next tick: see TickGroup.
   void stop_safe() noexcept { tick_.stop_safe(); }
 
@@ -52,8 +59,9 @@ class SessionGroups {
   graph::TripleBuffer<RobotFrame> robot_;
   FrameGroup frame_;
   TickGroup tick_;
+  DecisionHash decisions_;
   std::vector<FrameOutcome> outcomes_;
-  std::size_t processed_ = 0;
+  std::size_t processed_ = 0, tracked_ = 0;
 };
 
 // The trace file's first line.

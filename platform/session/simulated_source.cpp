@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "platform/rt/clock.hpp"
+
 namespace glint {
 namespace {
 
@@ -65,9 +67,9 @@ SimulatedSource::~SimulatedSource() {
   for (std::thread& renderer : renderers_) renderer.join();
 }
 
-void SimulatedSource::start(SleepUntil sleep_until, std::function<Time()> now) {
-  sleep_until_ = std::move(sleep_until);
-  now_ = std::move(now);
+// A refusal to sleep stops the tick loop, and with it the run.
+void SimulatedSource::sleep_until(Time time) const {
+  if (clock_.live) (void)glint::sleep_until(clock_.epoch + (time - Time{}));
 }
 
 void SimulatedSource::render_all() {
@@ -110,7 +112,7 @@ int SimulatedSource::frames_wanted(double frames_a_second) const {
   return static_cast<int>(std::min({std::ceil(ahead), room, count}));
 }
 
-void SimulatedSource::fill(const std::function<bool(int, int)>& go_on) {
+void SimulatedSource::prepare(const std::function<bool(int, int)>& go_on) {
   const SteadyClock::time_point begin = SteadyClock::now();
   int wanted = std::min(k_slots_min / 2, simulator_.frame_count());
   for (;;) {
@@ -132,17 +134,17 @@ bool SimulatedSource::wait(ArrivedFrame& arrived) {
     return false;
   }
   Time arrival = simulator_.timing(number).arrival;
-  if (sleep_until_) sleep_until_(arrival);
+  sleep_until(arrival);
   const bool slow = settings_.frame_time > Duration{};
-  const bool late = slow || (sleep_until_ && rendered_count_ <= number);
+  const bool late = slow || (clock_.live && rendered_count_ <= number);
   late_since_ns_ = !late ? INT64_MAX : std::min(late_since_ns_.load(), arrival.nanoseconds);
   if (slow) {
     arrival = ready_ = std::max(ready_, arrival) + settings_.frame_time;
-    if (sleep_until_) sleep_until_(arrival);
+    sleep_until(arrival);
   }
   is_rendered_.wait();
-  if (late) ++late_renders_;
-  if (late && sleep_until_) arrival = now_();  // the last byte is in memory only now
+  if (late) ++late_frames_;
+  if (late && clock_.live) arrival = clock_.now();  // the last byte is in memory only now
   const Slot& slot = slot_of(number);
   arrived.frame = slot.pixels.view(slot.mid_exposure, arrival, slot.sequence);
   arrived.head = slot.head;

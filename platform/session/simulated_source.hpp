@@ -15,9 +15,6 @@
 
 namespace glint {
 
-// Waits until a Time of the session's clock.
-using SleepUntil = std::function<void(Time)>;
-
 struct SimulatedSourceSettings {
   bool live = false;    // render as far ahead as fill() finds necessary
   Duration frame_time;  // the source needs so long for each frame from when it is due: a slow one
@@ -33,11 +30,10 @@ class SimulatedSource final : public FrameSource {
 
   // Blocks until so many frames wait that the rest will be rendered in time even if the machine
   // becomes half as fast; a short run is rendered whole. At most k_fill_limit, and as far as memory
-  // goes. `go_on(rendered, wanted)`, called while it waits, ends it early with false.
-  void fill(const std::function<bool(int, int)>& go_on = {});
-  // Before the first wait(). `sleep_until` empty: frames arrive as fast as they are asked for,
-  // stamped with their simulated arrival. `now` gives the session's clock.
-  void start(SleepUntil sleep_until, std::function<Time()> now);
+  // goes.
+  void prepare(const std::function<bool(int, int)>& go_on) override;
+  // In order, frames are stamped with their simulated arrival.
+  void start(const SourceClock& clock) override { clock_ = clock; }
 
   [[nodiscard]] bool wait(ArrivedFrame& arrived) override;
   void give_back(const ArrivedFrame& arrived) noexcept override;
@@ -45,12 +41,14 @@ class SimulatedSource final : public FrameSource {
     return now.nanoseconds >= late_since_ns_.load(std::memory_order_relaxed);
   }
 
-  // One for each frame delivered so far, in the order of delivery; complete once wait() said false.
-  [[nodiscard]] const std::vector<sim::SimTruth>& truths() const { return truths_; }
   // Frames that were not rendered by the time they were due: the machine was too slow.
-  [[nodiscard]] int late_renders() const { return late_renders_; }
-  // Part of all frames that was delivered; from any thread.
-  [[nodiscard]] double delivered_part() const noexcept;
+  [[nodiscard]] int late_frames() const noexcept override { return late_frames_; }
+  [[nodiscard]] std::size_t frame_count() const noexcept override { return truths_.size(); }
+  [[nodiscard]] Duration duration() const noexcept override {
+    return simulator_.scenario().duration;
+  }
+  [[nodiscard]] double delivered_part() const noexcept override;
+  [[nodiscard]] const std::vector<FrameTruth>& truths() const noexcept override { return truths_; }
 
  private:
   // Until its frame was given back a slot belongs to the frame group.
@@ -64,6 +62,7 @@ class SimulatedSource final : public FrameSource {
 
   void render_all();
   void put(int number, sim::SimFrame& frame);
+  void sleep_until(Time time) const;
   [[nodiscard]] int frames_wanted(double frames_a_second) const;
   [[nodiscard]] Slot& slot_of(int number) {
     return slots_[static_cast<std::size_t>(number) % slots_.size()];
@@ -71,16 +70,15 @@ class SimulatedSource final : public FrameSource {
 
   const sim::Simulator& simulator_;
   SimulatedSourceSettings settings_;
-  SleepUntil sleep_until_;
-  std::function<Time()> now_;
+  SourceClock clock_;
   std::vector<Slot> slots_;
-  std::vector<sim::SimTruth> truths_;
+  std::vector<FrameTruth> truths_;
   std::mutex order_;  // of the renderers alone
   std::atomic<int> next_{0}, rendered_count_{0}, delivered_{0}, given_back_{0};
   std::atomic<int> ahead_max_;                          // frames rendered and not given back
   std::atomic<std::int64_t> late_since_ns_{INT64_MAX};  // when the first of the late ones was due
   std::atomic<bool> stop_{false};
-  int late_renders_ = 0;
+  std::atomic<int> late_frames_{0};
   Time ready_;           // when a slow source was done with the last frame
   Release is_rendered_;  // once for each frame, in their order
   std::vector<std::thread> renderers_;

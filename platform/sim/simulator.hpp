@@ -13,24 +13,18 @@
 
 #include "kernels/pose/head_pose.hpp"
 #include "platform/sensors/frame_buffer.hpp"
+#include "platform/sensors/frame_truth.hpp"
 #include "platform/sim/planes.hpp"
 #include "platform/sim/scenario.hpp"
 
 namespace glint::sim {
-
-struct SimTruth {
-  Time mid_exposure;  // true, whatever the stamp says
-  Pose T_world_camera;
-  std::vector<Pose> T_world_tool;
-  std::vector<std::uint8_t> visible_mask;  // each tool; bit i: its marker i is truly visible
-};
 
 struct SimFrame {
   FrameBuffer pixels;
   Time mid_exposure, arrival;  // as stamped
   std::uint64_t sequence = 0;
   HeadPose head;  // by the drifting localisation, at the stamp
-  SimTruth truth;
+  FrameTruth truth;
   std::vector<Pose> reference;  // T_reference_tool, each tool
   Planes scratch;
 

@@ -1,6 +1,6 @@
-// A board's groups do as a desktop's: they notice an overrun ahead where they were given bounds,
-// and say which buttons are held.
-#include "platform/boards/board_groups.hpp"
+// A run's groups on one core: they notice an overrun ahead where they were given bounds, and say
+// which buttons are held.
+#include "platform/session/session_groups.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/boards/board_run.hpp"
 #include "platform/can/candump_line.hpp"
 
 namespace glint::board_groups_test {
@@ -30,6 +31,7 @@ class BoardGroupsTest : public testing::Test {
     cell_.record.file.clear();
     cell_.files = {"", ""};
     cell_.dds.on = false;
+    cell_.realtime = true;
     cell_.deadlines.frame = cell_.deadlines.tick = k_deadline;
     black_.width = black_.height = 512;
     black_.reflectivity_16.resize(512 * 512);
@@ -42,11 +44,15 @@ class BoardGroupsTest : public testing::Test {
   [[nodiscard]] BoardResult run_with(const BoardBounds& bounds, bool pressed = false,
                                      std::uint64_t first_tick = 0,
                                      std::uint64_t ticks = k_ticks) const {
-    Sinks sinks(cell_, {folder_.string(), false, {}}, 0);
+    SessionOptions options;
+    options.out = folder_.string();
+    options.with_reader = false;
+    options.plan = plan_on_one_core(cell_, -1, bounds);
+    Sinks sinks(cell_, options, 0);
     if (pressed) sinks.offer_button({Time{}, Button::draw, true});
     Time now;
-    BoardGroups groups(
-        cell_, sinks, [&now] { return now; }, 0, k_frames, bounds);
+    SessionGroups groups(cell_, options, {k_frames, 0}, sinks, nullptr, [&now] { return now; }, 0,
+                         {});
     for (std::uint32_t frame = 1; frame <= k_frames; ++frame) {
       const Time mid_exposure = Time{} + milliseconds(22 * frame);
       now = mid_exposure + milliseconds(5);

@@ -3,9 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "platform/boards/board_groups.hpp"
 #include "platform/boards/board_json.hpp"
+#include "platform/boards/board_run.hpp"
 #include "platform/rt/clock.hpp"
+#include "platform/session/session_groups.hpp"
 #include "tests/unit/platform/dds/isolated_network.hpp"
 #include "tests/unit/platform/dds/robot_speaker.hpp"
 #include "tests/unit/platform/robot/files.hpp"
@@ -33,10 +34,15 @@ class HeardJointsOfABoard : public DdsTest {
 TEST_F(HeardJointsOfABoard, LetItFollowWhatItCannotFollowWithoutThem) {
   const Time epoch = monotonic_now();
   const std::int64_t unix_offset_ns = unix_offset().nanoseconds + epoch.nanoseconds;
-  Sinks sinks(cell_, {files_.folder(), false, {}}, unix_offset_ns);
+  SessionOptions options;
+  options.out = files_.folder();
+  options.with_reader = false;
+  options.plan = plan_on_one_core(cell_, -1, {});
+  Sinks sinks(cell_, options, unix_offset_ns);
   ASSERT_NE(sinks.inputs(), nullptr);
-  BoardGroups groups(
-      cell_, sinks, [epoch] { return Time{} + (monotonic_now() - epoch); }, unix_offset_ns, 1, {},
+  SessionGroups groups(
+      cell_, options, {1, 0}, sinks, nullptr,
+      [epoch] { return Time{} + (monotonic_now() - epoch); }, unix_offset_ns,
       read_background_scene(cell_, nullptr));
   ASSERT_NE(groups.background(), nullptr);
   BackgroundGroup& background = *groups.background();
@@ -61,8 +67,8 @@ TEST_F(HeardJointsOfABoard, LetItFollowWhatItCannotFollowWithoutThem) {
   const auto robot = as_json(result).at("background").at("references");
   EXPECT_GE(robot.at("joint_states_used"), 1);
   EXPECT_EQ(robot.at("pictures_without_joints"), 0);
-  sinks.close(result.sinks);
-  EXPECT_GE(result.sinks.heard.joints, 2u);
+  sinks.close(result);
+  EXPECT_GE(result.heard.joints, 2u);
 }
 
 }  // namespace

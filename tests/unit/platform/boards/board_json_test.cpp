@@ -10,12 +10,12 @@ namespace {
 
 TEST(BoardJson, SaysWhatWasHeardOverCan) {
   BoardResult result;
-  result.sinks.can_heard = {3, 2};
+  result.can_heard = {3, 2};
   const auto heard = as_json(result).at("can_heard");
   EXPECT_EQ(heard.at("buttons"), 3);
   EXPECT_EQ(heard.at("refused"), 2);
   EXPECT_EQ(heard.at("why_not"), "");
-  result.sinks.can_not_heard = "can.buttons: no bus";
+  result.can_not_heard = "can.buttons: no bus";
   EXPECT_EQ(as_json(result).at("can_heard").at("why_not"), "can.buttons: no bus");
 }
 

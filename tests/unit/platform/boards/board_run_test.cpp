@@ -82,7 +82,7 @@ TEST_F(BoardRun, RecordsOnlyWhatItIsAskedTo) {
   const BoardResult result = run("");
   EXPECT_EQ(result.frames, k_shown);
   EXPECT_FALSE(result.background);
-  EXPECT_TRUE(result.sinks.recording_file.empty());
+  EXPECT_TRUE(result.recording_file.empty());
   EXPECT_FALSE(std::filesystem::exists(path("run.mcap")));
 }
 
@@ -94,12 +94,12 @@ TEST_P(BoardRecording, OfARobotThatIsFollowedReplaysToTheRunsHash) {
   const BoardResult result = run("board.mcap");
   EXPECT_EQ(result.frames, k_shown);
   EXPECT_GT(result.frames_tracked, k_shown / 4);
-  EXPECT_EQ(result.heap_allocations, 0u);
+  EXPECT_EQ(result.heap_allocations_after_start, 0u);
   ASSERT_TRUE(result.background);
   EXPECT_GE(result.background->slices, 1u);
   EXPECT_GE(result.background->robot.followed, 1);
   EXPECT_GE(result.background->map.pictures, 1);
-  ASSERT_TRUE(result.sinks.recording.complete()) << result.sinks.recording.reason;
+  ASSERT_TRUE(result.recording.complete()) << result.recording.reason;
   for (const int workers : {1, 2}) {
     ReplayOptions options;
     options.workers = workers;

@@ -40,12 +40,16 @@ class LoopSourceTest : public testing::Test {
   std::string file_;
 };
 
+SourceClock live_from(Time epoch) {
+  return {true, epoch, [epoch] { return Time{} + (monotonic_now() - epoch); }};
+}
+
 TEST_F(LoopSourceTest, LetsEveryFrameArriveOnceAndNoneBeforeItsTime) {
   const FrameLoop loop(file_);
   const Time epoch = monotonic_now();
   const Duration period = milliseconds(1);
-  LoopSource source(loop, {20, period, epoch + milliseconds(5), epoch, 0, -1});
-  source.start();
+  LoopSource source(loop, {20, period, milliseconds(5), 0, -1});
+  source.start(live_from(epoch));
   ArrivedFrame arrived;
   for (int i = 0; i < 20; ++i) {
     ASSERT_TRUE(source.wait(arrived));
@@ -63,8 +67,8 @@ TEST_F(LoopSourceTest, LetsEveryFrameArriveOnceAndNoneBeforeItsTime) {
 TEST_F(LoopSourceTest, KeepsFramesThatArriveWhileAnOlderOneIsWorkedOn) {
   const FrameLoop loop(file_);
   const Time epoch = monotonic_now();
-  LoopSource source(loop, {5, milliseconds(1), epoch, epoch, 0, -1});
-  source.start();
+  LoopSource source(loop, {5, milliseconds(1), {}, 0, -1});
+  source.start(live_from(epoch));
   ArrivedFrame arrived;
   ASSERT_TRUE(source.wait(arrived));
   (void)sleep_until(epoch + milliseconds(10));
@@ -78,10 +82,9 @@ TEST_F(LoopSourceTest, KeepsFramesThatArriveWhileAnOlderOneIsWorkedOn) {
 
 TEST_F(LoopSourceTest, GoesOnUntilItIsStoppedWhereNoNumberIsGiven) {
   const FrameLoop loop(file_);
-  const Time epoch = monotonic_now();
   std::atomic<bool> stop{false};
-  LoopSource source(loop, {0, milliseconds(1), epoch, epoch, 0, -1, &stop});
-  source.start();
+  LoopSource source(loop, {0, milliseconds(1), {}, 0, -1, &stop});
+  source.start(live_from(monotonic_now()));
   ArrivedFrame arrived;
   for (std::uint64_t i = 1; i <= 10; ++i) {
     ASSERT_TRUE(source.wait(arrived));
@@ -91,6 +94,20 @@ TEST_F(LoopSourceTest, GoesOnUntilItIsStoppedWhereNoNumberIsGiven) {
   while (source.wait(arrived)) {  // those that had arrived by then
   }
   EXPECT_GE(arrived.frame.sequence, 10u);
+}
+
+TEST_F(LoopSourceTest, InOrderWaitsForNoTimeAndGivesTheSameFrames) {
+  const FrameLoop loop(file_);
+  LoopSource source(loop, {4, milliseconds(3'600'000), milliseconds(7), 0, -1});
+  source.start({false, Time{}, [] { return Time{}; }});
+  ArrivedFrame arrived;
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_TRUE(source.wait(arrived));
+    EXPECT_EQ(arrived.frame.arrival, Time{} + milliseconds(7) + milliseconds(3'600'000) * i);
+    EXPECT_EQ(arrived.slot, static_cast<int>(loop.place_of(static_cast<std::uint64_t>(i))));
+  }
+  EXPECT_FALSE(source.wait(arrived));
+  EXPECT_EQ(source.frame_count(), 4u);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ double value_of(const std::vector<Figure>& figures, const std::string& name) {
 // Two of the five tools, both whole and seen as they are.
 struct TwoSeen {
   ToolSet tools = five_tools(1);
-  sim::SimTruth truth;
+  FrameTruth truth;
   FrameOutcome outcome;
 
   TwoSeen() {

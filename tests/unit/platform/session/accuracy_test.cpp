@@ -13,10 +13,10 @@ namespace {
 
 struct FramesSeen {
   std::vector<FrameOutcome> outcomes;
-  std::vector<sim::SimTruth> truths;
+  std::vector<FrameTruth> truths;
 
   ToolOutcome& frame(std::int64_t ms, std::uint8_t visible, bool seen, double error_m = 0) {
-    sim::SimTruth truth;
+    FrameTruth truth;
     truth.mid_exposure = Time{} + milliseconds(ms);
     truth.T_world_tool = {Pose{}};
     truth.visible_mask = {visible};

@@ -160,7 +160,7 @@ TEST(BackgroundRun, LiveRunsItsSlicesTracesThemAndReplaysToTheSameHash) {
   SessionOptions options;
   options.out = folder.path();
   options.trace = true;
-  const SessionResult run = run_session(cell, options);
+  const SessionResult run = run_simulated(cell, options);
   ASSERT_TRUE(run.background);
   EXPECT_GE(run.background->slices, 1u);
   EXPECT_GE(run.background->slices + run.background->skipped, 3'600u);

@@ -31,7 +31,7 @@ TEST(RunInOrder, AsksForNoRealTimeRightsForItsWorkers) {
   options.out = folder.path();
   std::set<int> policies;
   options.progress = [&](double, double) { policies.merge(policies_of("glint-worker")); };
-  const SessionResult result = run_session(cell, options);
+  const SessionResult result = run_simulated(cell, options);
   EXPECT_EQ(policies, std::set<int>{SCHED_OTHER});
   EXPECT_TRUE(result.refused.empty()) << result.refused.front();
 }

@@ -224,10 +224,9 @@ TEST(SlowSource, IsBlamedForTheTicksWithoutAMeasurement) {
   const TemporaryFolder folder;
   SessionOptions options;
   options.out = folder.path();
-  options.source_frame_time = milliseconds(60);
-  const SessionResult run = run_session(short_cell(1), options);
+  const SessionResult run = run_simulated(short_cell(1), options, milliseconds(60));
   const ToolTicks& tool = run.sent.tools[0];
-  EXPECT_EQ(run.late_renders, run.frames);
+  EXPECT_EQ(run.frames_late, run.frames);
   EXPECT_GT(run.duration_s, 2.5) << "45 frames of 60 ms each";
   EXPECT_GT(tool.lost, tool.all() / 2);
   // Nothing leaves before the first frame is there; nothing is due after the last.
@@ -240,7 +239,7 @@ TEST(SlowSource, IsNotBlamedWhereItIsInTime) {
   const TemporaryFolder folder;
   const SessionResult run = short_run(short_cell(1), folder.path());
   EXPECT_EQ(run.ticks_source_late, 0u);
-  EXPECT_EQ(run.late_renders, 0);
+  EXPECT_EQ(run.frames_late, 0);
   EXPECT_NEAR(run.duration_s, 1.23, 0.05) << "one second of frames and lost_after";
 }
 

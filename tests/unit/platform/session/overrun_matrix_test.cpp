@@ -210,7 +210,7 @@ void OverrunMatrix::expect_replays_alike(const SessionResult& run) {
 }
 
 TEST_P(OverrunMatrix, HasItsDeclaredEffectOnceAtEveryNodeAndReplaysToTheSameBytes) {
-  const SessionResult run = run_session(cell_, options_);
+  const SessionResult run = run_simulated(cell_, options_);
   ASSERT_TRUE(run.recording.complete());
   const OverrunLog log = overrun_log(run.recording_file, folder_.path() + "/can.log");
   expect_decisions(run, log);

@@ -31,7 +31,7 @@ TEST(OverrunTrace, OfARunInOrderStandsOnTheSessionsTime) {
   SessionOptions options;
   options.out = folder.path();
   options.trace = true;
-  const SessionResult run = run_session(short_cell(0.5), options);
+  const SessionResult run = run_simulated(short_cell(0.5), options);
   const TraceFile trace = read_trace(folder.path() + "/trace.spans");
   EXPECT_EQ(trace.spans.size(), run.trace_spans);
   for (const TraceSpan& span : trace.spans) {

@@ -19,11 +19,11 @@ inline SessionResult run_with_buttons(const Cell& cell, const std::vector<Button
   Time now;
   const Clock clock = [&now] { return now; };
   Sinks sinks(cell, options, 0);
-  const auto groups = std::make_unique<SessionGroups>(
-      cell, options, static_cast<std::size_t>(simulator.frame_count()), sinks, nullptr, clock, 0,
-      BackgroundScene{});
   SimulatedSource source(simulator);
-  source.start({}, clock);
+  source.start({false, Time{}, clock});
+  const auto groups = std::make_unique<SessionGroups>(
+      cell, options, KeptFrames{source.frame_count(), source.frame_count()}, sinks, nullptr, clock,
+      0, BackgroundScene{});
   SessionResult result;
   auto event = events.begin();
   const auto tick_until = [&](Time limit) {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "platform/session/scenario_of.hpp"
-#include "platform/session/session.hpp"
+#include "platform/session/simulated_run.hpp"
 
 namespace glint {
 
@@ -45,7 +45,7 @@ inline SessionResult short_run(const Cell& cell, const sim::Scenario& scenario,
                                const std::string& folder) {
   SessionOptions options;
   options.out = folder;
-  return run_session(cell, scenario, options);
+  return run_simulated(cell, scenario, options);
 }
 
 inline SessionResult short_run(const Cell& cell, const std::string& folder) {

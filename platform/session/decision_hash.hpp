@@ -1,0 +1,42 @@
+// What a run decided, as one hash: every frame's verdict, every tick's states and every overrun.
+// Two runs of the same frames on another machine differ in their times, not in this.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "nodes/tokens.hpp"
+#include "platform/record/sha256.hpp"
+#include "platform/session/group_runner.hpp"
+
+namespace glint {
+
+class DecisionHash {
+ public:
+  // Frame thread, after each frame; gives whether a tool was seen in it.
+  template <class G>
+  bool add(std::uint64_t sequence, const Estimates& estimates, const GroupRunner<G>& runner) {
+    const bool seen = add_verdict(sequence, estimates);
+    add_overruns(verdicts_, runner.overruns(), runner.last_overrun());
+    return seen;
+  }
+  // Tick thread, after each tick.
+  template <class G>
+  void add(std::uint64_t tick, const PoseSamples& samples, const GroupRunner<G>& runner) {
+    add_states(tick, samples);
+    add_overruns(states_, runner.overruns(), runner.last_overrun());
+  }
+  // Lower-case hex, when both threads have ended.
+  [[nodiscard]] std::string hex() const;
+
+ private:
+  bool add_verdict(std::uint64_t sequence, const Estimates& estimates);
+  void add_states(std::uint64_t tick, const PoseSamples& samples);
+  // How many of each kind there were so far, and what was decided on the last, after which node.
+  static void add_overruns(Sha256& hash, const OverrunCounts& counts,
+                           const graph::OverrunDecision& last);
+
+  Sha256 verdicts_, states_;  // of one thread each
+};
+
+}  // namespace glint

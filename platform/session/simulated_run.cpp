@@ -1,0 +1,27 @@
+#include "platform/session/simulated_run.hpp"
+
+#include <memory>
+#include <utility>
+
+#include "platform/mapping/depth_png.hpp"
+#include "platform/session/scenario_of.hpp"
+#include "platform/session/seed_method.hpp"
+#include "platform/session/simulated_source.hpp"
+
+namespace glint {
+
+SessionResult run_simulated(const Cell& cell, const SessionOptions& options, Duration frame_time) {
+  return run_simulated(cell, scenario_of(cell), options, frame_time);
+}
+
+SessionResult run_simulated(const Cell& cell, sim::Scenario scenario, const SessionOptions& given,
+                            Duration frame_time) {
+  SessionOptions options = given;
+  options.method = [](const Cell& of) { return std::make_unique<SeedMethod>(of); };
+  options.read_png = read_depth_png;
+  const sim::Simulator simulator(std::move(scenario));
+  SimulatedSource source(simulator, {cell.realtime, frame_time});
+  return run_session(cell, source, options);
+}
+
+}  // namespace glint
