@@ -95,11 +95,11 @@ TEST(BackgroundInputs, WorstUsesAllStepsOfASlice) {
 }
 
 TEST(PoseInputs, NoInputRunsALoopMoreOftenThanItMay) {
-  constexpr InputKind k_kinds[] = {InputKind::typical, InputKind::recorded, InputKind::worst,
+  constexpr InputKind k_all_kinds[] = {InputKind::typical, InputKind::recorded, InputKind::worst,
                                    InputKind::searched};
   for (const auto& kernel : all_kernels()) {
     for (const Limits& limits : all_limits()) {
-      for (const InputKind kind : k_kinds) {
+      for (const InputKind kind : k_all_kinds) {
         for (int number = 0; number < test::repetitions(24, 4); ++number) {
           kernel->set_input(kind, static_cast<std::uint64_t>(number), limits);
           kernel->run();
