@@ -96,7 +96,7 @@ TEST(BackgroundInputs, WorstUsesAllStepsOfASlice) {
 
 TEST(PoseInputs, NoInputRunsALoopMoreOftenThanItMay) {
   constexpr InputKind k_all_kinds[] = {InputKind::typical, InputKind::recorded, InputKind::worst,
-                                   InputKind::searched};
+                                       InputKind::searched};
   for (const auto& kernel : all_kernels()) {
     for (const Limits& limits : all_limits()) {
       for (const InputKind kind : k_all_kinds) {
