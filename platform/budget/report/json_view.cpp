@@ -35,6 +35,10 @@ JsonView JsonView::of_file(const std::string& path) {
         content.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, content.size()));
     throw InputError(path + ":" + std::to_string(1 + std::count(content.begin(), end, '\n')) +
                      ": no JSON here; expected a file that glint wrote with --json");
+  } catch (const nlohmann::json::out_of_range&) {  // says which, but not where
+    throw InputError(path +
+                     ": a number that no double holds; expected a file that glint wrote with "
+                     "--json");
   }
   view.file_ = std::make_shared<const std::string>(path);
   view.value_ = view.root_.get();
