@@ -22,6 +22,12 @@ double largest_sigma(const Eigen::MatrixXd& covariance) {
 
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) { return matrix.inverse(); }
 
+Eigen::MatrixXd inverse_root_of(const Eigen::MatrixXd& matrix) {
+  const SymmetricEigen axes = symmetric_eigen(matrix);
+  return axes.vectors * axes.values.cwiseSqrt().cwiseInverse().asDiagonal() *
+         axes.vectors.transpose();
+}
+
 Eigen::MatrixXd pseudo_inverse_of(const Eigen::MatrixXd& matrix) {
   const SymmetricEigen axes = symmetric_eigen(matrix);
   const double least = axes.values.cwiseAbs().maxCoeff() * k_rank_tolerance;

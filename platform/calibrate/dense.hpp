@@ -19,6 +19,9 @@ struct SymmetricEigen {
 
 [[nodiscard]] Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix);
 
+// R of R * matrix * R = 1, symmetric, for a symmetric positive matrix.
+[[nodiscard]] Eigen::MatrixXd inverse_root_of(const Eigen::MatrixXd& matrix);
+
 // Of Moore and Penrose, of a symmetric matrix: also where it has no inverse.
 [[nodiscard]] Eigen::MatrixXd pseudo_inverse_of(const Eigen::MatrixXd& matrix);
 

@@ -92,12 +92,9 @@ void judge(const std::vector<RangedFrame>& frames, Brightness brightness, DepthF
   fit.range_variance = squares[1] / std::max(redundancy[1], 1.0);
   const Vector3 unit = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Matrix3 scaled = unit.asDiagonal() * information * unit.asDiagonal();
-  const SymmetricEigen axes = symmetric_eigen(scaled);
-  fit.determined = axes.values[0] > k_bias_eigenvalue_min;
+  fit.determined = symmetric_eigen(scaled).values[0] > k_bias_eigenvalue_min;
   if (!fit.determined) return;
-  const Matrix3 directions = axes.vectors;
-  const Matrix3 root =
-      directions * axes.values.cwiseSqrt().cwiseInverse().asDiagonal() * directions.transpose();
+  const Matrix3 root = inverse_root_of(scaled);
   for (Vector3& score : scores) score = root * (unit.asDiagonal() * score);
   fit.correlated = correlation_factor(scores);
   fit.covariance = fit.correlated * (unit.asDiagonal() * scaled.inverse() * unit.asDiagonal());

@@ -10,7 +10,7 @@
 namespace glint {
 
 struct FrameTruth {
-  Time mid_exposure;  // true, whatever the stamp says
+  Time mid_exposure;  // the true one; the stamp may differ
   Pose T_world_camera;
   std::vector<Pose> T_world_tool;
   std::vector<std::uint8_t> visible_mask;  // each tool; bit i: its marker i is truly visible

@@ -69,7 +69,9 @@ Picture read_png(const std::string& path, const std::string& expected) {
   check_picture_size(path, k_width_at, big_endian(head.data() + k_width_at),
                      big_endian(head.data() + k_height_at));
   std::fseek(file.get(), 0, SEEK_END);
-  const auto file_bytes = static_cast<std::uint64_t>(std::ftell(file.get()));
+  const long end = std::ftell(file.get());
+  if (end < 0) fail("no file that can be read twice");  // a pipe
+  const auto file_bytes = static_cast<std::uint64_t>(end);
   std::rewind(file.get());
 
   const Context context(spng_ctx_new(0), spng_ctx_free);

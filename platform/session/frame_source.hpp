@@ -44,10 +44,10 @@ class FrameSource {
   [[nodiscard]] virtual bool late(Time /*now*/) const noexcept { return false; }
   [[nodiscard]] virtual int late_frames() const noexcept { return 0; }
 
-  // What a source knows of its end: frames in all and their duration; 0: nothing.
+  // Frames in all and their duration; 0: not known before they arrive.
   [[nodiscard]] virtual std::size_t frame_count() const noexcept { return 0; }
   [[nodiscard]] virtual Duration duration() const noexcept { return {}; }
-  // Part of all frames that was delivered, where their number is known. From any thread.
+  // Delivered part of frame_count(). From any thread.
   [[nodiscard]] virtual double delivered_part() const noexcept { return 0; }
   // One for each frame delivered, in the order of delivery, complete once wait() returned false;
   // empty: it has no truth.

@@ -29,7 +29,7 @@ struct SessionOptions : SinkOptions {
   // What decides in the tracker's place where the cell asks for it; empty: nothing can.
   std::function<std::unique_ptr<FrameMethod>(const Cell&)> method;
   DepthPngReader read_png = nullptr;  // of a background's pictures; null: PNG is refused
-  RunPlan plan;                       // who runs what, and the bounds; made without a board
+  RunPlan plan;                       // cores, priorities, bounds; else by rule
   std::vector<Injection> injections;  // delays, to see what is done about them
   bool trace = false;                 // trace.spans in `out`
   bool write_map = true;              // map.ply in `out`, where the cell has a background

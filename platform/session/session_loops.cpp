@@ -37,39 +37,39 @@ void counted(Body body) {
   AllocationCounter::disarm();
 }
 
-// What was said of the robot, once each.
-struct ToldOfRobot {
+// Which lines about the robot are printed; each is printed once.
+struct PrintedAboutRobot {
   bool jumped = false, lacking = false, unusable = false, lost = false;
 };
 
-// A line when the robot is first seen to have jumped, when its joints are first heard without one
-// that its model has, or as they cannot be, and when they are first no longer heard; not by a
-// real-time thread.
-void tell_of_robot(const SessionGroups& groups, ToldOfRobot& told) {
+// One line each at the first refused jump, the first joint state that lacks one of the model's
+// joints, the first that cannot be posed, and the first picture without joints. Not for a real-time
+// thread.
+void print_about_robot(const SessionGroups& groups, PrintedAboutRobot& printed) {
   const BackgroundGroup* const background = groups.background();
   if (background == nullptr) return;
-  if (!told.jumped && background->jumps() > 0) {
-    told.jumped = true;
+  if (!printed.jumped && background->jumps() > 0) {
+    printed.jumped = true;
     std::fprintf(stderr,
                  "the robot is seen where no drift takes it: refused; the run goes on from where "
                  "it was\n");
   }
-  if (const std::string* const joint = background->lacking_joint(); joint && !told.lacking) {
-    told.lacking = true;
+  if (const std::string* const joint = background->lacking_joint(); joint && !printed.lacking) {
+    printed.lacking = true;
     std::fprintf(stderr,
                  "%s: a state without a position of joint '%s': its model stays where it was\n",
                  k_joint_states_topic, joint->c_str());
   }
   if (const Reason reason = background->unusable_joints();
-      reason != Reason::none && !told.unusable) {
-    told.unusable = true;
+      reason != Reason::none && !printed.unusable) {
+    printed.unusable = true;
     std::fprintf(stderr,
                  "%s: a state that cannot pose the robot: %s; expected positions of at most %.0e "
                  "rad or m: its model stays where it was\n",
                  k_joint_states_topic, std::string(name_of(reason)).c_str(), k_joint_position_max);
   }
-  if (!told.lost && background->without_joints() > 0) {
-    told.lost = true;
+  if (!printed.lost && background->without_joints() > 0) {
+    printed.lost = true;
     std::fprintf(stderr,
                  "%s: nothing for longer than mapping.joints_lost_after_ms: the robot is not "
                  "followed until it is heard again\n",
@@ -128,7 +128,7 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
         [background, epoch, &ended] { counted([&] { background->run(epoch, ended); }); });
   }
   const double all_s = (source.duration() + cell.lost_after).seconds();
-  ToldOfRobot told;
+  PrintedAboutRobot printed;
   while (!frames_done || (reached_ns + tick_period(cell).nanoseconds < end_ns && !ends())) {
     // The source may be behind its time, the ticks are not.
     const double reached_s = static_cast<double>(reached_ns) * 1e-9;
@@ -136,7 +136,7 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
       options.progress(std::min(reached_s, source.delivered_part() * all_s), all_s);
     }
     groups.reach(Time{reached_ns});
-    tell_of_robot(groups, told);
+    print_about_robot(groups, printed);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   frame_thread.join();
@@ -170,14 +170,14 @@ void run_in_order(const Cell& cell, Time& now, FrameSource& source, SessionGroup
   };
   ArrivedFrame arrived;
   Time last;
-  ToldOfRobot told;
+  PrintedAboutRobot printed;
   while (!stopped(options) && source.wait(arrived)) {
     tick_until(arrived.frame.arrival);
     now = last = arrived.frame.arrival;
     groups.reach(now);
     groups.process(arrived);
     source.give_back(arrived);
-    tell_of_robot(groups, told);
+    print_about_robot(groups, printed);
     if (options.progress) {
       options.progress((now - Time{}).seconds(), source.duration().seconds());
     }

@@ -1,5 +1,5 @@
-// A run's groups on one core: they notice an overrun ahead where they were given bounds, and say
-// which buttons are held.
+// A run's groups on one core: with bounds an overrun is detected ahead; held buttons leave in the
+// samples.
 #include "platform/session/session_groups.hpp"
 
 #include <gtest/gtest.h>
@@ -13,6 +13,7 @@
 
 #include "platform/boards/board_run.hpp"
 #include "platform/can/candump_line.hpp"
+#include "platform/input_error.hpp"
 
 namespace glint::board_groups_test {
 namespace {
@@ -92,6 +93,11 @@ TEST_F(BoardGroupsTest, GoOnWhereWhatRemainsFitsOrNoBoundIsKnown) {
     EXPECT_EQ(result.frames, k_frames);
     EXPECT_EQ(result.frame_overruns.total() + result.tick_overruns.total(), 0u);
   }
+}
+
+TEST_F(BoardGroupsTest, RefuseAMethodThatTheProgramDoesNotHave) {
+  cell_.method = Method::seed;
+  EXPECT_THROW((void)run_with({}), InputError);
 }
 
 TEST_F(BoardGroupsTest, SayWhetherAButtonIsHeld) {
