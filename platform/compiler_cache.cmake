@@ -10,11 +10,13 @@ if(GLINT_CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${launcher})
   # Files compiled as one are included by their whole path: GoogleTest's __FILE__ would hold it.
   add_compile_options(-ffile-prefix-map=${CMAKE_SOURCE_DIR}/=)
-  # Clang stores whole paths in a precompiled header: ccache compares the sum beside it instead, and
-  # the header is named by an option whose path ccache makes relative.
+  # ccache compares the sum beside a precompiled header, not its 100 MB. Clang stores whole paths in
+  # it: it is made without the cache, and named by an option whose path ccache makes relative.
+  set(GLINT_PRECOMPILED_LAUNCHER ${CMAKE_SOURCE_DIR}/platform/with_sum ${CMAKE_SOURCE_DIR})
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
-    set(GLINT_PRECOMPILED_LAUNCHER ${CMAKE_SOURCE_DIR}/platform/with_sum ${CMAKE_SOURCE_DIR})
     set(CMAKE_CXX_COMPILE_OPTIONS_USE_PCH -include-pch <PCH_FILE>)
+  else()
+    list(APPEND GLINT_PRECOMPILED_LAUNCHER ${launcher})
   endif()
 endif()
 
