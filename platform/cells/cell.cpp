@@ -54,6 +54,7 @@ struct CellParser {
   void read_depth_bias(TomlReader& camera);
   void read_lens(const std::string& path, std::uint32_t line);
   const NamedFile* named_by(TomlReader& root, const std::string& section);
+  void read_source(const toml::table* table);
   void read_simulator(const toml::table* table);
   void read_tools(TomlReader& root);
 };
@@ -147,6 +148,15 @@ void CellParser::read_camera(const toml::table* table) {
     cell.camera.model.table = {cell.camera.model.width, cell.camera.model.height,
                                carried->rays->data()};
   }
+}
+
+void CellParser::read_source(const toml::table* table) {
+  if (table == nullptr) return;
+  TomlReader reader(*table, cell.file, "source.");
+  cell.source.kind = reader.text("kind", cell.source.kind);
+  cell.source.path = resolved(reader.text("path", ""), "source.path");
+  cell.source.place = cell.file + ":" + std::to_string(reader.line_of("kind")) + ": source";
+  reader.done();
 }
 
 void CellParser::read_simulator(const toml::table* table) {
@@ -269,6 +279,7 @@ Cell cell_from_text(const std::string& text, const std::string& file, const Cell
   read_tool_changes(root, cell);
   read_reference(root, cell);
   read_headset(root.table("headset"), cell);
+  parser.read_source(root.table("source"));
   parser.read_simulator(root.table("simulator"));
   read_rates(root.table("rates"), cell);
   read_deadlines(root.table("deadlines"), cell);

@@ -57,6 +57,13 @@ enum class Method : std::uint8_t {
   seed,  // the published method, first tool only; outside real time and determinism
 };
 
+// Where frames come from.
+struct SourceSettings {
+  std::string kind = "simulator";  // or a kind of platform/sources
+  std::string path;                // its file or folder
+  std::string place;               // where the file names it, for messages
+};
+
 // Where simulated frames come from; everything else about the simulator has one declared default.
 struct SimulatorSettings {
   std::string scenario = "default";  // default, still, or trajectories
@@ -112,6 +119,8 @@ struct MappingSettings {
   Duration joints_lost_after = milliseconds(1000);
 };
 
+inline constexpr Duration k_lost_after = milliseconds(250);
+
 struct Cell {
   std::string file;  // where it was read, for messages
   std::string text;  // as read: goes into every recording
@@ -127,11 +136,12 @@ struct Cell {
   std::vector<NamedFile> named_files;  // of `glint calibrate`, as read: a recording carries them
   MotionSettings motion;               // as built in, or by [motion] file
   BiasCorrection correction;           // none, or by [correction] file
+  SourceSettings source;
   SimulatorSettings simulator;
   HeadNoise head_noise;  // of the headset's own localisation
   bool realtime = true;  // frames arrive at their time; otherwise as fast as can be
   double tick_hz = 250;
-  Duration lost_after = milliseconds(250);
+  Duration lost_after = k_lost_after;
   Duration actuation_delay;
   int workers = 2;
   Duration arrival_jitter = microseconds(400);  // of a frame's transport beyond the camera's

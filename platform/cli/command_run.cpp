@@ -1,9 +1,11 @@
-// glint run: frames in, poses out over DDS and CAN, everything recorded.
+// glint run: frames in, poses out over DDS and CAN, everything recorded. glint track: the same of
+// recorded frames, as fast as possible.
 #include <unistd.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -25,7 +27,9 @@
 #include "platform/programming/key_buttons.hpp"
 #include "platform/programming/key_terminal.hpp"
 #include "platform/session/injection_text.hpp"
-#include "platform/session/simulated_run.hpp"
+#include "platform/session/recorded_cell.hpp"
+#include "platform/session/source_run.hpp"
+#include "platform/sources/open_source.hpp"
 #include "platform/stop_signals.hpp"
 
 namespace glint {
@@ -43,10 +47,39 @@ struct RunArguments {
   bool trace = false;
   bool keys = false;
   double source_frame_ms = 0;
+  bool recorded = false;  // glint track
+  std::string source, kind;
+  ReadTolerance tolerance;
 };
 
+std::string kind_of(const RunArguments& arguments) {
+  if (!arguments.kind.empty()) return arguments.kind;
+  return std::filesystem::is_directory(arguments.source) ? "folder" : "recording";
+}
+
+// A recording has a cell of its own.
+Cell cell_of_recorded(const RunArguments& arguments) {
+  Cell cell;
+  if (arguments.source.empty() || !arguments.config.empty() || kind_of(arguments) != "recording") {
+    cell = cell_or_default(arguments.config);
+  } else {
+    RecordingReader reader(arguments.source, arguments.tolerance);
+    cell = recorded_cell(reader, arguments.source);
+    cell.source = {};
+  }
+  if (!arguments.source.empty()) {
+    cell.source = {kind_of(arguments), arguments.source, arguments.source};
+  }
+  if (cell.source.kind == "simulator") {
+    throw InputError(
+        "track: neither a SOURCE nor a [source] in the cell; expected recorded frames: a recording "
+        "or a folder with frames.csv");
+  }
+  return cell;
+}
+
 Cell cell_of(const RunArguments& arguments) {
-  Cell cell = cell_or_default(arguments.config);
+  Cell cell = arguments.recorded ? cell_of_recorded(arguments) : cell_or_default(arguments.config);
   if (!arguments.can.empty()) cell.can.sink = arguments.can;
   if (!arguments.level.empty()) cell.record.level = arguments.level;
   if (arguments.duration_s > 0) cell.simulator.duration_s = arguments.duration_s;
@@ -124,10 +157,25 @@ int run(const RunArguments& arguments) {
         "renders ahead: " + std::to_string(rendered) + " of " + std::to_string(wanted) + " frames");
   };
   const Duration frame_time{static_cast<std::int64_t>(arguments.source_frame_ms * 1e6)};
-  SessionResult result = run_simulated(cell, options, frame_time);
+  SessionResult result = run_source(cell, options, {frame_time, arguments.tolerance});
   progress.clear();
   room.release();
   return report(cell, options, arguments.json, result);
+}
+
+// The options that both commands have.
+void add_common(CLI::App& command, RunArguments& arguments) {
+  add_cell_option(command, arguments.config);
+  command.add_option("--out", arguments.out, "folder of all files written")->capture_default_str();
+  command.add_option("--json", arguments.json, "write the table's figures here");
+  command.add_option("--can", arguments.can, "log:FILE or socketcan:IF, instead of the cell's");
+  command.add_option("--record-level", arguments.level, "full, roi, blobs or outputs");
+  command.add_option("--workers", arguments.workers, "threads of the frame group: 1 or 2")
+      ->check(in_range(1, 2));
+  command
+      .add_option("--method", arguments.method,
+                  "glint, or seed: the method as published, the baseline")
+      ->check(CLI::IsMember({"glint", "seed"}));
 }
 
 }  // namespace
@@ -142,20 +190,9 @@ void add_run(CLI::App& app, int& exit_code) {
       "  glint run --keys && glint path out/run.mcap --csv path.csv\n"
       "Tools that this sensor cannot tell apart are refused; of those that it may confuse, and of\n"
       "a tool's markers that may pass for others of its own, the table warns: `this cell`.");
-  add_cell_option(*command, arguments->config);
-  command->add_option("--out", arguments->out, "folder of all files written")
-      ->capture_default_str();
-  command->add_option("--json", arguments->json, "write the table's figures here");
-  command->add_option("--can", arguments->can, "log:FILE or socketcan:IF, instead of the cell's");
-  command->add_option("--record-level", arguments->level, "full, roi, blobs or outputs");
+  add_common(*command, *arguments);
   command->add_option("--duration", arguments->duration_s, "seconds, instead of the cell's")
       ->check(in_range(0.1, 3600.0));
-  command->add_option("--workers", arguments->workers, "threads of the frame group: 1 or 2")
-      ->check(in_range(1, 2));
-  command
-      ->add_option("--method", arguments->method,
-                   "glint, or seed: the method as published, the baseline")
-      ->check(CLI::IsMember({"glint", "seed"}));
   command->add_option("--board", arguments->board, "costs: a built-in board or a board file");
   command->add_option("--plan", arguments->plan, "who runs what: of `glint budget schedule`");
   command
@@ -173,6 +210,29 @@ void add_run(CLI::App& app, int& exit_code) {
   command->add_flag("--fast", arguments->as_fast_as_can_be,
                     "as fast as can be instead of in real time: no DDS, the same bytes every time");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+void add_track(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "track", "Track recorded frames as fast as possible: poses, CAN log, plots");
+  auto arguments = std::make_shared<RunArguments>();
+  arguments->recorded = arguments->as_fast_as_can_be = true;
+  command->footer(
+      "Examples:\n  glint track sim/frames.mcap --out again\n"
+      "  glint track frames --config my_cell.toml --json poses.json\n"
+      "SOURCE: a recording of `glint run` or `glint simulate` (its own cell holds where no "
+      "--config\n"
+      "is given), or a folder with frames.csv (platform/sources/README.md).");
+  command->add_option("SOURCE", arguments->source, "instead of the cell's [source]");
+  command->add_option("--kind", arguments->kind,
+                      "of SOURCE: " + recorded_kinds() + "; default: by what is there");
+  add_common(*command, *arguments);
+  command->add_flag("--allow-truncated", arguments->tolerance.truncated,
+                    "read a recording that was cut short or damaged: exit code 1");
+  command->callback([arguments, &exit_code] {
+    arguments->tolerance.incomplete = arguments->tolerance.truncated;
+    exit_code = run(*arguments);
+  });
 }
 
 }  // namespace glint

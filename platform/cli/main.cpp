@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
   app.footer("Example: glint run --out out --json out/summary.json");
   int exit_code = 0;
   glint::add_run(app, exit_code);
+  glint::add_track(app, exit_code);
   glint::add_replay(app, exit_code);
   glint::add_simulate(app, exit_code);
   glint::add_experiment(app, exit_code);

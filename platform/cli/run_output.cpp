@@ -1,5 +1,6 @@
 #include "platform/cli/run_output.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -47,11 +48,34 @@ ordered_json source_late_part(const SessionResult& result) {
 }
 
 std::string source_late_text(const SessionResult& result) {
-  return "the simulator: " + std::to_string(result.frames_late) + " frames late, " +
-         percent(source_late_part(result)) + " of the ticks without a measurement for it";
+  return (result.source.text.empty() ? "the simulator" : result.source.text) + ": " +
+         std::to_string(result.frames_late) + " frames late, " + percent(source_late_part(result)) +
+         " of the ticks without a measurement for it";
+}
+
+// Of recorded frames: where they are from, and each count that is not 0.
+std::vector<std::pair<std::string, std::string>> source_rows(const SessionResult& result) {
+  std::vector<std::pair<std::string, std::string>> rows;
+  if (result.source.text.empty()) return rows;
+  rows.emplace_back("source", result.source.text);
+  for (const auto& [name, count] : result.source.counts) {
+    std::string words = "  " + name;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    if (count > 0) rows.emplace_back(words, std::to_string(count));
+  }
+  for (const std::string& line : result.source.failures) rows.emplace_back("SOURCE", line);
+  rows.emplace_back("frames with a pose",
+                    std::to_string(result.frames_tracked) + " of " + std::to_string(result.frames));
+  return rows;
 }
 
 }  // namespace
+
+ordered_json source_json(const SessionResult& result) {
+  ordered_json counts = ordered_json::object();
+  for (const auto& [name, count] : result.source.counts) counts[name] = count;
+  return {{"text", result.source.text}, {"counts", counts}, {"failures", result.source.failures}};
+}
 
 ordered_json output_of(const Cell& cell, const SessionResult& result) {
   ordered_json tools = ordered_json::array();
@@ -98,6 +122,7 @@ std::vector<std::pair<std::string, std::string>> output_rows(const ordered_json&
                       in_milliseconds(tool.at("longest_without_measurement_ms"), result));
   }
   rows.emplace_back("longest gap of ticks", in_milliseconds(output.at("longest_gap_ms"), result));
+  for (auto& row : source_rows(result)) rows.push_back(std::move(row));
   if (result.frames_late > 0) rows.emplace_back("LATE SOURCE", source_late_text(result));
   for (const Loss& loss : losses_of(result)) rows.emplace_back("LOST, " + loss.kind, loss.text);
   return rows;
@@ -113,7 +138,10 @@ std::vector<std::string> failures_of(const SessionResult& result) {
   if (!late.is_null() && late > k_source_late_max) {
     lines.push_back("source too slow: " + source_late_text(result) + "; expected at most 1 %");
   }
-  if (result.accuracy.poses == 0) {
+  for (const std::string& line : result.source.failures) lines.push_back("source: " + line);
+  const bool any_pose = result.accuracy.frames > 0 ? result.accuracy.poses > 0  // by truth
+                                                   : result.frames_tracked > 0;
+  if (!any_pose) {
     lines.emplace_back("not one pose in the whole run: see the tools, the camera and the method");
   }
   return lines;

@@ -16,6 +16,8 @@ inline constexpr double k_source_late_max = 0.01;
 
 // By tool: ticks that left over CAN, by state, and the longest gaps.
 [[nodiscard]] nlohmann::ordered_json output_of(const Cell& cell, const SessionResult& result);
+// Of recorded frames: stamps skipped, gaps, frames without head pose or not readable.
+[[nodiscard]] nlohmann::ordered_json source_json(const SessionResult& result);
 [[nodiscard]] nlohmann::ordered_json losses_json(const SessionResult& result);
 
 // Name and value of each row; `summary` holds output_of().

@@ -137,6 +137,8 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
       {"realtime", cell.realtime},
       {"workers", cell.workers},
       {"frames", result.frames},
+      {"frames_tracked", result.frames_tracked},
+      {"source", source_json(result)},
       {"frames_refused", accuracy.refused},
       {"frames_late_rendered", result.frames_late},
       {"ticks_source_late", result.ticks_source_late},

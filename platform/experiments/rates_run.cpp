@@ -168,7 +168,7 @@ class GraphWay {
   static TrackState right_state(Time time, Time newest, Duration period) {
     if (newest == k_never) return TrackState::none;
     if (fresh(time - newest, period)) return TrackState::measured;
-    return time - newest <= Cell{}.lost_after ? TrackState::predicted : TrackState::lost;
+    return time - newest <= k_lost_after ? TrackState::predicted : TrackState::lost;
   }
 
   PoseSample sample(Time time) {

@@ -3,7 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "kernels/image/frame.hpp"
@@ -23,6 +27,13 @@ struct SourceClock {
   bool live = false;          // false: frames are asked for in order, as fast as they come
   Time epoch;                 // monotonic: where the session's time begins
   std::function<Time()> now;  // of the session; any thread
+};
+
+// What became of the frames that a source had, for the table, the JSON and the exit code.
+struct SourceReport {
+  std::string text;  // "recording out/run.mcap, level full"; empty: nothing to report
+  std::vector<std::pair<std::string, std::uint64_t>> counts;  // by name, zeros among them
+  std::vector<std::string> failures;                          // what was lost, a line each
 };
 
 class FrameSource {
@@ -55,6 +66,13 @@ class FrameSource {
     static const std::vector<FrameTruth> none;
     return none;
   }
+  // Added to the session's time it gives Unix time, where the frames' stamps do; for a run in
+  // order.
+  [[nodiscard]] virtual std::optional<Duration> unix_offset() const noexcept {
+    return std::nullopt;
+  }
+  // After the last wait().
+  [[nodiscard]] virtual SourceReport report() { return {}; }
 };
 
 }  // namespace glint

@@ -69,7 +69,10 @@ SessionResult run_session(const Cell& cell, FrameSource& source, const SessionOp
   // opened, far enough ahead that they are ready by then.
   Time nominal_now;
   const Time epoch = monotonic_now() + lead_of(cell);
-  const std::int64_t unix_offset_ns = unix_offset().nanoseconds + epoch.nanoseconds;
+  std::int64_t unix_offset_ns = unix_offset().nanoseconds + epoch.nanoseconds;
+  if (const auto of_stamps = source.unix_offset(); of_stamps && !cell.realtime) {
+    unix_offset_ns = of_stamps->nanoseconds;
+  }
   Clock now = [&nominal_now] { return nominal_now; };
   if (cell.realtime) now = [epoch] { return Time{} + (monotonic_now() - epoch); };
 
@@ -107,6 +110,7 @@ SessionResult run_session(const Cell& cell, FrameSource& source, const SessionOp
     result.accuracy = judge(result.outcomes, source.truths(), cell.tools);
   }
   result.frames_late = source.late_frames();
+  result.source = source.report();
   if (trace != nullptr) {
     if (const std::string wrong = trace->close(); !wrong.empty()) {
       result.not_written.push_back(wrong);

@@ -14,6 +14,7 @@
 #include "platform/session/accuracy.hpp"
 #include "platform/session/background_group.hpp"
 #include "platform/session/frame_method.hpp"
+#include "platform/session/frame_source.hpp"
 #include "platform/session/group_runner.hpp"
 #include "platform/session/latency.hpp"
 #include "platform/session/run_plan.hpp"
@@ -37,7 +38,8 @@ struct SessionOptions : SinkOptions {
 };
 
 struct SessionResult : SinkOutcome {
-  Accuracy accuracy;
+  Accuracy accuracy;  // frames == 0: the source has no truth
+  SourceReport source;
   std::vector<FrameOutcome> outcomes;  // one for each frame delivered
   std::vector<FrameToCan> latencies;
   std::int64_t latencies_left_out = 0;

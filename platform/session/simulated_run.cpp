@@ -10,18 +10,21 @@
 
 namespace glint {
 
+SessionOptions with_desktop_parts(SessionOptions options) {
+  options.method = [](const Cell& of) { return std::make_unique<SeedMethod>(of); };
+  options.read_png = read_depth_png;
+  return options;
+}
+
 SessionResult run_simulated(const Cell& cell, const SessionOptions& options, Duration frame_time) {
   return run_simulated(cell, scenario_of(cell), options, frame_time);
 }
 
 SessionResult run_simulated(const Cell& cell, sim::Scenario scenario, const SessionOptions& given,
                             Duration frame_time) {
-  SessionOptions options = given;
-  options.method = [](const Cell& of) { return std::make_unique<SeedMethod>(of); };
-  options.read_png = read_depth_png;
   const sim::Simulator simulator(std::move(scenario));
   SimulatedSource source(simulator, {cell.realtime, frame_time});
-  return run_session(cell, source, options);
+  return run_session(cell, source, with_desktop_parts(given));
 }
 
 }  // namespace glint

@@ -7,6 +7,9 @@
 
 namespace glint {
 
+// `options` with what only a desktop has: the published method, and depth pictures as PNG.
+[[nodiscard]] SessionOptions with_desktop_parts(SessionOptions options);
+
 // Of the scenario that the cell asks for, or of one's own (its camera is the cell's). The source
 // needs `frame_time` for each frame from when it is due: a slow one, for tests. Throws as
 // run_session() does.

@@ -1,0 +1,209 @@
+#include "platform/sources/file_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "platform/input_error.hpp"
+#include "platform/rt/clock.hpp"
+
+namespace glint {
+namespace {
+
+constexpr std::size_t k_slots = 24;                         // half a second of AHAT, 1 MB each
+constexpr Duration k_transport_max = milliseconds(10'000);  // a later arrival is not this frame's
+constexpr double k_position_max_m = 1e4;                    // beyond it the file is in another unit
+
+std::string size_text(int width, int height) {
+  return std::to_string(width) + " x " + std::to_string(height);
+}
+
+}  // namespace
+
+FileSource::FileSource(std::unique_ptr<FrameReader> reader, const Camera& camera)
+    : reader_(std::move(reader)), camera_(camera), slots_(k_slots), gate_(camera.period) {
+  Slot& first = slot_of(0);
+  if (!reader_->next(first.frame)) {
+    throw InputError(reader_->text() + ": no frame" +
+                     (reader_->unreadable() > 0 ? "; the first row: " + reader_->first_unreadable()
+                                                : "; expected at least one"));
+  }
+  if (const std::string wrong = misfit(first.frame.pixels); !wrong.empty()) {
+    throw InputError(reader_->text() + ": the first frame has " + wrong);
+  }
+  // A first stamp within a second of 0 counts from the session's start, as a simulator's does.
+  // Otherwise the first frame arrives one nominal gap after it.
+  const Time begin = first.frame.mid_exposure;
+  if (begin < Time{} || begin - Time{} > k_gap_counted) {
+    const Duration lead{camera.period.nanoseconds - camera.transport.nanoseconds -
+                        camera.exposure.nanoseconds / 2};
+    origin_ = Duration{begin.nanoseconds} - std::max(lead, Duration{});
+  }
+  if (!gate_.take(begin)) {
+    throw InputError(reader_->text() + ": the first frame's stamp is " +
+                     std::to_string(begin.nanoseconds) + " ns; expected within 4e18 of 0");
+  }
+  put_in_session_time(first);
+  read_ = 1;
+  is_read_.post();
+  for (std::size_t i = 1; i < slots_.size(); ++i) is_free_.post();
+  thread_ = std::thread([this] { read_all(); });
+}
+
+FileSource::~FileSource() { stop(); }
+
+void FileSource::stop() {
+  stop_ = true;
+  is_free_.post();
+  if (thread_.joinable()) thread_.join();
+}
+
+void FileSource::read_all() noexcept {
+  for (bool end = false; !end;) {
+    is_free_.wait();
+    if (stop_) return;
+    Slot& slot = slot_of(read_);
+    try {
+      end = !read_usable(slot);
+    } catch (const std::exception& error) {
+      ended_by_ = error.what();
+      end = true;
+    }
+    slot.end = end;
+    ++read_;
+    is_read_.post();
+  }
+}
+
+bool FileSource::read_usable(Slot& slot) {
+  while (!stop_ && reader_->next(slot.frame)) {
+    if (std::string wrong = misfit(slot.frame.pixels); !wrong.empty()) {
+      if (misfits_++ == 0) first_misfit_ = std::move(wrong);
+      continue;
+    }
+    if (!gate_.take(slot.frame.mid_exposure)) continue;
+    put_in_session_time(slot);
+    return true;
+  }
+  return false;
+}
+
+// What is wrong with a frame's planes; empty: they are this camera's.
+std::string FileSource::misfit(const FrameBuffer& pixels) const {
+  const int width = camera_.model.width, height = camera_.model.height;
+  const std::string expected = "; expected " + size_text(width, height) + " pixels with " +
+                               std::to_string(camera_.reflectivity_bits) +
+                               " bits of reflectivity, and depth (" + camera_.name + ")";
+  if (pixels.width != width || pixels.height != height) {
+    return size_text(pixels.width, pixels.height) + " pixels" + expected;
+  }
+  const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  const std::size_t bright =
+      camera_.reflectivity_bits == 8 ? pixels.reflectivity_8.size() : pixels.reflectivity_16.size();
+  if (bright != count) {
+    const bool none = pixels.reflectivity_8.empty() && pixels.reflectivity_16.empty();
+    return (none ? "no reflectivity" : "reflectivity of another number of bits") + expected;
+  }
+  if (pixels.depth.size() != count) return "no depth" + expected;
+  return {};
+}
+
+void FileSource::check_head_pose(HeadPose& head) {
+  if (!head.valid) {
+    ++without_pose_;
+    return;
+  }
+  Quaternion& rotation = head.T_world_camera.rotation;
+  const Vector3& position = head.T_world_camera.translation;
+  const double square = rotation.squaredNorm();
+  head.valid = std::abs(square - 1) < 1e-2 && position.cwiseAbs().maxCoeff() <= k_position_max_m &&
+               position.allFinite();
+  if (!head.valid) {
+    head = HeadPose{};
+    ++poses_refused_;
+  } else if (std::abs(square - 1) > 1e-12) {  // as printed; a recorded one keeps its bits
+    rotation.normalize();
+  }
+}
+
+void FileSource::put_in_session_time(Slot& slot) {
+  ReadFrame& frame = slot.frame;
+  const Duration moved = gate_.offset() - origin_;
+  const Time declared =
+      frame.mid_exposure + Duration{camera_.exposure.nanoseconds / 2} + camera_.transport;
+  const bool stated = frame.arrival && *frame.arrival >= frame.mid_exposure &&
+                      *frame.arrival <= frame.mid_exposure + k_transport_max;
+  slot.arrival = std::max((stated ? *frame.arrival : declared) + moved, newest_arrival_);
+  newest_arrival_ = slot.arrival;
+  frame.mid_exposure = frame.mid_exposure + moved;
+  check_head_pose(frame.head);
+  frame.head.time = frame.mid_exposure;
+  slot.sequence = frame.sequence.value_or(next_sequence_);
+  next_sequence_ = slot.sequence + 1;
+}
+
+bool FileSource::wait(ArrivedFrame& arrived) {
+  const bool ready = read_ > delivered_;
+  if (!ready) late_since_ns_ = (newest_delivered_ + camera_.period).nanoseconds;
+  is_read_.wait();
+  late_since_ns_ = INT64_MAX;
+  const Slot& slot = slot_of(delivered_);
+  if (slot.end) {
+    is_read_.post();  // whoever asks again gets the same answer
+    return false;
+  }
+  Time arrival = slot.arrival;
+  if (clock_.live) {
+    const Time now = clock_.now();
+    if (!ready && now > arrival) {
+      ++late_frames_;
+      arrival = now;  // the last byte is in memory only now
+    }
+    // A refusal to sleep stops the tick loop, and with it the run.
+    (void)sleep_until(clock_.epoch + (arrival - Time{}));
+  }
+  newest_delivered_ = arrival;
+  arrived.frame = slot.frame.pixels.view(slot.frame.mid_exposure, arrival, slot.sequence);
+  arrived.head = slot.frame.head;
+  arrived.slot = static_cast<int>(delivered_ % slots_.size());
+  ++delivered_;
+  return true;
+}
+
+std::optional<Duration> FileSource::unix_offset() const noexcept {
+  const std::optional<Duration> of_stamps = reader_->unix_offset();
+  if (!of_stamps) return std::nullopt;
+  return *of_stamps + origin_;
+}
+
+SourceReport FileSource::report() {
+  stop();
+  SourceReport report;
+  report.text = reader_->text();
+  const StampCounts& stamps = gate_.counts();
+  report.counts = {
+      {"stamps_doubled", stamps.doubled},
+      {"stamps_backward", stamps.backward},
+      {"stamps_far_off", stamps.leaps},
+      {"clock_restarts", stamps.restarts},
+      {"gaps_over_1_s", stamps.gaps},
+      {"longest_gap_ms", static_cast<std::uint64_t>(stamps.longest_gap.nanoseconds / 1'000'000)},
+      {"frames_without_head_pose", without_pose_},
+      {"head_poses_refused", poses_refused_},
+      {"frames_unreadable", reader_->unreadable() + misfits_}};
+  if (reader_->unreadable() > 0) {
+    report.failures.push_back(std::to_string(reader_->unreadable()) +
+                              " frames cannot be read, the first: " + reader_->first_unreadable());
+  }
+  if (misfits_ > 0) {
+    report.failures.push_back(std::to_string(misfits_) +
+                              " frames are not this camera's; the first has " + first_misfit_);
+  }
+  if (const std::string missing = reader_->missing(); !missing.empty()) {
+    report.failures.push_back(missing);
+  }
+  if (!ended_by_.empty()) report.failures.push_back("reading ended early: " + ended_by_);
+  return report;
+}
+
+}  // namespace glint

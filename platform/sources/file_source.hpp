@@ -1,0 +1,77 @@
+// Recorded frames as a source: a thread reads ahead into slots and orders the stamps; wait() hands
+// each frame over at its time (live) or at once (in order).
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "platform/rt/release.hpp"
+#include "platform/sensors/camera.hpp"
+#include "platform/session/frame_source.hpp"
+#include "platform/sources/frame_reader.hpp"
+#include "platform/sources/stamp_gate.hpp"
+
+namespace glint {
+
+class FileSource final : public FrameSource {
+ public:
+  // Starts to read. Throws InputError if the first frame cannot be read, or is not of `camera`'s
+  // size and bits, or has no depth.
+  FileSource(std::unique_ptr<FrameReader> reader, const Camera& camera);
+  ~FileSource() override;
+  FileSource(const FileSource&) = delete;
+  FileSource& operator=(const FileSource&) = delete;
+
+  void start(const SourceClock& clock) override { clock_ = clock; }
+  [[nodiscard]] bool wait(ArrivedFrame& arrived) override;
+  void give_back(const ArrivedFrame& /*arrived*/) noexcept override { is_free_.post(); }
+  [[nodiscard]] bool late(Time now) const noexcept override {
+    return now.nanoseconds >= late_since_ns_.load(std::memory_order_relaxed);
+  }
+  [[nodiscard]] int late_frames() const noexcept override { return late_frames_; }
+  [[nodiscard]] std::optional<Duration> unix_offset() const noexcept override;
+  // Ends the reading.
+  [[nodiscard]] SourceReport report() override;
+
+ private:
+  struct Slot {
+    ReadFrame frame;
+    Time arrival;
+    std::uint64_t sequence = 0;
+    bool end = false;  // no frame: the file ends here
+  };
+
+  void read_all() noexcept;
+  void stop();
+  [[nodiscard]] bool read_usable(Slot& slot);
+  [[nodiscard]] std::string misfit(const FrameBuffer& pixels) const;
+  void check_head_pose(HeadPose& head);
+  void put_in_session_time(Slot& slot);
+  [[nodiscard]] Slot& slot_of(std::size_t number) { return slots_[number % slots_.size()]; }
+
+  std::unique_ptr<FrameReader> reader_;
+  Camera camera_;
+  SourceClock clock_;
+  std::vector<Slot> slots_;
+  Release is_free_, is_read_;  // once for each slot
+  std::size_t delivered_ = 0;
+  std::atomic<std::size_t> read_{0};
+  std::atomic<bool> stop_{false};
+  std::atomic<int> late_frames_{0};
+  std::atomic<std::int64_t> late_since_ns_{INT64_MAX};
+  Time newest_delivered_;  // its arrival
+  // Of the reading thread, and of report() after the end.
+  StampGate gate_;
+  Duration origin_;  // of the session's time, by the stamps' clock
+  Time newest_arrival_;
+  std::uint64_t next_sequence_ = 0, without_pose_ = 0, poses_refused_ = 0, misfits_ = 0;
+  std::string first_misfit_, ended_by_;
+  std::thread thread_;
+};
+
+}  // namespace glint

@@ -1,0 +1,214 @@
+#include "platform/sources/folder_frames.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "platform/input_error.hpp"
+#include "platform/printable.hpp"
+#include "platform/read_file.hpp"
+#include "platform/sensors/npy.hpp"
+#include "platform/sensors/picture_file.hpp"
+
+namespace glint {
+namespace {
+
+enum Column {
+  k_time,
+  k_reflectivity,
+  k_depth,
+  k_arrival,
+  k_sequence,
+  k_pose,
+  k_columns = k_pose + 7
+};
+constexpr std::array<std::string_view, k_columns> k_names = {
+    "time_ns", "reflectivity", "depth", "arrival_ns", "sequence", "x_m",
+    "y_m",     "z_m",          "qx",    "qy",         "qz",       "qw"};
+constexpr int k_needed = 3;
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blank = " \t\r";
+  const std::size_t first = text.find_first_not_of(blank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+std::vector<std::string_view> fields_of(std::string_view line) {
+  std::vector<std::string_view> fields;
+  for (;;) {
+    const std::size_t comma = line.find(',');
+    fields.push_back(trimmed(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return fields;
+    line = line.substr(comma + 1);
+  }
+}
+
+template <class Number>
+Number number_of(std::string_view field, int column) {
+  Number value{};
+  const auto [rest, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (error == std::errc{} && rest == field.data() + field.size()) return value;
+  throw InputError(std::string(k_names[static_cast<std::size_t>(column)]) + " is \"" +
+                   printable(std::string(field.substr(0, 40))) + "\"; expected " +
+                   (std::is_integral_v<Number> ? "an integer" : "a number"));
+}
+
+bool ends_with(const std::string& text, std::string_view end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+struct Plane {
+  int width = 0, height = 0, bits = 16;
+  std::vector<std::uint16_t> values;
+};
+
+// `metres`: of a raw count, for an array of floats.
+Plane read_array(const std::string& path, double metres) {
+  const NpyNumbers array = read_npy_numbers(path);
+  if (array.shape.size() != 2 || array.shape[0] > k_picture_side_max ||
+      array.shape[1] > k_picture_side_max) {
+    throw InputError(path + ":shape: not a picture; expected rows x columns");
+  }
+  Plane plane{static_cast<int>(array.shape[1]), static_cast<int>(array.shape[0]), 16, {}};
+  plane.values.reserve(array.values.size());
+  constexpr double most = std::numeric_limits<std::uint16_t>::max();
+  for (const double value : array.values) {
+    const double raw = array.integer ? value : std::round(value / metres);
+    // 0 is "none", as are NaN and what no raw value can state.
+    plane.values.push_back(raw >= 0 && raw <= most ? static_cast<std::uint16_t>(raw) : 0);
+  }
+  return plane;
+}
+
+Plane read_plane(const std::string& path, double metres) {
+  if (ends_with(path, ".npy")) return read_array(path, metres);
+  Picture picture = read_picture(path);
+  if (picture.channels != 1) {
+    throw InputError(path + ": a picture in colour; expected grey, 8 or 16 bits");
+  }
+  return {picture.width, picture.height, picture.bits, std::move(picture.values)};
+}
+
+}  // namespace
+
+FolderFrames::FolderFrames(const std::string& folder, const Camera& camera)
+    : folder_(folder),
+      file_((std::filesystem::path(folder) / "frames.csv").string()),
+      text_(read_file(file_, k_text_bytes_max, "a folder with frames.csv")),
+      camera_(camera) {
+  at_ = std::min(text_.find('\n'), text_.size());
+  line_ = 1;
+  read_heading(std::string_view(text_).substr(0, at_));
+}
+
+void FolderFrames::read_heading(std::string_view line) {
+  std::array<bool, k_columns> found{};
+  const std::string place = file_ + ":1: ";
+  for (const std::string_view field : fields_of(line)) {
+    const auto known = std::find(k_names.begin(), k_names.end(), field);
+    const auto column = static_cast<std::size_t>(known - k_names.begin());
+    if (known == k_names.end() || found[column]) {
+      throw InputError(place + "column \"" + printable(std::string(field.substr(0, 40))) + "\"" +
+                       (known == k_names.end() ? "" : " twice") +
+                       "; expected time_ns,reflectivity,depth and, if there are any, arrival_ns, "
+                       "sequence, x_m,y_m,z_m,qx,qy,qz,qw");
+    }
+    found[column] = true;
+    column_.push_back(static_cast<int>(column));
+  }
+  for (std::size_t i = 0; i < k_columns; ++i) {
+    const bool pose = i >= k_pose;
+    if (found[i] == (pose ? found[k_pose] : i < k_needed || found[i])) continue;
+    throw InputError(place + "no column " + std::string(k_names[i]) + "; expected " +
+                     (pose ? "all seven of a pose, or none" : "it beside the others"));
+  }
+}
+
+bool FolderFrames::next(ReadFrame& frame) {
+  while (at_ < text_.size()) {
+    const std::size_t begin = at_ + 1;
+    at_ = std::min(text_.find('\n', begin), text_.size());
+    ++line_;
+    const std::string_view line = trimmed(std::string_view(text_).substr(begin, at_ - begin));
+    if (line.empty()) continue;
+    try {
+      read_row(line, frame);
+      return true;
+    } catch (const InputError& error) {
+      if (unreadable_++ == 0) {
+        first_unreadable_ = file_ + ":" + std::to_string(line_) + ": " + error.what();
+      }
+    }
+  }
+  return false;
+}
+
+void FolderFrames::read_row(std::string_view line, ReadFrame& frame) const {
+  const std::vector<std::string_view> fields = fields_of(line);
+  if (fields.size() != column_.size()) {
+    throw InputError(std::to_string(fields.size()) + " columns; expected " +
+                     std::to_string(column_.size()));
+  }
+  frame = ReadFrame{};
+  std::string reflectivity, depth;
+  std::array<double, 7> pose{};
+  int pose_fields = 0;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const std::string_view field = fields[i];
+    const int column = column_[i];
+    if (column == k_time) frame.mid_exposure.nanoseconds = number_of<std::int64_t>(field, column);
+    if (column == k_reflectivity) reflectivity = field;
+    if (column == k_depth) depth = field;
+    if (column == k_arrival && !field.empty()) {
+      frame.arrival = Time{number_of<std::int64_t>(field, column)};
+    }
+    if (column == k_sequence) frame.sequence = number_of<std::uint64_t>(field, column);
+    if (column >= k_pose && !field.empty()) {
+      pose[static_cast<std::size_t>(column - k_pose)] = number_of<double>(field, column);
+      ++pose_fields;
+    }
+  }
+  if (pose_fields != 0 && pose_fields != 7) {
+    throw InputError(std::to_string(pose_fields) + " numbers of a pose; expected 7 or none");
+  }
+  read_planes(reflectivity, depth, frame.pixels);
+  frame.head.valid = pose_fields == 7;
+  if (frame.head.valid) {
+    frame.head.T_world_camera.translation = Vector3(pose[0], pose[1], pose[2]);
+    frame.head.T_world_camera.rotation = Quaternion(pose[6], pose[3], pose[4], pose[5]);
+  }
+}
+
+void FolderFrames::read_planes(const std::string& reflectivity, const std::string& depth,
+                               FrameBuffer& pixels) const {
+  const auto path = [&](const std::string& name, int column) {
+    if (!name.empty()) return (std::filesystem::path(folder_) / name).string();
+    throw InputError(std::string(k_names[static_cast<std::size_t>(column)]) +
+                     " is empty; expected a file's name");
+  };
+  Plane bright = read_plane(path(reflectivity, k_reflectivity), 1);
+  Plane range = read_plane(path(depth, k_depth), camera_.depth.unit_m);
+  if (range.width != bright.width || range.height != bright.height) {
+    throw InputError(depth + ": another size than " + reflectivity + "; expected the same");
+  }
+  pixels.width = bright.width;
+  pixels.height = bright.height;
+  pixels.depth = std::move(range.values);
+  if (camera_.reflectivity_bits > 8) {
+    pixels.reflectivity_16 = std::move(bright.values);
+    return;
+  }
+  for (const std::uint16_t value : bright.values) {
+    if (value > 255) {
+      throw InputError(reflectivity + ": a value of " + std::to_string(value) +
+                       "; expected at most 255 (" + camera_.name + ")");
+    }
+    pixels.reflectivity_8.push_back(static_cast<std::uint8_t>(value));
+  }
+}
+
+}  // namespace glint

@@ -1,0 +1,25 @@
+// The frames of one of Glint's recordings (MCAP, levels full and roi).
+#pragma once
+
+#include "platform/record/recording_reader.hpp"
+#include "platform/sources/frame_reader.hpp"
+
+namespace glint {
+
+class RecordingFrames final : public FrameReader {
+ public:
+  // Throws InputError for what is no recording, or holds no frames (levels blobs and outputs).
+  explicit RecordingFrames(const std::string& path, ReadTolerance tolerance = {});
+
+  [[nodiscard]] bool next(ReadFrame& frame) override;
+  [[nodiscard]] std::string text() const override;
+  [[nodiscard]] std::optional<Duration> unix_offset() const override;
+  [[nodiscard]] std::string missing() const override;
+
+ private:
+  std::string path_;
+  RecordingReader reader_;
+  HeadPose head_;  // stands in front of its frame
+};
+
+}  // namespace glint
