@@ -51,5 +51,20 @@ TEST(Latest, TakesAConstantInPlaceOfABuffer) {
   EXPECT_EQ(latest.time_ns(), 70);
 }
 
+TEST(Latest, TakesAConstantInPlaceOfTheBufferItWasBoundTo) {
+  TripleBuffer<int> buffer;
+  buffer.write_slot() = 8;
+  buffer.publish(3, 30);
+  Latest<int> latest;
+  latest.bind(buffer);
+  ASSERT_TRUE(latest.sample());
+  EXPECT_EQ(latest.value(), 8);
+  latest.set(5, 9, 70);
+  EXPECT_EQ(latest.value(), 5);
+  EXPECT_EQ(latest.version(), 9u);
+  EXPECT_EQ(latest.time_ns(), 70);
+  EXPECT_FALSE(latest.sample());
+}
+
 }  // namespace
 }  // namespace glint::graph::latest_test

@@ -82,6 +82,21 @@ TEST(FrameOverrun, MovesAPredictedToolOnAtItsLastVelocity) {
   EXPECT_EQ(sample.measurement, Time{} + milliseconds(1000));
 }
 
+// Without a head pose a tool's base is the camera, whatever the frame's head pose is.
+TEST(FrameOverrun, MovesAPredictedToolOnInTheCamerasFrame) {
+  auto in_time = moving();
+  in_time->tracks[0].base = ReferenceFrame::camera;
+  for (const bool valid : {false, true}) {
+    OverrunFrame frame = frame_at(1020);
+    frame.head.valid = valid;
+    frame.head.T_world_camera.translation.y() = 3;
+    auto out = std::make_unique<Estimates>();
+    ASSERT_TRUE(substitute(OverrunPolicy::predict, frame, *in_time, *out));
+    EXPECT_NEAR(out->tracks[0].T_camera_tool.translation.x(), 0.020, 1e-12);
+    EXPECT_EQ(out->tracks[0].T_camera_tool.translation.y(), 0);
+  }
+}
+
 TEST(FrameOverrun, DeclaresEveryToolLostWhenItStops) {
   auto out = std::make_unique<Estimates>();
   ASSERT_TRUE(substitute(OverrunPolicy::stop_safe, frame_at(1020), *moving(), *out));

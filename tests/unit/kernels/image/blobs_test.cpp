@@ -23,6 +23,7 @@ struct Finder {
   std::vector<Vector2> predicted;
   int bands = 1;
   std::uint32_t turn = 0;
+  Limits limits;
 
   const Blobs& operator()(const Picture& picture) {
     const Frame frame = picture.frame();
@@ -31,7 +32,7 @@ struct Finder {
     if (bands == 2) threshold_runs(frame, all, settings.threshold, {1, 2}, *lower);
     const Runs* both[] = {upper.get(), lower.get()};
     find_blobs(frame, {both, static_cast<std::size_t>(bands)}, settings, {predicted, false, turn},
-               *scratch, *blobs);
+               *scratch, *blobs, limits);
     return *blobs;
   }
 };
@@ -309,6 +310,19 @@ TEST(Blobs, HaveALargerVarianceWhereTheyAreCutOrMerged) {
   EXPECT_NE(at(89).flags & k_blob_touches_edge, 0);
   EXPECT_GT(at(89).variance_px2[0], 1.0F);
   EXPECT_GT(at(89).variance_px2[0], at(89).variance_px2[1] + 0.9F);
+}
+
+TEST(Blobs, HaveThePlainMeanWhereThePixelsAreUsedUp) {
+  Picture picture(20, 9);
+  for (int i = 0; i < 12; ++i) picture(3 + i % 4, 3 + i / 4) = 600;
+  picture(3, 3) = 5000;  // weighs more in any other mean
+  Finder find;
+  EXPECT_LT(find(picture).items[0].centroid_px.x(), 4.9);
+  find.limits.blobs = 1;
+  find.limits.centroid_pixels_a_blob = 4;
+  const Blobs& blobs = find(picture);
+  EXPECT_EQ(blobs.reason, Reason::blobs_full);
+  EXPECT_EQ(blobs.items[0].centroid_px, Vector2(5, 4.5));
 }
 
 }  // namespace

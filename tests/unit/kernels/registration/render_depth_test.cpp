@@ -95,5 +95,18 @@ TEST(RenderDepth, EndsAfterItsBudgetOfTests) {
   EXPECT_GT(picture.z[picture.at(50, 10)], 0);
 }
 
+// Far beyond what an integer holds, on each side.
+TEST(RenderDepth, DrawsNothingOfATriangleFarOutsideThePicture) {
+  for (const float far : {1e11f, -1e11f}) {
+    Picture picture;
+    const float more = 2 * far;
+    EXPECT_EQ(picture.render({{far, -1, 1}, {more, -1, 1}, {more, 1, 1}}, {{0, 1, 2}}),
+              Reason::none);
+    EXPECT_EQ(picture.render({{-1, far, 1}, {-1, more, 1}, {1, more, 1}}, {{0, 1, 2}}),
+              Reason::none);
+    for (const std::int32_t face : picture.face) ASSERT_LT(face, 0);
+  }
+}
+
 }  // namespace
 }  // namespace glint::render_depth_test

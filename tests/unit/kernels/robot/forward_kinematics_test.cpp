@@ -36,6 +36,19 @@ TEST(ForwardKinematics, FollowsBarsThatTurnAndSlide) {
   EXPECT_LT((poses.T_root_link[3].translation - Vector3(1, 1 - M_PI / 4 + 0.25, 0)).norm(), 1e-14);
 }
 
+TEST(ForwardKinematics, HoldsAJointWithoutInputAtItsOffset) {
+  JointTree tree = two_bars();
+  tree.joints[2].input = -1;
+  LinkPoses poses, not_moved;
+  const std::vector<double> values{1e300, 0.4, -0.3};
+  const auto given = std::span(values).subspan(1);  // what lies in front is none of them
+  ASSERT_EQ(forward_kinematics(tree, given, poses), Reason::none);
+  tree.joints[2].offset = 0;
+  ASSERT_EQ(forward_kinematics(tree, given, not_moved), Reason::none);
+  const Vector3 moved = poses.T_root_link[3].translation - not_moved.T_root_link[3].translation;
+  EXPECT_NEAR(moved.norm(), 0.25, 1e-14);
+}
+
 TEST(ForwardKinematics, RefusesTooFewValuesAndThoseThatAreNone) {
   LinkPoses poses;
   poses.count = 7;

@@ -2,10 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "platform/input_error.hpp"
 #include "platform/record/glint_messages.hpp"
+#include "platform/record/mcap_reader.hpp"
+#include "platform/record/mcap_writer.hpp"
+#include "platform/record/recording_format.hpp"
 #include "platform/record/recording_writer.hpp"
+#include "platform/record/ros_messages.hpp"
 #include "platform/record/sha256.hpp"
+#include "platform/record/topics.hpp"
 #include "tests/unit/platform/record/recording_samples.hpp"
 
 namespace glint {
@@ -76,6 +83,147 @@ TEST(Recording, GivesBackAllThatItsLevelKeepsInOrder) {
   EXPECT_EQ(output.tool, output_of_tool_3(5).tool);
   const auto record = record_of(output_of_tool_3(5));
   EXPECT_EQ(output.record, std::vector<std::uint8_t>(record.begin(), record.end()));
+}
+
+// By the CDR's rules alone: 4 bytes of encapsulation, then numbers at multiples of their size.
+struct RosBytes {
+  std::vector<std::uint8_t> payload;
+  std::size_t at = 4;
+  template <class Number>
+  Number take() {
+    at += (sizeof(Number) - (at - 4) % sizeof(Number)) % sizeof(Number);
+    Number value{};
+    if (at + sizeof value <= payload.size()) std::memcpy(&value, &payload[at], sizeof value);
+    at += sizeof value;
+    return value;
+  }
+  std::string text() {
+    const auto length = take<std::uint32_t>();
+    if (at + length > payload.size() || length == 0) return "no text";
+    const std::string found(reinterpret_cast<const char*>(&payload[at]), length - 1);
+    at += length;
+    return found;
+  }
+  Time stamp() {
+    const auto seconds = take<std::int32_t>();
+    return {seconds * 1'000'000'000LL + take<std::uint32_t>()};
+  }
+};
+
+// By schema; the last message of each.
+std::map<std::string, RosBytes> ros_messages(const std::string& path) {
+  std::map<std::string, RosBytes> messages;
+  McapReader reader(path);
+  while (const auto message = reader.next()) {
+    messages[message->schema->name] = {{message->payload.begin(), message->payload.end()}};
+  }
+  return messages;
+}
+
+void expect_pose(RosBytes& bytes, const Pose& pose) {
+  for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(bytes.take<double>(), pose.translation[axis]);
+  for (int part = 0; part < 4; ++part) {
+    EXPECT_EQ(bytes.take<double>(), pose.rotation.coeffs()[part]) << part;  // x, y, z, w
+  }
+}
+
+TEST(Recording, HoldsEachPoseInTheMessagesOfRos) {
+  const TemporaryFolder folder;
+  RecordingWriter writer(folder.file("run.mcap"), sample_info(RecordingLevel::roi));
+  const PoseSample sample = output_of_tool_3(5);
+  writer.write_output(sample, record_of(sample));
+  ASSERT_TRUE(writer.close().complete());
+  auto messages = ros_messages(folder.file("run.mcap"));
+  const Time stamp = sample.tick + sample_info(RecordingLevel::roi).unix_offset;
+  for (const char* schema :
+       {"geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseWithCovarianceStamped"}) {
+    SCOPED_TRACE(schema);
+    ASSERT_EQ(messages.count(schema), 1u);
+    RosBytes& bytes = messages[schema];
+    EXPECT_EQ(bytes.stamp(), stamp);
+    EXPECT_EQ(bytes.text(), frame_name(sample.frame));
+    expect_pose(bytes, sample.pose);
+  }
+  RosBytes& covariance = messages["geometry_msgs/msg/PoseWithCovarianceStamped"];
+  for (int i = 0; i < 36; ++i) {
+    EXPECT_EQ(covariance.take<double>(), sample.covariance(i / 6, i % 6)) << i;
+  }
+  RosBytes& transforms = messages["tf2_msgs/msg/TFMessage"];
+  EXPECT_EQ(transforms.take<std::uint32_t>(), 1u);
+  EXPECT_EQ(transforms.stamp(), stamp);
+  EXPECT_EQ(transforms.text(), frame_name(sample.frame));
+  EXPECT_NE(transforms.text(), "no text");
+  expect_pose(transforms, sample.pose);
+}
+
+TEST(Recording, StampsItsOwnMessagesByUnixTime) {
+  constexpr Duration offset = milliseconds(1'700'000'000'000);
+  constexpr Time time{2'500'000'007};
+  PoseSample output = sample_output(5);
+  output.tick = time;
+  ChoiceRecord choice = sample_choice(1);
+  choice.nominal = time;
+  HeadPose head = sample_head_pose(1);
+  head.time = time;
+  RobotFrameRecord robot;
+  robot.time = time;
+  PenButtonsRecord buttons;
+  buttons.time = time;
+  ButtonEvent event;
+  event.time = time;
+  const auto expect_stamp = [&](const char* what, const auto& write) {
+    CdrWriter to;
+    write(to);
+    RosBytes bytes{{to.bytes().begin(), to.bytes().end()}};
+    EXPECT_EQ(bytes.stamp(), time + offset) << what;
+  };
+  expect_stamp("head pose", [&](CdrWriter& to) { write_message(to, head, offset); });
+  expect_stamp("choice", [&](CdrWriter& to) { write_message(to, choice, offset); });
+  expect_stamp("robot", [&](CdrWriter& to) { write_message(to, robot, offset); });
+  expect_stamp("held buttons", [&](CdrWriter& to) { write_message(to, buttons, offset); });
+  expect_stamp("button", [&](CdrWriter& to) { write_message(to, event, offset); });
+  expect_stamp("output",
+               [&](CdrWriter& to) { write_output_message(to, output, record_of(output), offset); });
+}
+
+// The file's checksums hold; what it says is no picture.
+TEST(Recording, RefusesAPictureThatIsNotWhole) {
+  const TemporaryFolder folder;
+  for (const std::string_view topic : {k_reflectivity_topic, k_depth_topic}) {
+    const std::string whole = folder.file("whole.mcap"), path = folder.file("cut.mcap");
+    write_sample(whole, RecordingLevel::full);
+    McapReader from(whole);
+    McapWriter to(path, from.profile(), "test");
+    std::map<std::string, std::uint16_t> channels;
+    while (const auto message = from.next()) {
+      const std::string& name = message->channel->topic;
+      if (channels.count(name) == 0) {
+        channels[name] = to.add_channel(name, message->schema->name, "", {});
+      }
+      McapMessageHeading heading = message->heading;
+      heading.channel_id = channels[name];
+      to.write(heading, message->payload.first(message->payload.size() - (name == topic)));
+    }
+    for (const auto& [name, texts] : from.metadata()) {
+      if (name != k_closing_metadata) to.add_metadata(name, texts);
+    }
+    ASSERT_TRUE(to.close(k_closing_metadata, from.metadata().at(k_closing_metadata)));
+    RecordingReader reader(path);
+    try {
+      (void)all_messages(reader);
+      ADD_FAILURE() << topic << " was taken";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(topic), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(Recording, KeepsNothingOfARegionThatIsEmpty) {
+  const FrameBuffer buffer = sample_frame(40, 30, 16);
+  const Rois rois{{Roi{4, 5, 4, 9}, Roi{30, 20, 38, 29}, Roi{9, 9, 12, 9}}, 3};
+  const FrameLayout layout = roi_layout(buffer.view({}, {}, 0), rois, 2);
+  EXPECT_EQ(layout.rectangle_count, 1);
+  EXPECT_EQ(layout.rectangles[0].x0, 28);
 }
 
 TEST(Recording, ReadsAChoiceOfARecordingMadeBeforeOverrunsWereWritten) {
