@@ -1,58 +1,28 @@
 #include "platform/cells/cell.hpp"
 
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
+#include <initializer_list>
 
 #include "glint_default_cell.hpp"
 #include "kernels/angles.hpp"
 #include "kernels/elementary.hpp"
-#include "kernels/pose/local_rays.hpp"
 #include "platform/cells/calibration_files.hpp"
+#include "platform/cells/cell_camera.hpp"
 #include "platform/cells/cell_can.hpp"
+#include "platform/cells/cell_files.hpp"
 #include "platform/cells/cell_headset.hpp"
 #include "platform/cells/cell_mapping.hpp"
 #include "platform/cells/cell_timing.hpp"
-#include "platform/cells/depth_bias_table.hpp"
 #include "platform/cells/toml_reader.hpp"
 #include "platform/cells/tool_file.hpp"
 #include "platform/cells/tool_notices.hpp"
 #include "platform/input_error.hpp"
+#include "platform/printable.hpp"
 
 namespace glint {
 namespace {
 
-// ${NAME} becomes the environment's NAME; a relative path starts at the cell file's folder.
-std::string opened_path(const std::string& path, const std::string& key, const std::string& cell) {
-  if (path.empty()) return path;
-  std::string text = path;
-  for (std::size_t from = text.find("${"); from != std::string::npos; from = text.find("${")) {
-    const std::size_t to = text.find('}', from);
-    const std::string name = to == std::string::npos ? "" : text.substr(from + 2, to - from - 2);
-    const char* value = name.empty() ? nullptr : std::getenv(name.c_str());
-    if (value == nullptr) {
-      throw InputError(cell + ": " + key + " is \"" + path + "\": the environment has no " +
-                       (name.empty() ? "closing }" : name) + "; expected it to be set");
-    }
-    text.replace(from, to - from + 1, value);
-  }
-  const std::filesystem::path file(text);
-  if (file.is_absolute()) return text;
-  return (std::filesystem::path(cell).parent_path() / file).lexically_normal().string();
-}
-
-// Reads a cell; paths stay as written where a recording carries what they name.
-struct CellParser {
-  Cell& cell;
-  const CellFiles* carried;
-
-  std::string resolved(const std::string& path, const std::string& key) const {
-    return carried != nullptr ? path : opened_path(path, key, cell.file);
-  }
-  void read_camera(const toml::table* table);
-  const NamedFile& named_file(const std::string& path, const std::string& key);
-  void read_depth_bias(TomlReader& camera);
-  void read_lens(const std::string& path, std::uint32_t line);
+struct CellParser : CellFileReader {
   const NamedFile* named_by(TomlReader& root, const std::string& section);
   void read_source(const toml::table* table);
   void read_simulator(const toml::table* table);
@@ -70,39 +40,6 @@ Quaternion from_fixed_axes(const std::vector<double>& degrees) {
   return about(2) * about(1) * about(0);
 }
 
-// A file of `glint calibrate`, or what a recording carries of it.
-const NamedFile& CellParser::named_file(const std::string& path, const std::string& key) {
-  NamedFile named{key, resolved(path, key), ""};
-  if (carried == nullptr) {
-    named.text = read_text(named.path);
-  } else if (const auto text = carried->named.find(key); text != carried->named.end()) {
-    named.text = text->second;
-  } else {
-    throw InputError(cell.file + ": no attachment " + key + ".toml; expected the file \"" + path +
-                     "\" that the cell names");
-  }
-  return cell.named_files.emplace_back(std::move(named));
-}
-
-// A table of its own, or the file that has it.
-void CellParser::read_depth_bias(TomlReader& camera) {
-  if (camera.is_text("depth_bias")) {
-    const std::string path = camera.text("depth_bias", "");
-    cell.camera.depth.bias = depth_bias_of(named_file(path, "camera.depth_bias"));
-  } else if (const toml::table* table = camera.table("depth_bias")) {
-    cell.camera.depth.bias = depth_bias_of(*table, cell.file, "camera.depth_bias.");
-  }
-}
-
-void CellParser::read_lens(const std::string& path, std::uint32_t line) {
-  if (path.empty()) return;
-  if (!cell.ray_table.empty()) {
-    throw InputError(cell.file + ":" + std::to_string(line) +
-                     ": camera.file beside camera.ray_table; expected one lens, not two");
-  }
-  cell.camera.model = lens_of(named_file(path, "camera.file"), cell.camera.model);
-}
-
 // [section] file = ".."; null where there is none.
 const NamedFile* CellParser::named_by(TomlReader& root, const std::string& section) {
   const toml::table* table = root.table(section.c_str());
@@ -113,50 +50,30 @@ const NamedFile* CellParser::named_by(TomlReader& root, const std::string& secti
   return path.empty() ? nullptr : &named_file(path, section + ".file");
 }
 
-void CellParser::read_camera(const toml::table* table) {
-  static const toml::table k_empty;
-  TomlReader reader(table ? *table : k_empty, cell.file, "camera.");
-  const std::string model =
-      reader.one_of("model", "hololens2_ahat", {"hololens2_ahat", "hololens1_short_throw"});
-  cell.camera = model == "hololens2_ahat" ? hololens2_ahat() : hololens1_short_throw();
-  cell.ray_table = resolved(reader.text("ray_table", ""), "camera.ray_table");
-  read_lens(reader.text("file", ""), reader.line_of("file"));
-  const int top = cell.camera.reflectivity_bits == 8 ? 255 : 65535;
-  cell.camera.threshold =
-      static_cast<std::uint16_t>(reader.integer("threshold", cell.camera.threshold, 1, top - 1));
-  cell.arrival_jitter = from_ms(reader.real("arrival_jitter_ms", 0.4, 0, 10));
-  read_depth_bias(reader);
-  reader.done();
-  if (cell.camera.model.width > k_width_max || cell.camera.model.height > k_height_max) {
-    throw InputError(cell.file + ":" + std::to_string(reader.line_of("model")) + ": " + model +
-                     " has " + std::to_string(cell.camera.model.width) + " x " +
-                     std::to_string(cell.camera.model.height) + " pixels; expected at most " +
-                     std::to_string(k_width_max) + " x " + std::to_string(k_height_max));
-  }
-  if (cell.ray_table.empty()) return;
-  if (carried == nullptr) {
-    cell.camera = with_ray_table(cell.camera, cell.ray_table);
-  } else if (carried->rays != nullptr) {
-    const std::size_t expected = static_cast<std::size_t>(cell.camera.model.width) *
-                                 static_cast<std::size_t>(cell.camera.model.height) * 3;
-    if (carried->rays->size() != expected) {
-      throw InputError(cell.file + ": rays.f32 has " + std::to_string(carried->rays->size()) +
-                       " numbers; expected " + std::to_string(expected) + ", 3 for each pixel");
-    }
-    cell.camera.table = carried->rays;
-    cell.camera.model.lens = Lens::lut;
-    cell.camera.model.table = {cell.camera.model.width, cell.camera.model.height,
-                               carried->rays->data()};
-  }
-}
-
 void CellParser::read_source(const toml::table* table) {
   if (table == nullptr) return;
   TomlReader reader(*table, cell.file, "source.");
   cell.source.kind = reader.text("kind", cell.source.kind);
   cell.source.path = resolved(reader.text("path", ""), "source.path");
+  cell.source.calibration = resolved(reader.text("calibration", ""), "source.calibration");
+  cell.source.reflectivity_topic = reader.text("reflectivity_topic", "");
+  cell.source.depth_topic = reader.text("depth_topic", "");
+  cell.source.camera_info_topic = reader.text("camera_info_topic", "");
+  cell.source.pose_topic = reader.text("pose_topic", "");
+  cell.source.world_frame = reader.text("world_frame", "");
   cell.source.place = cell.file + ":" + std::to_string(reader.line_of("kind")) + ": source";
   reader.done();
+  const auto of_kind = [&](const char* kind, std::initializer_list<const char*> keys) {
+    for (const char* key : keys) {
+      if (cell.source.kind == kind || !table->contains(key)) continue;
+      throw InputError(cell.file + ":" + std::to_string(reader.line_of(key)) + ": source." + key +
+                       ": of a source of kind " + kind + "; expected no such key for " +
+                       printable(cell.source.kind));
+    }
+  };
+  of_kind("hl2ss_file", {"calibration"});
+  of_kind("rosbag",
+          {"reflectivity_topic", "depth_topic", "camera_info_topic", "pose_topic", "world_frame"});
 }
 
 void CellParser::read_simulator(const toml::table* table) {
@@ -267,14 +184,13 @@ void CellParser::read_tools(TomlReader& root) {
 
 Cell cell_from_text(const std::string& text, const std::string& file, const CellFiles* carried) {
   Cell cell;
-  CellParser parser{cell, carried};
+  CellParser parser{{cell, carried}};
   cell.file = file;
   cell.text = text;
   const toml::table table = parse_toml(text, file);
   TomlReader root(table, file, "");
   (void)root.text("name", "");
-  parser.read_camera(root.table("camera"));
-  cell.ray_steps = ray_steps_needed(cell.camera.model);
+  read_camera(root.table("camera"), cell, parser);
   parser.read_tools(root);
   read_tool_changes(root, cell);
   read_reference(root, cell);
@@ -298,11 +214,6 @@ Cell cell_from_text(const std::string& text, const std::string& file, const Cell
   }
   root.done();
   return cell;
-}
-
-void set_camera(Cell& cell, const Camera& camera) {
-  cell.camera = camera;
-  cell.ray_steps = ray_steps_needed(camera.model);
 }
 
 Limits limits_of(const Cell& cell) {

@@ -62,6 +62,9 @@ struct SourceSettings {
   std::string kind = "simulator";  // or a kind of platform/sources
   std::string path;                // its file or folder
   std::string place;               // where the file names it, for messages
+  std::string calibration;         // hl2ss_file: its calibration; empty: no head pose
+  // rosbag; empty: chosen by what the bag has, and no pose topic.
+  std::string reflectivity_topic, depth_topic, camera_info_topic, pose_topic, world_frame;
 };
 
 // Where simulated frames come from; everything else about the simulator has one declared default.
@@ -163,6 +166,22 @@ struct Cell {
 
 // Another camera in its place, with the steps that its lens takes: some thousand rays are tried.
 void set_camera(Cell& cell, const Camera& camera);
+
+// A lens that a source brings with its frames: a table of unit rays, or the text of a file of
+// `glint calibrate camera`.
+struct SourceLens {
+  std::string path;         // for messages
+  std::vector<float> rays;  // or empty
+  std::string file;         // or empty
+};
+
+// Whether the cell itself names a lens, by file or ray table.
+[[nodiscard]] bool names_lens(const Cell& cell);
+// The lens of frames from elsewhere; a recording of the run carries it. Throws InputError: another
+// size than the cell's camera.
+void set_lens(Cell& cell, SourceLens lens);
+// Throws InputError where the camera has none.
+void require_lens(const Cell& cell);
 
 // What every node of the cell's graphs stops at.
 [[nodiscard]] Limits limits_of(const Cell& cell);

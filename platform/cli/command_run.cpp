@@ -54,26 +54,35 @@ struct RunArguments {
 
 std::string kind_of(const RunArguments& arguments) {
   if (!arguments.kind.empty()) return arguments.kind;
-  return std::filesystem::is_directory(arguments.source) ? "folder" : "recording";
+  const std::string kind = kind_at(arguments.source);
+  if (!kind.empty()) return kind;
+  if (!std::filesystem::is_directory(arguments.source)) return "recording";  // states what is wrong
+  throw InputError(arguments.source +
+                   ": no recorded frames in this folder; expected frames.csv, .mcap files, or "
+                   "\"Depth AHaT.tar\" of StreamRecorder");
 }
 
 // A recording has a cell of its own.
 Cell cell_of_recorded(const RunArguments& arguments) {
+  const std::string kind = arguments.source.empty() ? "" : kind_of(arguments);
   Cell cell;
-  if (arguments.source.empty() || !arguments.config.empty() || kind_of(arguments) != "recording") {
-    cell = cell_or_default(arguments.config);
-  } else {
+  if (kind == "recording" && arguments.config.empty()) {
     RecordingReader reader(arguments.source, arguments.tolerance);
     cell = recorded_cell(reader, arguments.source);
     cell.source = {};
+  } else {
+    cell = cell_or_default(arguments.config);
   }
-  if (!arguments.source.empty()) {
-    cell.source = {kind_of(arguments), arguments.source, arguments.source};
+  if (!kind.empty()) {
+    cell.source.kind = kind;
+    cell.source.path = arguments.source;
+    cell.source.place =
+        (arguments.config.empty() ? arguments.source : arguments.config) + ": source";
   }
   if (cell.source.kind == "simulator") {
     throw InputError(
-        "track: neither a SOURCE nor a [source] in the cell; expected recorded frames: a recording "
-        "or a folder with frames.csv");
+        "track: neither a SOURCE nor a [source] in the cell; expected recorded frames: a "
+        "recording, a bag, a folder with frames.csv or a headset's capture");
   }
   return cell;
 }
@@ -133,7 +142,8 @@ int report(const Cell& cell, const SessionOptions& options, const std::string& j
 }
 
 int run(const RunArguments& arguments) {
-  const Cell cell = cell_of(arguments);
+  Cell cell = cell_of(arguments);
+  const std::unique_ptr<FrameSource> source = open_source(cell, arguments.tolerance);
   SessionOptions options;
   options.plan = planned_run(cell, arguments.board, arguments.plan);
   for (const std::string& text : arguments.inject) {
@@ -157,7 +167,7 @@ int run(const RunArguments& arguments) {
         "renders ahead: " + std::to_string(rendered) + " of " + std::to_string(wanted) + " frames");
   };
   const Duration frame_time{static_cast<std::int64_t>(arguments.source_frame_ms * 1e6)};
-  SessionResult result = run_source(cell, options, {frame_time, arguments.tolerance});
+  SessionResult result = run_source(cell, source.get(), options, frame_time);
   progress.clear();
   room.release();
   return report(cell, options, arguments.json, result);
@@ -220,9 +230,11 @@ void add_track(CLI::App& app, int& exit_code) {
   command->footer(
       "Examples:\n  glint track sim/frames.mcap --out again\n"
       "  glint track frames --config my_cell.toml --json poses.json\n"
+      "  glint track bag --config my_cell.toml\n"
       "SOURCE: a recording of `glint run` or `glint simulate` (its own cell holds where no "
       "--config\n"
-      "is given), or a folder with frames.csv (platform/sources/README.md).");
+      "is given), a ROS 2 bag (MCAP), a folder with frames.csv, a capture of StreamRecorder or a\n"
+      "file of hl2ss (platform/sources/README.md).");
   command->add_option("SOURCE", arguments->source, "instead of the cell's [source]");
   command->add_option("--kind", arguments->kind,
                       "of SOURCE: " + recorded_kinds() + "; default: by what is there");

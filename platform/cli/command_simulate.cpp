@@ -56,6 +56,7 @@ class PoseFile {
 int simulate(const SimulateArguments& arguments) {
   Cell cell = cell_or_default(arguments.config);
   if (arguments.duration_s > 0) cell.simulator.duration_s = arguments.duration_s;
+  require_lens(cell);
   const sim::Simulator simulator(scenario_of(cell));
   make_folder(arguments.out);
   const auto in_folder = [&](const char* name) {

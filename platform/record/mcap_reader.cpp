@@ -75,14 +75,23 @@ void McapReader::open_chunk(std::uint64_t offset) {
   ByteReader content(std::span<const std::uint8_t>(record_).subspan(k_mcap_heading_bytes));
   const McapChunkHeading heading = read_chunk_heading(content);
   if (content.failed()) refuse_content(offset, "chunk");
-  if (!heading.compression.empty()) {
-    compressed_ = compressed_ || heading.compression == "zstd" || heading.compression == "lz4";
-    file_.refuse(offset, "a chunk compressed with '" + heading.compression.substr(0, 16) + "'",
-                 "chunks without compression, as Glint writes them");
-  }
-  const auto records = content.take(heading.record_bytes);
-  if (content.failed() || heading.uncompressed_bytes != heading.record_bytes)
+  auto records = content.take(heading.record_bytes);
+  const bool plain = heading.compression.empty();
+  if (content.failed() || (plain && heading.uncompressed_bytes != heading.record_bytes))
     refuse_content(offset, "chunk");
+  if (!plain) {
+    if (heading.uncompressed_bytes > k_mcap_record_bytes_max) refuse_content(offset, "chunk");
+    const bool known = heading.compression == "zstd" || heading.compression == "lz4";
+    decoded_.resize(heading.uncompressed_bytes);
+    if (decoder_ == nullptr || !decoder_(heading.compression, records, decoded_)) {
+      compressed_ = compressed_ || (known && decoder_ == nullptr);
+      file_.refuse(offset, "a chunk compressed with '" + heading.compression.substr(0, 16) + "'",
+                   decoder_ == nullptr ? "chunks without compression, as Glint writes them"
+                   : known             ? "one that is whole; the file is damaged here"
+                                       : "zstd, lz4 or none");
+    }
+    records = decoded_;
+  }
   const std::uint32_t crc = crc32(0, records);
   if (heading.crc != 0 && heading.crc != crc)
     file_.refuse(offset, "a chunk with checksum " + std::to_string(crc),

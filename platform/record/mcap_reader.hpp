@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "platform/record/input_file.hpp"
@@ -21,6 +22,10 @@ enum class McapEnding : std::uint8_t {
   required,  // index, statistics and end mark must be there and right
   optional,  // what is not whole is left out and counted
 };
+
+// Fills `to`, whose size is that of the decoded bytes; false: another compression, or damaged.
+using ChunkDecoder = bool (*)(std::string_view compression, std::span<const std::uint8_t> from,
+                              std::span<std::uint8_t> to);
 
 // What was left out so far; all of it once next() returned nothing.
 struct McapLosses {
@@ -42,8 +47,10 @@ struct McapMessage {
 
 class McapReader {
  public:
-  // Throws InputError: path, byte, what was found, what was expected.
-  explicit McapReader(const std::string& path, McapEnding ending = McapEnding::required);
+  // Without a decoder compressed chunks are refused. Throws InputError: path, byte, what was found,
+  // what was expected.
+  explicit McapReader(const std::string& path, McapEnding ending = McapEnding::required,
+                      ChunkDecoder decoder = nullptr);
 
   // In the order of the file; nothing at its end. Throws InputError.
   [[nodiscard]] std::optional<McapMessage> next();
@@ -51,6 +58,8 @@ class McapReader {
   // Data of the attachment; `index` is one of attachments().
   [[nodiscard]] Bytes attachment(const McapAttachmentIndex& index) const;
 
+  // Of the index, where the file has one: before the first message.
+  [[nodiscard]] const std::map<std::uint16_t, McapChannel>& channels() const { return channels_; }
   [[nodiscard]] const std::string& profile() const { return profile_; }
   [[nodiscard]] const std::vector<McapAttachmentIndex>& attachments() const { return attachments_; }
   [[nodiscard]] const std::map<std::string, McapTexts>& metadata() const { return metadata_; }
@@ -98,6 +107,7 @@ class McapReader {
   std::map<std::string, McapTexts> metadata_;
   std::optional<McapStatistics> statistics_;
   McapEnding ending_;
+  ChunkDecoder decoder_;
   bool has_ending_ = false;
   bool has_data_end_ = false;                             // all messages' records are there
   bool ended_ = false;                                    // next() returned nothing
@@ -110,7 +120,8 @@ class McapReader {
   std::uint64_t record_at_ = 0;  // of the record that is open
   std::uint64_t messages_ = 0;
   std::uint32_t crc_ = 0;
-  Bytes record_;  // the record that is open, with its heading
+  Bytes record_;   // the record that is open, with its heading
+  Bytes decoded_;  // the records of a compressed chunk that is open
   std::optional<ByteReader> chunk_;
 };
 

@@ -43,8 +43,7 @@ void McapReader::leave_out_record() {
   }
   if (is_chunk && opened) {
     ByteReader content(std::span<const std::uint8_t>(record_).subspan(k_mcap_heading_bytes));
-    (void)read_chunk_heading(content);
-    count_messages(content);
+    if (read_chunk_heading(content).compression.empty()) count_messages(content);
   }
   if (!known_records_.empty())
     at_ = next == known_records_.end() ? data_end_ : next->first;
@@ -62,8 +61,7 @@ void McapReader::leave_out_tail() {
   ByteReader content(record_);
   if (static_cast<McapKind>(content.number<std::uint8_t>()) != McapKind::chunk) return;
   (void)content.number<std::uint64_t>();
-  (void)read_chunk_heading(content);
-  count_messages(content);
+  if (read_chunk_heading(content).compression.empty()) count_messages(content);
 }
 
 // Those that begin in a chunk's records, up to the first that is not one.

@@ -7,7 +7,8 @@
 
 namespace glint {
 
-McapReader::McapReader(const std::string& path, McapEnding ending) : file_(path), ending_(ending) {
+McapReader::McapReader(const std::string& path, McapEnding ending, ChunkDecoder decoder)
+    : file_(path), ending_(ending), decoder_(decoder) {
   Bytes magic;
   file_.read(0, std::min<std::uint64_t>(file_.size(), k_mcap_magic.size()), magic);
   if (!std::equal(magic.begin(), magic.end(), k_mcap_magic.begin(), k_mcap_magic.end()))

@@ -1,8 +1,13 @@
 #include "platform/sensors/camera.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <string_view>
+#include <utility>
 
 #include "platform/input_error.hpp"
+#include "platform/read_file.hpp"
 #include "platform/sensors/npy.hpp"
 
 namespace glint {
@@ -65,37 +70,174 @@ Camera hololens2_ahat() {
   return camera;
 }
 
-Camera with_ray_table(Camera camera, const std::string& npy_path) {
-  NpyArray array = read_npy_float32(npy_path);
-  const std::size_t width = static_cast<std::size_t>(camera.model.width);
-  const std::size_t height = static_cast<std::size_t>(camera.model.height);
-  const std::vector<std::size_t> flat{width * height, 3}, grid{height, width, 3};
-  if (array.shape != flat && array.shape != grid) {
-    std::string found;
-    for (const std::size_t n : array.shape)
-      found += (found.empty() ? "" : " x ") + std::to_string(n);
-    throw InputError(npy_path + ":shape: " + found + "; expected " + std::to_string(flat[0]) +
-                     " x 3 or " + std::to_string(height) + " x " + std::to_string(width) +
-                     " x 3, a ray for each pixel of " + camera.name);
+namespace {
+
+// Neither lens nor threshold: none was published that holds for another device.
+Camera bare_camera(std::string name, int width, int height, DepthKind depth) {
+  Camera camera;
+  camera.name = std::move(name);
+  camera.model.width = width;
+  camera.model.height = height;
+  camera.depth.kind = depth;
+  camera.depth.invalid_from = 0xFFFF;
+  camera.period = Duration{33'333'333};
+  camera.exposure = milliseconds(2);
+  camera.transport = milliseconds(8);
+  camera.range_max_m = 2;
+  return camera;
+}
+
+Camera hololens2_long_throw() {
+  Camera camera = bare_camera("hololens2_long_throw", 320, 288, DepthKind::radial);
+  camera.period = milliseconds(200);
+  camera.depth.invalid_from = 0xFFFF;  // the recorders write 0
+  return camera;
+}
+
+// Microsoft, Azure Kinect DK hardware specifications: 12.8 ms of exposure, operating range.
+Camera azure_kinect(std::string name, int width, int height, double from_m, double to_m) {
+  Camera camera = bare_camera(std::move(name), width, height, DepthKind::z);
+  camera.exposure = microseconds(12'800);
+  camera.range_min_m = from_m;
+  camera.range_max_m = to_m;
+  return camera;
+}
+
+std::vector<Camera> all_cameras() {
+  return {hololens2_ahat(),
+          hololens1_short_throw(),
+          hololens2_long_throw(),
+          azure_kinect("azure_kinect_wfov_binned", 512, 512, 0.25, 2.88),
+          azure_kinect("azure_kinect_nfov_binned", 320, 288, 0.5, 5.46),
+          bare_camera("generic", 0, 0, DepthKind::z)};
+}
+
+}  // namespace
+
+std::optional<Camera> camera_named(std::string_view name) {
+  for (Camera& camera : all_cameras()) {
+    if (camera.name == name) return std::move(camera);
   }
+  return std::nullopt;
+}
+
+std::string camera_names() {
+  std::string names;
+  for (const Camera& camera : all_cameras()) names += (names.empty() ? "" : ", ") + camera.name;
+  return names;
+}
+
+bool has_lens(const Camera& camera) {
+  return camera.model.lens == Lens::lut || camera.model.fx > 0;
+}
+
+namespace {
+
+constexpr std::size_t k_ray_table_bytes_max = 256 << 20;
+
+std::size_t pixels_of(const CameraModel& model) {
+  return static_cast<std::size_t>(model.width) * static_cast<std::size_t>(model.height);
+}
+
+std::vector<float> floats_of(std::string_view bytes) {
+  std::vector<float> values(bytes.size() / sizeof(float));
+  std::memcpy(values.data(), bytes.data(), values.size() * sizeof(float));
+  return values;
+}
+
+// hl2ss: planes of x and y at z = 1, then extrinsics and what an undistorted picture needs. A pixel
+// that the lens does not map has none, or zeros.
+std::vector<float> rays_of_planes(const std::vector<float>& values, std::size_t pixels) {
+  std::vector<float> rays(3 * pixels, 0.0f);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const double x = values[i], y = values[pixels + i];
+    if (!std::isfinite(x) || !std::isfinite(y) || (x == 0 && y == 0)) continue;
+    const double scale = 1 / std::sqrt(x * x + y * y + 1);
+    rays[3 * i] = static_cast<float>(x * scale);
+    rays[3 * i + 1] = static_cast<float>(y * scale);
+    rays[3 * i + 2] = static_cast<float>(scale);
+  }
+  return rays;
+}
+
+std::vector<float> rays_of_npy(const std::string& path, const CameraModel& model,
+                               const std::string& name) {
+  NpyArray array = read_npy_float32(path);
+  const std::size_t width = static_cast<std::size_t>(model.width);
+  const std::size_t height = static_cast<std::size_t>(model.height);
+  const std::vector<std::size_t> flat{width * height, 3}, grid{height, width, 3};
+  if (array.shape == flat || array.shape == grid) return std::move(array.values);
+  std::string found;
+  for (const std::size_t n : array.shape) found += (found.empty() ? "" : " x ") + std::to_string(n);
+  throw InputError(path + ":shape: " + found + "; expected " + std::to_string(flat[0]) +
+                   " x 3 or " + std::to_string(height) + " x " + std::to_string(width) +
+                   " x 3, a ray for each pixel of " + name);
+}
+
+// By what the file is: an array of NumPy's, or by its size.
+std::vector<float> rays_of_file(const std::string& path, const CameraModel& model,
+                                const std::string& name) {
+  const std::string bytes = read_file(path, k_ray_table_bytes_max, "a table of rays");
+  if (bytes.starts_with("\x93NUMPY")) return rays_of_npy(path, model, name);
+  const std::size_t pixels = pixels_of(model);
+  if (bytes.size() == 3 * pixels * sizeof(float)) return floats_of(bytes);
+  if (hl2ss_calibration_bytes(model, true) == bytes.size() ||
+      hl2ss_calibration_bytes(model, false) == bytes.size()) {
+    return rays_of_planes(floats_of(bytes), pixels);
+  }
+  throw InputError(path + ": " + std::to_string(bytes.size()) + " bytes; expected a .npy file, " +
+                   std::to_string(3 * pixels * sizeof(float)) +
+                   " bytes of unit rays (StreamRecorder's _lut.bin), or hl2ss's calibration, each "
+                   "for the " +
+                   std::to_string(pixels) + " pixels of " + name);
+}
+
+// Where the search in a table begins: about the ray nearest the optical axis.
+void set_nearest_pinhole(CameraModel& model, const std::vector<float>& rays) {
+  std::size_t middle = 0;
+  for (std::size_t i = 0; i < pixels_of(model); ++i) {
+    if (rays[3 * i + 2] > rays[3 * middle + 2]) middle = i;
+  }
+  const auto width = static_cast<std::size_t>(model.width);
+  const std::size_t x = middle % width, y = middle / width;
+  const std::size_t from = y * width + std::min(x, width - 2);
+  const float* ray = rays.data() + 3 * from;
+  const double step = ray[3] / ray[5] - ray[0] / ray[2];
+  model.fx = model.fy = step > 0 ? 1 / step : 1.0;
+  model.cx = static_cast<double>(x) + 0.5;
+  model.cy = static_cast<double>(y) + 0.5;
+}
+
+}  // namespace
+
+std::size_t hl2ss_calibration_bytes(const CameraModel& model, bool alias) {
+  return (4 * pixels_of(model) + k_hl2ss_extrinsics + 1 + (alias ? 1 : 0) + 4) * sizeof(float);
+}
+
+Camera with_ray_table(Camera camera, const std::string& path) {
+  return with_rays(std::move(camera), rays_of_file(path, camera.model, camera.name), path);
+}
+
+Camera with_rays(Camera camera, std::vector<float> rays, const std::string& path) {
+  const std::size_t pixels = pixels_of(camera.model);
   std::size_t valid = 0;
-  for (std::size_t i = 0; i < width * height; ++i) {
-    float* ray = array.values.data() + 3 * i;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    float* ray = rays.data() + 3 * i;
     const float square = ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2];
     if (square == 0 || ray[2] == 0) {  // the lens maps nothing here
       ray[0] = ray[1] = ray[2] = 0;
       continue;
     }
     if (!(std::abs(square - 1) < 1e-3f) || !(ray[2] > 0)) {
-      throw InputError(
-          npy_path + ":row " + std::to_string(i) +
-          ": not a unit vector ahead of the camera; expected unit rays, or zeros where "
-          "the lens maps nothing");
+      throw InputError(path + ":row " + std::to_string(i) +
+                       ": not a unit vector ahead of the camera; expected unit rays, or zeros "
+                       "where the lens maps nothing");
     }
     ++valid;
   }
-  if (valid == 0) throw InputError(npy_path + ": every ray is zero; expected unit rays");
-  camera.table = std::make_shared<const std::vector<float>>(std::move(array.values));
+  if (valid == 0) throw InputError(path + ": every ray is zero; expected unit rays");
+  if (camera.model.fx == 0) set_nearest_pinhole(camera.model, rays);
+  camera.table = std::make_shared<const std::vector<float>>(std::move(rays));
   camera.model.lens = Lens::lut;
   camera.model.table = {camera.model.width, camera.model.height, camera.table->data()};
   return camera;

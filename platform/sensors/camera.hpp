@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kernels/image/pixel_noise.hpp"
@@ -18,7 +20,7 @@ struct Camera {
   CameraModel model;
   DepthSettings depth;
   int reflectivity_bits = 16;   // 8: Frame::reflectivity_8, 16: Frame::reflectivity_16
-  std::uint16_t threshold = 0;  // a marker's pixels are brighter than this
+  std::uint16_t threshold = 0;  // a marker's pixels are brighter than this; 0: not declared
   PixelNoise noise{};           // of reflectivity: no device's was ever published
   Duration period;              // nominal gap between frames
   Duration exposure;
@@ -34,8 +36,25 @@ struct Camera {
 // HoloLens 2 AHAT: 512 x 512, 45 Hz, 16-bit, radial depth that wraps at 1.055 m, rational lens.
 [[nodiscard]] Camera hololens2_ahat();
 
-// The same camera with a device's own table of unit rays (.npy, float32, 262144 x 3 or h x w x 3).
-// Throws InputError naming the file, the place and what was expected.
-[[nodiscard]] Camera with_ray_table(Camera camera, const std::string& npy_path);
+// HoloLens 2 long throw: 320 x 288, radial; no lens and no threshold of its own.
+// Azure Kinect and Femto Bolt, binned: 512 x 512 wide, 320 x 288 narrow; z depth; neither, too.
+// generic: z depth in millimetres, 16 bits; the cell has to state its size as well.
+[[nodiscard]] std::optional<Camera> camera_named(std::string_view name);
+// "hololens2_ahat, hololens1_short_throw, ...".
+[[nodiscard]] std::string camera_names();
+// Whether pixels have rays: a preset without a published calibration has none.
+[[nodiscard]] bool has_lens(const Camera& camera);
+
+// The same camera with a device's own table of unit rays: .npy (float32, pixels x 3 or h x w x 3),
+// StreamRecorder's _lut.bin, or hl2ss's calibration as its server sends it. Throws InputError
+// naming the file, the place and what was expected.
+[[nodiscard]] Camera with_ray_table(Camera camera, const std::string& path);
+// The same with 3 numbers a pixel; zeros where the lens maps nothing.
+[[nodiscard]] Camera with_rays(Camera camera, std::vector<float> rays, const std::string& path);
+
+// hl2ss's calibration: float32 little endian, x and y on the plane z = 1 of each pixel, 16 of the
+// extrinsics, scale, alias where ranges wrap, a map of two planes, 4 of the undistorted picture.
+inline constexpr std::size_t k_hl2ss_extrinsics = 16;
+[[nodiscard]] std::size_t hl2ss_calibration_bytes(const CameraModel& model, bool alias);
 
 }  // namespace glint

@@ -10,7 +10,7 @@ constexpr std::size_t k_pgm_bytes_max = 2 * k_pixels_max + 4096;  // and a head 
 
 struct Reader {
   const std::string& path;
-  const std::string& bytes;
+  std::string_view bytes;
   std::size_t at = 2;  // behind "P5"
 
   [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
@@ -58,7 +58,10 @@ void check_picture_size(const std::string& path, std::size_t place, std::uint64_
 }
 
 Picture read_pgm(const std::string& path, const PgmLimits& limits) {
-  const std::string bytes = read_file(path, k_pgm_bytes_max, "a binary PGM picture");
+  return pgm_of(read_file(path, k_pgm_bytes_max, "a binary PGM picture"), path, limits);
+}
+
+Picture pgm_of(std::string_view bytes, const std::string& path, const PgmLimits& limits) {
   if (bytes.compare(0, 2, "P5") != 0) {
     throw InputError(path + ":byte 0: does not begin with P5; expected a binary PGM picture");
   }

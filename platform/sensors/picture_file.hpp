@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glint {
@@ -10,8 +11,8 @@ namespace glint {
 struct Picture {
   int width = 0;
   int height = 0;
-  int channels = 1;                   // 1 grey; 3 red, green, blue
-  int bits = 8;                       // a value: 8 or 16
+  int channels = 1;  // 1 grey; 3 red, green, blue; 4 with transparency, where asked for
+  int bits = 8;      // a value: 8 or 16
   std::vector<std::uint16_t> values;  // row by row, a pixel's channels beside each other
 };
 
@@ -25,10 +26,15 @@ struct PgmLimits {
 };
 
 // At most k_picture_side_max pixels a side and 64 million in all. A PGM's values are not scaled by
-// its maxval. A PNG's palette becomes colours, 1 to 4 bits become 8, transparency is dropped. Throw
-// InputError naming the file, the place, what was found and expected.
+// its maxval. A PNG's palette becomes colours, 1 to 4 bits become 8, transparency is dropped unless
+// `transparency`. Throw InputError naming the file, the place, what was found and expected.
 [[nodiscard]] Picture read_pgm(const std::string& path, const PgmLimits& limits = {});
 [[nodiscard]] Picture read_png(const std::string& path, const std::string& expected);
+// The same of a file's bytes in memory; `path` is for messages.
+[[nodiscard]] Picture pgm_of(std::string_view bytes, const std::string& path,
+                             const PgmLimits& limits = {});
+[[nodiscard]] Picture png_of(std::string_view bytes, const std::string& path,
+                             const std::string& expected, bool transparency = false);
 // Either, by how it begins.
 [[nodiscard]] Picture read_picture(const std::string& path);
 

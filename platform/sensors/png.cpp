@@ -1,7 +1,5 @@
 #include <spng.h>
 
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -10,6 +8,7 @@
 
 #include "platform/input_error.hpp"
 #include "platform/part_file.hpp"
+#include "platform/read_file.hpp"
 #include "platform/sensors/picture_file.hpp"
 
 namespace glint {
@@ -20,6 +19,7 @@ using Context = std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)>;
 constexpr std::string_view k_signature = "\x89PNG\r\n\x1A\n";
 constexpr std::size_t k_width_at = 16, k_height_at = 20;  // in the first chunk, IHDR
 constexpr std::size_t k_chunk_bytes_max = 1 << 20, k_chunks_bytes_max = 16 << 20;  // beside pixels
+constexpr std::size_t k_png_bytes_max = 256 << 20;
 constexpr std::uint64_t k_deflate_ratio_max = 1032;  // zlib's manual, "Maximum Compression Factor"
 
 std::uint32_t big_endian(const char* at) {
@@ -36,7 +36,7 @@ int format_of(const spng_ihdr& header) {
   return header.bit_depth == 16 ? SPNG_FMT_RGBA16 : SPNG_FMT_RGBA8;
 }
 
-// `bytes` of the decoded picture, in this machine's order, to values without transparency.
+// `bytes` of the decoded picture, in this machine's order, to the picture's channels.
 void fill(Picture& picture, const std::vector<std::uint8_t>& bytes) {
   const std::size_t stored = picture.channels == 1 ? 1 : 4;
   const std::size_t size = picture.bits == 16 ? 2 : 1;
@@ -55,38 +55,32 @@ void fill(Picture& picture, const std::vector<std::uint8_t>& bytes) {
 }  // namespace
 
 Picture read_png(const std::string& path, const std::string& expected) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             std::fclose);
-  if (!file) throw InputError(path + ": cannot be read; expected " + expected);
+  return png_of(read_file(path, k_png_bytes_max, expected), path, expected);
+}
+
+Picture png_of(std::string_view file, const std::string& path, const std::string& expected,
+               bool transparency) {
   const auto fail = [&](const std::string& found) {
     throw InputError(path + ": " + found + "; expected " + expected);
   };
-  std::array<char, k_height_at + 4> head{};
-  if (std::fread(head.data(), 1, head.size(), file.get()) != head.size() ||
-      !std::string_view(head.data(), head.size()).starts_with(k_signature)) {
-    fail("no picture");
-  }
-  check_picture_size(path, k_width_at, big_endian(head.data() + k_width_at),
-                     big_endian(head.data() + k_height_at));
-  std::fseek(file.get(), 0, SEEK_END);
-  const long end = std::ftell(file.get());
-  if (end < 0) fail("no file that can be read twice");  // a pipe
-  const auto file_bytes = static_cast<std::uint64_t>(end);
-  std::rewind(file.get());
+  if (file.size() < k_height_at + 4 || !file.starts_with(k_signature)) fail("no picture");
+  check_picture_size(path, k_width_at, big_endian(file.data() + k_width_at),
+                     big_endian(file.data() + k_height_at));
 
   const Context context(spng_ctx_new(0), spng_ctx_free);
   spng_ihdr header{};
   std::size_t size = 0;
   spng_set_chunk_limits(context.get(), k_chunk_bytes_max, k_chunks_bytes_max);
-  spng_set_png_file(context.get(), file.get());
+  spng_set_png_buffer(context.get(), file.data(), file.size());
   int error = spng_get_ihdr(context.get(), &header);
   const int format = format_of(header);
+  const bool grey = header.color_type == SPNG_COLOR_TYPE_GRAYSCALE;
   if (error == 0) error = spng_decoded_image_size(context.get(), format, &size);
   if (error != 0) fail(std::string("no picture: ") + spng_strerror(error));
   // What follows takes memory for every pixel: a short file that names many is refused before.
   if (std::uint64_t{header.width} * header.height * header.bit_depth / 8 >
-      k_deflate_ratio_max * file_bytes) {
-    fail(std::to_string(file_bytes) + " bytes, too few for " + std::to_string(header.width) +
+      k_deflate_ratio_max * file.size()) {
+    fail(std::to_string(file.size()) + " bytes, too few for " + std::to_string(header.width) +
          " x " + std::to_string(header.height) + " pixels");
   }
   std::vector<std::uint8_t> bytes(size);
@@ -94,7 +88,9 @@ Picture read_png(const std::string& path, const std::string& expected) {
   if (error != 0) fail(std::string("no whole picture: ") + spng_strerror(error));
   Picture picture{static_cast<int>(header.width),
                   static_cast<int>(header.height),
-                  header.color_type == SPNG_COLOR_TYPE_GRAYSCALE ? 1 : 3,
+                  grey           ? 1
+                  : transparency ? 4
+                                 : 3,
                   header.bit_depth == 16 ? 16 : 8,
                   {}};
   fill(picture, bytes);

@@ -1,15 +1,13 @@
 #include "platform/session/source_run.hpp"
 
 #include "platform/session/simulated_run.hpp"
-#include "platform/sources/open_source.hpp"
 
 namespace glint {
 
-SessionResult run_source(const Cell& cell, const SessionOptions& options,
-                         const SourceOptions& source) {
-  if (cell.source.kind == "simulator") return run_simulated(cell, options, source.frame_time);
-  const auto recorded = open_recorded(cell, source.tolerance);
-  return run_session(cell, *recorded, with_desktop_parts(options));
+SessionResult run_source(const Cell& cell, FrameSource* source, const SessionOptions& options,
+                         Duration frame_time) {
+  if (source == nullptr) return run_simulated(cell, options, frame_time);
+  return run_session(cell, *source, with_desktop_parts(options));
 }
 
 }  // namespace glint

@@ -24,9 +24,12 @@ FileSource::FileSource(std::unique_ptr<FrameReader> reader, const Camera& camera
     : reader_(std::move(reader)), camera_(camera), slots_(k_slots), gate_(camera.period) {
   Slot& first = slot_of(0);
   if (!reader_->next(first.frame)) {
-    throw InputError(reader_->text() + ": no frame" +
-                     (reader_->unreadable() > 0 ? "; the first row: " + reader_->first_unreadable()
-                                                : "; expected at least one"));
+    std::string why;
+    for (const auto& [name, count] : reader_->counts()) {
+      if (count > 0) why += ", " + name + " " + std::to_string(count);
+    }
+    if (reader_->unreadable() > 0) why += "; the first: " + reader_->first_unreadable();
+    throw InputError(reader_->text() + ": no frame" + why + "; expected at least one");
   }
   if (const std::string wrong = misfit(first.frame.pixels); !wrong.empty()) {
     throw InputError(reader_->text() + ": the first frame has " + wrong);
@@ -191,6 +194,7 @@ SourceReport FileSource::report() {
       {"frames_without_head_pose", without_pose_},
       {"head_poses_refused", poses_refused_},
       {"frames_unreadable", reader_->unreadable() + misfits_}};
+  for (const auto& count : reader_->counts()) report.counts.push_back(count);
   if (reader_->unreadable() > 0) {
     report.failures.push_back(std::to_string(reader_->unreadable()) +
                               " frames cannot be read, the first: " + reader_->first_unreadable());

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <filesystem>
-#include <limits>
+#include <utility>
 
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
 #include "platform/read_file.hpp"
 #include "platform/sensors/npy.hpp"
 #include "platform/sensors/picture_file.hpp"
+#include "platform/sources/planes.hpp"
 
 namespace glint {
 namespace {
@@ -61,36 +61,29 @@ bool ends_with(const std::string& text, std::string_view end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-struct Plane {
-  int width = 0, height = 0, bits = 16;
-  std::vector<std::uint16_t> values;
-};
-
 // `metres`: of a raw count, for an array of floats.
-Plane read_array(const std::string& path, double metres) {
+PixelPlane read_array(const std::string& path, double metres) {
   const NpyNumbers array = read_npy_numbers(path);
   if (array.shape.size() != 2 || array.shape[0] > k_picture_side_max ||
       array.shape[1] > k_picture_side_max) {
     throw InputError(path + ":shape: not a picture; expected rows x columns");
   }
-  Plane plane{static_cast<int>(array.shape[1]), static_cast<int>(array.shape[0]), 16, {}};
+  PixelPlane plane{static_cast<int>(array.shape[1]), static_cast<int>(array.shape[0]), {}, path};
   plane.values.reserve(array.values.size());
-  constexpr double most = std::numeric_limits<std::uint16_t>::max();
   for (const double value : array.values) {
-    const double raw = array.integer ? value : std::round(value / metres);
-    // 0 is "none", as are NaN and what no raw value can state.
-    plane.values.push_back(raw >= 0 && raw <= most ? static_cast<std::uint16_t>(raw) : 0);
+    plane.values.push_back(array.integer ? static_cast<std::uint16_t>(value)
+                                         : raw_depth(value, metres));
   }
   return plane;
 }
 
-Plane read_plane(const std::string& path, double metres) {
+PixelPlane read_plane(const std::string& path, double metres) {
   if (ends_with(path, ".npy")) return read_array(path, metres);
   Picture picture = read_picture(path);
   if (picture.channels != 1) {
     throw InputError(path + ": a picture in colour; expected grey, 8 or 16 bits");
   }
-  return {picture.width, picture.height, picture.bits, std::move(picture.values)};
+  return {picture.width, picture.height, std::move(picture.values), path};
 }
 
 }  // namespace
@@ -190,25 +183,9 @@ void FolderFrames::read_planes(const std::string& reflectivity, const std::strin
     throw InputError(std::string(k_names[static_cast<std::size_t>(column)]) +
                      " is empty; expected a file's name");
   };
-  Plane bright = read_plane(path(reflectivity, k_reflectivity), 1);
-  Plane range = read_plane(path(depth, k_depth), camera_.depth.unit_m);
-  if (range.width != bright.width || range.height != bright.height) {
-    throw InputError(depth + ": another size than " + reflectivity + "; expected the same");
-  }
-  pixels.width = bright.width;
-  pixels.height = bright.height;
-  pixels.depth = std::move(range.values);
-  if (camera_.reflectivity_bits > 8) {
-    pixels.reflectivity_16 = std::move(bright.values);
-    return;
-  }
-  for (const std::uint16_t value : bright.values) {
-    if (value > 255) {
-      throw InputError(reflectivity + ": a value of " + std::to_string(value) +
-                       "; expected at most 255 (" + camera_.name + ")");
-    }
-    pixels.reflectivity_8.push_back(static_cast<std::uint8_t>(value));
-  }
+  PixelPlane bright = read_plane(path(reflectivity, k_reflectivity), 1);
+  PixelPlane range = read_plane(path(depth, k_depth), camera_.depth.unit_m);
+  fill_pixels(std::move(bright), std::move(range), camera_, pixels);
 }
 
 }  // namespace glint

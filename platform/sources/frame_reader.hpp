@@ -5,8 +5,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "kernels/pose/head_pose.hpp"
+#include "platform/cells/cell.hpp"
 #include "platform/sensors/frame_buffer.hpp"
 
 namespace glint {
@@ -20,6 +23,8 @@ struct ReadFrame {
   HeadPose head;                          // not valid: the format has none for this frame
 };
 
+using ReaderCounts = std::vector<std::pair<std::string, std::uint64_t>>;  // by name
+
 class FrameReader {
  public:
   virtual ~FrameReader() = default;
@@ -31,6 +36,12 @@ class FrameReader {
   // Frames skipped so far, and why the first of them was: path, place, found, expected.
   [[nodiscard]] virtual std::uint64_t unreadable() const { return 0; }
   [[nodiscard]] virtual std::string first_unreadable() const { return {}; }
+
+  // What else was left out, of this format's own kinds.
+  [[nodiscard]] virtual ReaderCounts counts() const { return {}; }
+
+  // The lens that the frames came through, if it is recorded with them.
+  [[nodiscard]] virtual std::optional<SourceLens> lens() const { return std::nullopt; }
 
   // What the file lacks, with its path; empty: nothing. After next() returned false.
   [[nodiscard]] virtual std::string missing() const { return {}; }

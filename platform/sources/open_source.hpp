@@ -10,12 +10,15 @@
 
 namespace glint {
 
-// "folder, recording".
+// "folder, hl2ss_file, ...".
 [[nodiscard]] std::string recorded_kinds();
 
-// Of what `[source]` names, for frames of the cell's camera. Throws InputError: an unknown kind, no
-// path, and what the kind's reader and FileSource throw.
-[[nodiscard]] std::unique_ptr<FrameSource> open_recorded(const Cell& cell,
-                                                         ReadTolerance tolerance = {});
+// The kind of what stands at a path; empty: none of them.
+[[nodiscard]] std::string kind_at(const std::string& path);
+
+// What `[source]` names, for frames of the cell's camera; null for the simulator. The cell takes
+// the lens that is recorded with the frames where it names none. Throws InputError: an unknown
+// kind, no path, no lens, and what the kind's reader and FileSource throw.
+[[nodiscard]] std::unique_ptr<FrameSource> open_source(Cell& cell, ReadTolerance tolerance = {});
 
 }  // namespace glint

@@ -1,5 +1,7 @@
 #include "platform/sources/recording_frames.hpp"
 
+#include <algorithm>
+#include <cstring>
 #include <utility>
 #include <variant>
 
@@ -29,6 +31,25 @@ bool RecordingFrames::next(ReadFrame& frame) {
     return true;
   }
   return false;
+}
+
+std::optional<SourceLens> RecordingFrames::lens() const {
+  const auto names = reader_.attachment_names();
+  const auto has = [&](const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  constexpr const char* k_rays = "rays.f32";
+  constexpr const char* k_file = "camera.file.toml";
+  if (!has(k_rays) && !has(k_file)) return std::nullopt;
+  const Attachment found = reader_.attachment(has(k_rays) ? k_rays : k_file);
+  SourceLens lens{path_ + ":" + found.name, {}, {}};
+  if (has(k_rays)) {
+    lens.rays.resize(found.data.size() / sizeof(float));
+    std::memcpy(lens.rays.data(), found.data.data(), lens.rays.size() * sizeof(float));
+  } else {
+    lens.file.assign(found.data.begin(), found.data.end());
+  }
+  return lens;
 }
 
 std::string RecordingFrames::text() const {

@@ -12,13 +12,14 @@ class RecordingFrames final : public FrameReader {
   explicit RecordingFrames(const std::string& path, ReadTolerance tolerance = {});
 
   [[nodiscard]] bool next(ReadFrame& frame) override;
+  [[nodiscard]] std::optional<SourceLens> lens() const override;
   [[nodiscard]] std::string text() const override;
   [[nodiscard]] std::optional<Duration> unix_offset() const override;
   [[nodiscard]] std::string missing() const override;
 
  private:
   std::string path_;
-  RecordingReader reader_;
+  mutable RecordingReader reader_;
   HeadPose head_;  // stands in front of its frame
 };
 

@@ -35,10 +35,11 @@ Cell cell_with(const std::string& text, const std::map<std::string, std::string>
 // What is said of a cell that names this one file.
 std::string complaint(const std::string& section, const std::string& text) {
   try {
-    (void)cell_with(section + "\n", {{"camera.file", text},
-                                     {"camera.depth_bias", text},
-                                     {"motion.file", text},
-                                     {"correction.file", text}});
+    std::map<std::string, std::string> named{
+        {"camera.depth_bias", text}, {"motion.file", text}, {"correction.file", text}};
+    // A carried lens holds whether the cell names it or not: a source may have brought it.
+    if (section.find("[camera]\nfile") == 0) named["camera.file"] = text;
+    (void)cell_with(section + "\n", named);
     return "accepted";
   } catch (const InputError& error) {
     return error.what();

@@ -75,6 +75,68 @@ TEST(RayTableFile, IsReadInBothShapes) {
   }
 }
 
+template <class Numbers>
+std::string raw(const Numbers& numbers) {
+  return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(numbers[0])};
+}
+
+// StreamRecorder's table has unit rays alone; hl2ss's calibration x and y at z = 1, then more.
+TEST(RayTableFile, IsReadAsRecordersOfHeadsetsWriteIt) {
+  const TemporaryFolder folder;
+  const Camera camera = small_camera();
+  const std::vector<float> rays = small_rays();
+  const Camera unit = with_ray_table(camera, folder.write("lut.bin", raw(rays)));
+  EXPECT_EQ(*unit.table, rays);
+  for (const bool alias : {false, true}) {
+    std::vector<float> planes(hl2ss_calibration_bytes(camera.model, alias) / sizeof(float), 9.0f);
+    for (std::size_t i = 0; i < 6; ++i) {
+      planes[i] = rays[3 * i] / rays[3 * i + 2];
+      planes[6 + i] = rays[3 * i + 1] / rays[3 * i + 2];
+    }
+    planes[4] = NAN;
+    planes[5] = planes[11] = 0;  // as pixel 0, whose ray is the axis
+    const Camera read = with_ray_table(camera, folder.write("hl2ss.bin", raw(planes)));
+    for (std::size_t i = 3; i < 12; ++i) EXPECT_NEAR((*read.table)[i], rays[i], 1e-6f) << i;
+    for (std::size_t i = 12; i < 18; ++i) EXPECT_EQ((*read.table)[i], 0.0f) << i;
+  }
+}
+
+TEST(Cameras, AreNamedAndHaveALensOrNone) {
+  EXPECT_FALSE(camera_named("kinect"));
+  for (const char* name : {"hololens2_ahat", "hololens1_short_throw"}) {
+    EXPECT_TRUE(has_lens(*camera_named(name))) << name;
+    EXPECT_GT(camera_named(name)->threshold, 0) << name;
+  }
+  for (const char* name : {"hololens2_long_throw", "azure_kinect_wfov_binned",
+                           "azure_kinect_nfov_binned", "generic"}) {
+    EXPECT_FALSE(has_lens(*camera_named(name))) << name;
+    EXPECT_EQ(camera_named(name)->threshold, 0) << name;
+    EXPECT_NE(camera_names().find(name), std::string::npos);
+  }
+  EXPECT_EQ(camera_named("azure_kinect_nfov_binned")->depth.kind, DepthKind::z);
+  EXPECT_EQ(camera_named("hololens2_long_throw")->depth.kind, DepthKind::radial);
+}
+
+// A camera without a lens of its own gets a place for the search to begin.
+TEST(RayTableFile, GivesABareCameraAPinholeNearIt) {
+  const Camera camera = *camera_named("azure_kinect_nfov_binned");
+  std::vector<float> rays;
+  for (int y = 0; y < 288; ++y) {
+    for (int x = 0; x < 320; ++x) {
+      const Vector3 ray = Vector3((x + 0.5 - 150) / 250, (y + 0.5 - 140) / 250, 1).normalized();
+      for (int axis = 0; axis < 3; ++axis) rays.push_back(static_cast<float>(ray[axis]));
+    }
+  }
+  const Camera with = with_rays(camera, rays, "rays");
+  EXPECT_NEAR(with.model.fx, 250, 0.5);
+  EXPECT_NEAR(with.model.cx, 150, 1);
+  EXPECT_NEAR(with.model.cy, 140, 1);
+  const Vector3 point(0.3, -0.2, 0.7);
+  const Result<Vector2> pixel = project(with.model, point);
+  ASSERT_TRUE(pixel);
+  EXPECT_NEAR(pixel.value.x(), 250 * 0.3 / 0.7 + 150, 1e-3);
+}
+
 TEST(RayTableFile, StaysValidInACopyOfTheCamera) {
   const TemporaryFolder folder;
   Camera copy;

@@ -231,18 +231,22 @@ TEST(FileSource, RefusesAFileWithoutAFrame) {
                InputError);
 }
 
-TEST(OpenRecorded, NamesTheKindsThereAre) {
+TEST(OpenSource, NamesTheKindsThereAre) {
   Cell cell = default_cell();
-  cell.source = {"kinect", "x", "cell.toml:3: source"};
+  cell.source.kind = "kinect";
+  cell.source.path = "x";
+  cell.source.place = "cell.toml:3: source";
   try {
-    (void)open_recorded(cell);
+    (void)open_source(cell);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "cell.toml:3: source.kind: \"kinect\"; expected simulator, folder, recording");
+                 "cell.toml:3: source.kind: \"kinect\"; expected simulator, folder, hl2ss_file, "
+                 "recording, rosbag, stream_recorder");
   }
-  cell.source = {"folder", "", "cell.toml:3: source"};
-  EXPECT_THROW((void)open_recorded(cell), InputError);
+  cell.source.kind = "folder";
+  cell.source.path = "";
+  EXPECT_THROW((void)open_source(cell), InputError);
 }
 
 std::string big_endian(const std::vector<std::uint16_t>& values) {
@@ -281,10 +285,12 @@ void write_folder(const Cell& cell, const std::string& folder) {
 
 SessionResult tracked(Cell cell, const std::string& kind, const std::string& path,
                       const std::string& out) {
-  cell.source = {kind, path, path};
+  cell.source.kind = kind;
+  cell.source.path = path;
+  const auto source = open_source(cell);
   SessionOptions options;
   options.out = out;
-  return run_source(cell, options);
+  return run_source(cell, source.get(), options);
 }
 
 TEST(RecordedRun, OfARecordingGivesTheRunsOutputRecords) {

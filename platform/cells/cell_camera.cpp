@@ -1,0 +1,173 @@
+#include "platform/cells/cell_camera.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "kernels/pose/local_rays.hpp"
+#include "platform/cells/calibration_files.hpp"
+#include "platform/cells/cell_timing.hpp"
+#include "platform/cells/depth_bias_table.hpp"
+#include "platform/input_error.hpp"
+
+namespace glint {
+namespace {
+
+constexpr const char* k_lens_key = "camera.file";
+
+[[noreturn]] void complain(const Cell& cell, std::uint32_t line, const std::string& what) {
+  throw InputError(cell.file + ":" + std::to_string(line) + ": camera" + what);
+}
+
+// A table of its own, or the file that has it.
+void read_depth_bias(TomlReader& reader, Cell& cell, const CellFileReader& files) {
+  if (reader.is_text("depth_bias")) {
+    const std::string path = reader.text("depth_bias", "");
+    cell.camera.depth.bias = depth_bias_of(files.named_file(path, "camera.depth_bias"));
+  } else if (const toml::table* table = reader.table("depth_bias")) {
+    cell.camera.depth.bias = depth_bias_of(*table, cell.file, "camera.depth_bias.");
+  }
+}
+
+void read_size(TomlReader& reader, Camera& camera) {
+  const auto side = [&](const char* key, int preset, int most) {
+    return static_cast<int>(reader.integer(key, preset, 2, most));
+  };
+  camera.model.width = side("width", camera.model.width, k_width_max);
+  camera.model.height = side("height", camera.model.height, k_height_max);
+}
+
+// An absent key leaves the preset's bits.
+double metres_of(TomlReader& reader, const char* key, double preset, double low, double high) {
+  const double preset_mm = preset * 1e3, mm = reader.real(key, preset_mm, low, high);
+  return mm == preset_mm ? preset : mm * 1e-3;
+}
+
+Duration duration_of(TomlReader& reader, const char* key, Duration preset, double low,
+                     double high) {
+  const double preset_ms = static_cast<double>(preset.nanoseconds) * 1e-6;
+  const double ms = reader.real(key, preset_ms, low, high);
+  return ms == preset_ms ? preset : from_ms(ms);
+}
+
+void read_sensor(TomlReader& reader, Cell& cell) {
+  Camera& camera = cell.camera;
+  const bool radial = camera.depth.kind == DepthKind::radial;
+  const std::string kind = reader.one_of("depth", radial ? "radial" : "z", {"radial", "z"});
+  camera.depth.kind = kind == "radial" ? DepthKind::radial : DepthKind::z;
+  camera.depth.unit_m = metres_of(reader, "depth_unit_mm", camera.depth.unit_m, 0.01, 10);
+  camera.depth.invalid_from = static_cast<std::uint16_t>(
+      reader.integer("depth_invalid_from", camera.depth.invalid_from, 1, 65535));
+  camera.depth.wrap_range_m =
+      metres_of(reader, "depth_wraps_mm", camera.depth.wrap_range_m, 0, 100'000);
+  camera.reflectivity_bits =
+      static_cast<int>(reader.integer("reflectivity_bits", camera.reflectivity_bits, 8, 16));
+  if (camera.reflectivity_bits != 8 && camera.reflectivity_bits != 16) {
+    complain(cell, reader.line_of("reflectivity_bits"), ".reflectivity_bits: expected 8 or 16");
+  }
+  camera.period = duration_of(reader, "period_ms", camera.period, 1, 1000);
+  camera.exposure = duration_of(reader, "exposure_ms", camera.exposure, 0, 100);
+  camera.transport = duration_of(reader, "transport_ms", camera.transport, 0, 1000);
+  if (const auto range_mm = reader.reals("range_mm", 2)) {
+    if (!((*range_mm)[0] > 0) || !((*range_mm)[1] > (*range_mm)[0]) || (*range_mm)[1] > 20'000) {
+      complain(cell, reader.line_of("range_mm"),
+               ".range_mm: no range; expected [from, to] within 0 and 20000");
+    }
+    camera.range_min_m = 1e-3 * (*range_mm)[0];
+    camera.range_max_m = 1e-3 * (*range_mm)[1];
+  }
+  const int top = camera.reflectivity_bits == 8 ? 255 : 65535;
+  camera.threshold =
+      static_cast<std::uint16_t>(reader.integer("threshold", camera.threshold, 0, top - 1));
+  if (camera.threshold >= top) {  // the preset's, of more bits
+    complain(cell, reader.line_of("reflectivity_bits"),
+             ".threshold: " + std::to_string(camera.threshold) + "; expected less than " +
+                 std::to_string(top) + " for 8 bits");
+  }
+  if (camera.threshold == 0) {
+    complain(cell, reader.line_of("model"),
+             ".threshold: none; expected the brightness above which a pixel of this camera is a "
+             "marker's");
+  }
+}
+
+void set_rays(Cell& cell, std::vector<float> rays, const std::string& path) {
+  const std::size_t expected = static_cast<std::size_t>(cell.camera.model.width) *
+                               static_cast<std::size_t>(cell.camera.model.height) * 3;
+  if (rays.size() != expected) {
+    throw InputError(path + " has " + std::to_string(rays.size()) + " numbers; expected " +
+                     std::to_string(expected) + ", 3 for each pixel of " + cell.camera.name);
+  }
+  cell.camera = with_rays(cell.camera, std::move(rays), path);
+}
+
+}  // namespace
+
+void read_camera(const toml::table* table, Cell& cell, const CellFileReader& files) {
+  static const toml::table k_empty;
+  TomlReader reader(table ? *table : k_empty, cell.file, "camera.");
+  const std::string model = reader.text("model", "hololens2_ahat");
+  const std::optional<Camera> preset = camera_named(model);
+  if (!preset) {
+    complain(cell, reader.line_of("model"),
+             ".model: \"" + model + "\"; expected one of " + camera_names());
+  }
+  cell.camera = *preset;
+  read_size(reader, cell.camera);
+  if (cell.camera.model.width == 0 || cell.camera.model.height == 0) {
+    complain(cell, reader.line_of("model"), ": no width and height; expected both for " + model);
+  }
+  read_sensor(reader, cell);
+  cell.arrival_jitter = from_ms(reader.real("arrival_jitter_ms", 0.4, 0, 10));
+  cell.ray_table = files.resolved(reader.text("ray_table", ""), "camera.ray_table");
+  const std::string lens = reader.text("file", "");
+  if (!lens.empty() && !cell.ray_table.empty()) {
+    complain(cell, reader.line_of("file"),
+             ".file beside camera.ray_table; expected one lens, not two");
+  }
+  if (!lens.empty() || files.carries(k_lens_key)) {
+    const std::string name = lens.empty() ? std::string(k_lens_key) + ".toml" : lens;
+    cell.camera.model = lens_of(files.named_file(name, k_lens_key), cell.camera.model);
+  }
+  read_depth_bias(reader, cell, files);
+  reader.done();
+  if (files.carried != nullptr) {
+    if (files.carried->rays != nullptr) {
+      set_rays(cell, *files.carried->rays, cell.file + ": rays.f32");
+    }
+  } else if (!cell.ray_table.empty()) {
+    cell.camera = with_ray_table(cell.camera, cell.ray_table);
+  }
+  set_camera(cell, cell.camera);
+}
+
+void set_camera(Cell& cell, const Camera& camera) {
+  cell.camera = camera;
+  cell.ray_steps = ray_steps_needed(camera.model);
+}
+
+bool names_lens(const Cell& cell) {
+  return cell.camera.table != nullptr ||
+         std::any_of(cell.named_files.begin(), cell.named_files.end(),
+                     [](const NamedFile& named) { return named.key == k_lens_key; });
+}
+
+void set_lens(Cell& cell, SourceLens lens) {
+  if (!lens.file.empty()) {
+    NamedFile named{k_lens_key, lens.path, std::move(lens.file)};
+    cell.camera.model = lens_of(named, cell.camera.model);
+    cell.named_files.push_back(std::move(named));
+  } else {
+    set_rays(cell, std::move(lens.rays), lens.path);
+  }
+  set_camera(cell, cell.camera);
+}
+
+void require_lens(const Cell& cell) {
+  if (has_lens(cell.camera)) return;
+  throw InputError(cell.file + ": camera: " + cell.camera.name +
+                   " has no lens of its own; expected camera.file, camera.ray_table, or a source "
+                   "that has one");
+}
+
+}  // namespace glint

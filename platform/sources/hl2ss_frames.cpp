@@ -1,0 +1,215 @@
+#include "platform/sources/hl2ss_frames.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "platform/input_error.hpp"
+#include "platform/printable.hpp"
+#include "platform/read_file.hpp"
+#include "platform/sensors/picture_file.hpp"
+#include "platform/sources/file_time.hpp"
+#include "platform/sources/matrix_pose.hpp"
+
+namespace glint {
+namespace {
+
+constexpr std::string_view k_magic = "HL2SSV23";
+constexpr std::uint16_t k_port_ahat = 3804, k_port_long_throw = 3805;
+constexpr std::uint8_t k_profile_raw = 255, k_profile_z_same = 0;
+constexpr std::uint64_t k_packet_heading = 12;  // stamp, bytes of the payload
+constexpr std::uint64_t k_pose_bytes = 64;
+constexpr std::uint64_t k_ahat_heading = 8, k_sensor_ticks = 8;
+constexpr std::uint64_t k_packet_bytes_max = 64 << 20;
+
+// 16 floats for row vectors: p' = p M.
+MatrixNumbers matrix_at(const std::uint8_t* from) {
+  std::array<float, 16> floats;
+  std::memcpy(floats.data(), from, sizeof floats);
+  MatrixNumbers numbers{};
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = double{floats[i]};
+  return transposed(numbers);
+}
+
+}  // namespace
+
+Hl2ssFrames::Hl2ssFrames(const SourceSettings& source, const Camera& camera)
+    : source_(source), camera_(camera), file_(source.path) {
+  read_beginning();
+  if (!source.calibration.empty()) read_calibration();
+}
+
+void Hl2ssFrames::read_beginning() {
+  constexpr std::uint64_t fixed = k_magic.size() + 6;
+  Bytes bytes;
+  file_.read(0, std::min<std::uint64_t>(file_.size(), fixed), bytes);
+  const std::string magic(bytes.begin(), bytes.begin() + std::min(bytes.size(), k_magic.size()));
+  if (magic != k_magic || bytes.size() < fixed) {
+    file_.refuse(0, "\"" + printable(magic) + "\"",
+                 "a recording of hl2ss that begins with HL2SSV23");
+  }
+  ByteReader reader(std::span<const std::uint8_t>(bytes).subspan(k_magic.size()));
+  const auto port = reader.number<std::uint16_t>();
+  at_ = fixed + reader.number<std::uint32_t>();
+  long_throw_ = port == k_port_long_throw;
+  if (port != k_port_ahat && !long_throw_) {
+    file_.refuse(k_magic.size(), "the stream of port " + std::to_string(port),
+                 "3804 (depth AHAT) or 3805 (depth long throw)");
+  }
+  // mode, divisor; AHAT: profile of z and of ab, level, u32 bit rate, options; else a u32.
+  const std::uint64_t configuration = long_throw_ ? 6 : 10;
+  const std::uint64_t begin = at_;
+  if (begin > file_.size() || file_.size() - begin < configuration) {
+    file_.refuse(file_.size(), "the end of the file", "the stream's configuration");
+  }
+  file_.read(begin, configuration, bytes);
+  at_ += configuration;
+  if (bytes[0] > 1) {
+    file_.refuse(begin, "mode " + std::to_string(bytes[0]), "0 or 1: a stream of frames");
+  }
+  with_pose_ = bytes[0] == 1;
+  if (long_throw_) return;
+  if (bytes[2] != k_profile_z_same || bytes[3] != k_profile_raw) {
+    file_.refuse(begin + 2,
+                 "profiles " + std::to_string(bytes[2]) + " and " + std::to_string(bytes[3]) +
+                     ": compressed frames",
+                 "0 and 255: raw ones, whose depth is not quantised");
+  }
+  at_ += std::uint64_t{bytes[9]} * 16;
+}
+
+void Hl2ssFrames::read_calibration() {
+  const std::string bytes =
+      read_file(source_.calibration, k_data_bytes_max, "hl2ss's calibration of the device");
+  const std::size_t expected = hl2ss_calibration_bytes(camera_.model, !long_throw_);
+  const std::size_t pixels = static_cast<std::size_t>(camera_.model.width) *
+                             static_cast<std::size_t>(camera_.model.height);
+  if (bytes.size() != expected) {
+    throw InputError(source_.calibration + ": " + std::to_string(bytes.size()) +
+                     " bytes; expected " + std::to_string(expected) + ", as hl2ss sends them for " +
+                     camera_.name);
+  }
+  const auto* extrinsics = reinterpret_cast<const std::uint8_t*>(bytes.data()) + 8 * pixels;
+  const std::optional<Pose> T_camera_rig = pose_of_matrix(matrix_at(extrinsics));
+  if (!T_camera_rig) {
+    throw InputError(source_.calibration + ":byte " + std::to_string(8 * pixels) +
+                     ": no rigid transform; expected rig to camera, for row vectors");
+  }
+  T_rig_camera_ = T_camera_rig->inverse();
+}
+
+std::optional<SourceLens> Hl2ssFrames::lens() const {
+  if (source_.calibration.empty()) return std::nullopt;
+  return SourceLens{source_.calibration, *with_ray_table(camera_, source_.calibration).table, {}};
+}
+
+bool Hl2ssFrames::next(ReadFrame& frame) {
+  while (at_ < file_.size()) {
+    const std::uint64_t begin = at_, left = file_.size() - begin;
+    const std::uint64_t pose = with_pose_ ? k_pose_bytes : 0;
+    std::uint64_t whole = k_packet_heading;
+    std::uint32_t payload = 0;
+    if (left >= k_packet_heading) {
+      file_.read(begin, k_packet_heading, packet_);
+      ByteReader heading(packet_);
+      frame = ReadFrame{};
+      frame.mid_exposure = time_of_file_time(heading.number<std::uint64_t>());
+      payload = heading.number<std::uint32_t>();
+      whole += payload + pose;
+    }
+    if (left < whole || payload > k_packet_bytes_max) {
+      missing_ = file_.path() + ":byte " + std::to_string(begin) +
+                 ": a packet that is cut short; " + std::to_string(left) + " bytes are not read";
+      at_ = file_.size();
+      return false;
+    }
+    at_ = begin + whole;
+    try {
+      const std::uint64_t empty = empty_;
+      read_packet(begin + k_packet_heading, payload, frame);
+      if (empty_ != empty) continue;
+      if (with_pose_) put_head_pose(at_ - k_pose_bytes, frame);
+      return true;
+    } catch (const InputError& error) {
+      if (unreadable_++ == 0) first_unreadable_ = error.what();
+    }
+  }
+  return false;
+}
+
+PixelPlane Hl2ssFrames::plane_of(const std::uint8_t* from, const char* name) const {
+  PixelPlane plane{camera_.model.width, camera_.model.height, {}, file_.path() + ":" + name};
+  plane.values.resize(static_cast<std::size_t>(plane.width) *
+                      static_cast<std::size_t>(plane.height));
+  std::memcpy(plane.values.data(), from, 2 * plane.values.size());
+  return plane;
+}
+
+void Hl2ssFrames::read_packet(std::uint64_t at, std::uint32_t bytes, ReadFrame& frame) {
+  file_.read(at, bytes, packet_);
+  const std::size_t plane_bytes = 2 * static_cast<std::size_t>(camera_.model.width) *
+                                  static_cast<std::size_t>(camera_.model.height);
+  const auto refuse = [&](const std::string& found, const std::string& expected) {
+    file_.refuse(at, found, expected + " (" + camera_.name + ")");
+  };
+  std::vector<std::uint8_t> planes;
+  if (!long_throw_) {
+    ByteReader reader(packet_);
+    const auto z_bytes = reader.number<std::uint32_t>(), ab_bytes = reader.number<std::uint32_t>();
+    if (!reader.failed() && ab_bytes == 0) {  // the server had no frame
+      ++empty_;
+      return;
+    }
+    if (bytes != k_ahat_heading + z_bytes + ab_bytes + k_sensor_ticks || z_bytes != 0 ||
+        ab_bytes != 2 * plane_bytes) {
+      refuse(
+          "a frame of " + std::to_string(z_bytes) + " and " + std::to_string(ab_bytes) + " bytes",
+          "0 and " + std::to_string(2 * plane_bytes));
+    }
+    planes.assign(packet_.begin() + k_ahat_heading, packet_.end() - k_sensor_ticks);
+  } else {
+    if (bytes <= k_sensor_ticks) refuse(std::to_string(bytes) + " bytes", "a PNG picture");
+    const std::string_view png(reinterpret_cast<const char*>(packet_.data()),
+                               bytes - k_sensor_ticks);
+    const Picture picture =
+        png_of(png, file_.path() + ":byte " + std::to_string(at), "a PNG picture", true);
+    if (picture.channels != 4 || picture.bits != 8 || picture.values.size() != 2 * plane_bytes) {
+      refuse("a picture of " + std::to_string(picture.width) + " x " +
+                 std::to_string(picture.height) + " pixels",
+             "the bytes of two planes as blue, green, red and alpha");
+    }
+    planes.resize(picture.values.size());
+    for (std::size_t i = 0; i < planes.size(); ++i) {  // the file's order is red, green, blue
+      const std::size_t channel = i % 4 == 3 ? 3 : 2 - i % 4;
+      planes[i] = static_cast<std::uint8_t>(picture.values[i - i % 4 + channel]);
+    }
+  }
+  PixelPlane depth = plane_of(planes.data(), "depth");
+  fill_pixels(plane_of(planes.data() + plane_bytes, "ab"), std::move(depth), camera_, frame.pixels);
+}
+
+// Rig to world; without the extrinsics it is not the camera's.
+void Hl2ssFrames::put_head_pose(std::uint64_t at, ReadFrame& frame) const {
+  if (!T_rig_camera_) return;
+  Bytes bytes;
+  file_.read(at, k_pose_bytes, bytes);
+  const std::optional<Pose> T_world_rig = pose_of_matrix(matrix_at(bytes.data()));
+  if (!T_world_rig) return;
+  frame.head.valid = true;
+  frame.head.T_world_camera = *T_world_rig * *T_rig_camera_;
+}
+
+ReaderCounts Hl2ssFrames::counts() const { return {{"packets_without_frame", empty_}}; }
+
+std::string Hl2ssFrames::text() const {
+  std::string text = "hl2ss_file " + file_.path();
+  if (!with_pose_) return text + ": recorded without head pose";
+  if (!T_rig_camera_) text += ": no head pose without [source] calibration";
+  return text;
+}
+
+}  // namespace glint

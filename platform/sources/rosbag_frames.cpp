@@ -1,0 +1,281 @@
+#include "platform/sources/rosbag_frames.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <tuple>
+#include <utility>
+
+#include "platform/input_error.hpp"
+#include "platform/printable.hpp"
+#include "platform/record/message_parts.hpp"
+#include "platform/sources/chunk_decoder.hpp"
+
+namespace glint {
+namespace {
+
+constexpr std::size_t k_waiting_max = 16;  // images without a partner, a topic
+constexpr std::uint32_t k_transforms_a_message_max = 4096;
+constexpr std::int64_t k_unix_from_ns = 1'000'000'000'000'000'000;  // 2001: smaller is no Unix time
+
+constexpr const char* k_image_type = "sensor_msgs/msg/Image";
+constexpr const char* k_camera_info_type = "sensor_msgs/msg/CameraInfo";
+constexpr const char* k_tf_type = "tf2_msgs/msg/TFMessage";
+constexpr const char* k_pose_type = "geometry_msgs/msg/PoseStamped";
+
+std::vector<std::string> files_of(const std::string& path) {
+  if (!std::filesystem::is_directory(path)) return {path};
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(path)) {
+    if (entry.path().extension() == ".mcap") files.push_back(entry.path().string());
+  }
+  if (files.empty()) throw InputError(path + ": no .mcap file in it; expected a ROS 2 bag");
+  // rosbag2 counts without leading zeros: bag_2 before bag_10.
+  std::sort(files.begin(), files.end(), [](const std::string& a, const std::string& b) {
+    return std::tuple(a.size(), a) < std::tuple(b.size(), b);
+  });
+  return files;
+}
+
+// The frame of a pose topic's camera, for the tree of transforms.
+std::string camera_of(const std::string& topic) { return "the camera of " + topic; }
+
+std::string sibling(const std::string& topic) {
+  return topic.substr(0, topic.rfind('/') + 1) + "camera_info";
+}
+
+template <class Map>
+std::string names_of(const Map& map) {
+  std::string names;
+  for (const auto& [name, value] : map) names += (names.empty() ? "" : ", ") + printable(name);
+  return names.empty() ? "none" : names;
+}
+
+}  // namespace
+
+RosbagFrames::RosbagFrames(const SourceSettings& source, const Camera& camera,
+                           ReadTolerance tolerance)
+    : source_(source), camera_(camera), tolerance_(tolerance), files_(files_of(source.path)) {
+  scan();
+  choose_topics();
+  choose_poses();
+  files_opened_ = 0;
+  file_.reset();
+  missing_.clear();
+}
+
+bool RosbagFrames::open_next_file() {
+  if (file_) note_losses();
+  file_.reset();
+  if (files_opened_ == files_.size()) return false;
+  file_ = std::make_unique<McapReader>(
+      files_[files_opened_++], tolerance_.truncated ? McapEnding::optional : McapEnding::required,
+      decode_chunk);
+  return true;
+}
+
+void RosbagFrames::note_losses() {
+  const McapLosses& losses = file_->losses();
+  if (!losses.any() || !missing_.empty()) return;
+  std::uint64_t messages = 0;
+  for (const auto& [topic, count] : losses.messages) messages += count;
+  missing_ = file_->file().path() + ": missing: " + (losses.at_least ? "at least " : "") +
+             std::to_string(messages) + " messages, " + std::to_string(losses.bytes) + " bytes";
+}
+
+std::optional<McapMessage> RosbagFrames::next_message() {
+  for (;;) {
+    if (file_) {
+      if (auto message = file_->next()) return message;
+    }
+    if (!open_next_file()) return std::nullopt;
+  }
+}
+
+void RosbagFrames::scan() {
+  while (const auto message = next_message()) {
+    if (message->schema == nullptr || message->channel->encoding != "cdr") continue;
+    scan(*message);
+  }
+}
+
+void RosbagFrames::scan(const McapMessage& message) {
+  const std::string &type = message.schema->name, &topic = message.channel->topic;
+  if (type == k_image_type) {
+    ImageTopic& images = images_[topic];
+    if (images.count++ == 0) images.first = ros_header_of(message.payload, topic);
+  } else if (type == k_camera_info_type) {
+    infos_.try_emplace(topic, message.payload.begin(), message.payload.end());
+  } else if (type == k_tf_type) {
+    CdrReader from(message.payload);
+    const auto count = from.get<std::uint32_t>();
+    for (std::uint32_t i = 0; i < std::min(count, k_transforms_a_message_max); ++i) {
+      const std::int64_t seconds = from.get<std::int32_t>();
+      const Time time{seconds * 1'000'000'000 + from.get<std::uint32_t>()};
+      const std::string parent = from.get_text(), child = from.get_text();
+      const Pose pose = get_pose(from);
+      if (from.failed()) break;
+      transforms_.add(parent, child, time, pose, topic.ends_with("tf_static"));
+    }
+  } else if (type == k_pose_type && topic == source_.pose_topic) {
+    const RosHeader header = ros_header_of(message.payload, topic);
+    CdrReader from(message.payload);
+    skip_header(from);
+    const Pose pose = get_pose(from);
+    const std::string& frame = pose_frames_.try_emplace(topic, header.frame).first->second;
+    if (!from.failed()) transforms_.add(frame, camera_of(topic), header.stamp, pose, false);
+  }
+}
+
+// Named ones, or: the only one with "depth" in its name, and the only other one.
+void RosbagFrames::choose_topics() {
+  std::string &bright = source_.reflectivity_topic, &depth = source_.depth_topic;
+  const auto only = [&](auto&& wanted) {
+    std::string found;
+    for (const auto& [topic, images] : images_) {
+      if (!wanted(topic)) continue;
+      if (!found.empty()) return std::string();
+      found = topic;
+    }
+    return found;
+  };
+  const auto is_depth = [](const std::string& t) { return t.find("depth") != std::string::npos; };
+  if (depth.empty()) depth = only([&](const std::string& t) { return t != bright && is_depth(t); });
+  if (bright.empty())
+    bright = only([&](const std::string& t) { return t != depth && !is_depth(t); });
+  const auto check = [&](const char* key, const std::string& topic) {
+    if (!topic.empty() && images_.contains(topic)) return;
+    throw InputError(
+        place(key) + ": " + (topic.empty() ? "none named" : "no image on " + printable(topic)) +
+        "; expected one of the topics with images in " + source_.path + ": " + names_of(images_));
+  };
+  check("reflectivity_topic", bright);
+  check("depth_topic", depth);
+  std::string& info = source_.camera_info_topic;
+  if (!info.empty() && !infos_.contains(info)) {
+    throw InputError(place("camera_info_topic") + ": no CameraInfo on " + printable(info) +
+                     "; expected one of: " + names_of(infos_));
+  }
+  for (const std::string& beside : {sibling(bright), sibling(depth)}) {
+    if (info.empty() && infos_.contains(beside)) info = beside;
+  }
+  if (info.empty() && infos_.size() == 1) info = infos_.begin()->first;
+}
+
+void RosbagFrames::choose_poses() {
+  const std::string& topic = source_.pose_topic;
+  if (!topic.empty()) {
+    if (!pose_frames_.contains(topic)) {
+      throw InputError(place("pose_topic") + ": no PoseStamped on " + printable(topic) +
+                       "; expected the camera's pose there");
+    }
+    camera_frame_ = camera_of(topic);
+  } else {
+    const std::string& frame = images_.at(source_.reflectivity_topic).first.frame;
+    if (transforms_.has(frame) && transforms_.root_of(frame) != frame) camera_frame_ = frame;
+  }
+  if (camera_frame_.empty()) {
+    if (source_.world_frame.empty()) return;
+    throw InputError(place("world_frame") + ": no transforms from the images' frame \"" +
+                     images_.at(source_.reflectivity_topic).first.frame +
+                     "\"; expected them on tf, or a pose_topic");
+  }
+  world_ = source_.world_frame.empty() ? transforms_.root_of(camera_frame_) : source_.world_frame;
+  if (transforms_.root_of(world_) != transforms_.root_of(camera_frame_)) {
+    throw InputError(place("world_frame") + ": \"" + world_ + "\" has no chain of transforms to " +
+                     camera_frame_ + "; expected a frame of its tree, whose root is " +
+                     transforms_.root_of(camera_frame_));
+  }
+}
+
+std::optional<SourceLens> RosbagFrames::lens() const {
+  const auto info = infos_.find(source_.camera_info_topic);
+  if (info == infos_.end()) return std::nullopt;
+  const std::string place = source_.path + ":" + info->first;
+  return SourceLens{place, {}, lens_text_of_camera_info(info->second, place)};
+}
+
+bool RosbagFrames::next(ReadFrame& frame) {
+  while (const auto message = next_message()) {
+    const std::string& topic = message->channel->topic;
+    const bool is_depth = topic == source_.depth_topic;
+    if (message->schema == nullptr || message->schema->name != k_image_type ||
+        message->channel->encoding != "cdr" || !(is_depth || topic == source_.reflectivity_topic)) {
+      continue;
+    }
+    try {
+      Image image{ros_image_of(message->payload, camera_.depth.unit_m, source_.path + ":" + topic),
+                  {static_cast<std::int64_t>(message->heading.log_time)}};
+      if (pair_up(std::move(image), is_depth, frame)) return true;
+    } catch (const InputError& error) {
+      if (unreadable_++ == 0) first_unreadable_ = error.what();
+    }
+  }
+  unpaired_ += reflectivity_.size() + depth_.size();
+  reflectivity_.clear();
+  depth_.clear();
+  return false;
+}
+
+// Whether the image has a partner: the waiting one nearest in time, within a quarter of a gap.
+bool RosbagFrames::pair_up(Image arrived, bool is_depth, ReadFrame& frame) {
+  std::deque<Image>& waiting = is_depth ? reflectivity_ : depth_;
+  const Time stamp = arrived.image.header.stamp;
+  const auto distance = [&](const Image& other) {
+    const std::int64_t ns = (other.image.header.stamp - stamp).nanoseconds;
+    return ns < 0 ? -ns : ns;
+  };
+  const auto nearest =
+      std::min_element(waiting.begin(), waiting.end(),
+                       [&](const Image& a, const Image& b) { return distance(a) < distance(b); });
+  if (nearest == waiting.end() || distance(*nearest) > camera_.period.nanoseconds / 4) {
+    std::deque<Image>& own = is_depth ? depth_ : reflectivity_;
+    own.push_back(std::move(arrived));
+    if (own.size() > k_waiting_max) {
+      own.pop_front();
+      ++unpaired_;
+    }
+    return false;
+  }
+  Image partner = std::move(*nearest);
+  waiting.erase(nearest);
+  if (is_depth) {
+    fill(std::move(partner), std::move(arrived), frame);
+  } else {
+    fill(std::move(arrived), std::move(partner), frame);
+  }
+  return true;
+}
+
+void RosbagFrames::fill(Image reflectivity, Image depth, ReadFrame& frame) const {
+  frame = ReadFrame{};
+  frame.mid_exposure = reflectivity.image.header.stamp;
+  frame.arrival = std::max(reflectivity.logged, depth.logged);
+  if (!world_.empty()) {
+    if (const auto pose = transforms_.at(world_, camera_frame_, frame.mid_exposure)) {
+      frame.head.valid = true;
+      frame.head.T_world_camera = *pose;
+    }
+  }
+  fill_pixels(std::move(reflectivity.image.plane), std::move(depth.image.plane), camera_,
+              frame.pixels);
+}
+
+ReaderCounts RosbagFrames::counts() const {
+  return {{"images_unpaired", unpaired_}, {"transforms_refused", transforms_.refused()}};
+}
+
+std::string RosbagFrames::missing() const { return missing_; }
+
+std::string RosbagFrames::text() const {
+  return "rosbag " + source_.path + ": " + printable(source_.reflectivity_topic) + " and " +
+         printable(source_.depth_topic) +
+         (world_.empty() ? ", no head pose" : ", head pose in " + printable(world_));
+}
+
+std::optional<Duration> RosbagFrames::unix_offset() const {
+  const std::int64_t first = images_.at(source_.reflectivity_topic).first.stamp.nanoseconds;
+  if (first < k_unix_from_ns) return std::nullopt;
+  return Duration{};
+}
+
+}  // namespace glint

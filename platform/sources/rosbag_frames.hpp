@@ -1,0 +1,75 @@
+// The frames of a ROS 2 bag (MCAP) of another program: two image topics, paired by their stamps.
+//
+// The bag is read twice: for transforms and lenses, then for its images.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "platform/cells/cell.hpp"
+#include "platform/record/mcap_reader.hpp"
+#include "platform/record/recording_reader.hpp"
+#include "platform/sources/frame_reader.hpp"
+#include "platform/sources/ros_images.hpp"
+#include "platform/sources/transform_tree.hpp"
+
+namespace glint {
+
+class RosbagFrames final : public FrameReader {
+ public:
+  // `source.path`: an MCAP file, or a folder of them in the order of their numbers. Throws
+  // InputError: no such topic, or none named where the bag leaves a choice; it lists those there
+  // are.
+  RosbagFrames(const SourceSettings& source, const Camera& camera, ReadTolerance tolerance);
+
+  [[nodiscard]] bool next(ReadFrame& frame) override;
+  [[nodiscard]] std::optional<SourceLens> lens() const override;
+  [[nodiscard]] std::uint64_t unreadable() const override { return unreadable_; }
+  [[nodiscard]] std::string first_unreadable() const override { return first_unreadable_; }
+  [[nodiscard]] ReaderCounts counts() const override;
+  [[nodiscard]] std::string missing() const override;
+  [[nodiscard]] std::string text() const override;
+  [[nodiscard]] std::optional<Duration> unix_offset() const override;
+
+ private:
+  struct Image {
+    RosImage image;
+    Time logged;
+  };
+  struct ImageTopic {
+    std::uint64_t count = 0;
+    RosHeader first;
+  };
+  void scan();
+  void scan(const McapMessage& message);
+  void choose_topics();
+  void choose_poses();
+  [[nodiscard]] std::optional<McapMessage> next_message();
+  [[nodiscard]] bool open_next_file();
+  void note_losses();
+  [[nodiscard]] bool pair_up(Image arrived, bool is_depth, ReadFrame& frame);
+  void fill(Image reflectivity, Image depth, ReadFrame& frame) const;
+  [[nodiscard]] std::string place(const char* key) const { return source_.place + "." + key; }
+
+  SourceSettings source_;
+  Camera camera_;
+  ReadTolerance tolerance_;
+  std::vector<std::string> files_;
+  std::size_t files_opened_ = 0;
+  std::unique_ptr<McapReader> file_;
+  std::map<std::string, ImageTopic> images_;        // by topic
+  std::map<std::string, Bytes> infos_;              // the first CameraInfo of each topic
+  std::map<std::string, std::string> pose_frames_;  // of PoseStamped topics: their frame
+  TransformTree transforms_;
+  std::string world_, camera_frame_;        // empty: no head pose
+  std::deque<Image> reflectivity_, depth_;  // without a partner yet, oldest first
+  std::uint64_t unpaired_ = 0, unreadable_ = 0;
+  std::string first_unreadable_, missing_;
+};
+
+}  // namespace glint

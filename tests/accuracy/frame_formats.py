@@ -1,0 +1,395 @@
+"""Frames in the formats that `glint track` reads, written and read without Glint and without a package.
+
+A frame is a Frame: stamp in ns, planes of uint16 (array.array), and the camera's pose in the world
+as (position, quaternion x y z w), or None. `arrival_ns` follows the stamp by ARRIVAL_NS.
+"""
+import array
+import csv
+import dataclasses
+import io
+import math
+import pathlib
+import struct
+import sys
+import tarfile
+import zlib
+
+ARRIVAL_NS = 9_000_000          # exposure / 2 and transport of Glint's AHAT preset
+FILE_TIME_OF_UNIX = 116_444_736_000_000_000
+# The camera on the rig: any rigid transform will do.
+RIG_POSITION = (0.021, -0.034, 0.055)
+RIG_QUATERNION = (0.1, -0.2, 0.05, math.sqrt(1 - 0.1**2 - 0.2**2 - 0.05**2))
+
+
+@dataclasses.dataclass
+class Frame:
+    stamp_ns: int
+    bright: array.array
+    depth: array.array
+    pose: tuple | None
+    sequence: int = 0
+    arrival_ns: int | None = None
+
+    def arrives_ns(self):
+        return self.stamp_ns + ARRIVAL_NS if self.arrival_ns is None else self.arrival_ns
+
+
+# Rigid transforms as (rotation rows, position).
+
+def matrix_of(q):
+    x, y, z, w = q
+    return ((1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
+            (2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
+            (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)))
+
+
+def times(a, b):
+    """a after b."""
+    (ra, pa), (rb, pb) = a, b
+    rotation = tuple(tuple(sum(ra[i][k] * rb[k][j] for k in range(3)) for j in range(3))
+                     for i in range(3))
+    return rotation, tuple(sum(ra[i][k] * pb[k] for k in range(3)) + pa[i] for i in range(3))
+
+
+def inverse(a):
+    rotation, position = a
+    back = tuple(zip(*rotation))
+    return back, tuple(-sum(back[i][k] * position[k] for k in range(3)) for i in range(3))
+
+
+def quaternion_of(rotation):
+    """Of the largest component, as x y z w."""
+    m = rotation
+    squares = [1 + m[0][0] - m[1][1] - m[2][2], 1 - m[0][0] + m[1][1] - m[2][2],
+               1 - m[0][0] - m[1][1] + m[2][2], 1 + m[0][0] + m[1][1] + m[2][2]]
+    i = max(range(4), key=lambda k: squares[k])
+    s = math.sqrt(squares[i])
+    d = 0.5 / s
+    sums = {(0, 1): m[0][1] + m[1][0], (0, 2): m[0][2] + m[2][0], (1, 2): m[1][2] + m[2][1],
+            (0, 3): m[2][1] - m[1][2], (1, 3): m[0][2] - m[2][0], (2, 3): m[1][0] - m[0][1]}
+    return tuple(s / 2 if k == i else d * sums[(min(i, k), max(i, k))] for k in range(4))
+
+
+RIG = (matrix_of(RIG_QUATERNION), RIG_POSITION)  # T_rig_camera
+
+
+def rig_pose(pose):
+    """T_world_rig of a camera's pose."""
+    position, q = pose
+    return times((matrix_of(q), position), inverse(RIG))
+
+
+def row_major(transform):
+    rotation, position = transform
+    return [*rotation[0], position[0], *rotation[1], position[1], *rotation[2], position[2],
+            0.0, 0.0, 0.0, 1.0]
+
+
+def row_vectors(transform):
+    """The same for p' = p M."""
+    m = row_major(transform)
+    return [m[4 * (i % 4) + i // 4] for i in range(16)]
+
+
+# Pictures and arrays.
+
+def pgm(width, height, values):
+    swapped = array.array("H", values)
+    if sys.byteorder == "little":
+        swapped.byteswap()
+    return b"P5 %d %d 65535\n" % (width, height) + swapped.tobytes()
+
+
+def npy(shape, values):
+    text = "{'descr': '<f4', 'fortran_order': False, 'shape': %s, }" % (shape,)
+    text = text.ljust(117) + "\n"
+    return b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text.encode() + values.tobytes()
+
+
+def png_rgba(width, height, pixels):
+    """`pixels`: red, green, blue, alpha; no filter."""
+    def chunk(kind, data):
+        return (struct.pack(">I", len(data)) + kind + data +
+                struct.pack(">I", zlib.crc32(kind + data)))
+    rows = b"".join(b"\0" + pixels[4 * width * y:4 * width * (y + 1)] for y in range(height))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(rows, 1)) + chunk(b"IEND", b""))
+
+
+# Writers: of a list of frames of width x height pixels.
+
+def write_folder(folder, width, height, frames):
+    folder.mkdir()
+    with open(folder / "frames.csv", "w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow("time_ns arrival_ns sequence reflectivity depth x_m y_m z_m qx qy qz qw"
+                        .split())
+        for i, f in enumerate(frames):
+            (folder / f"{i}_ab.pgm").write_bytes(pgm(width, height, f.bright))
+            (folder / f"{i}.pgm").write_bytes(pgm(width, height, f.depth))
+            pose = [repr(v) for v in (*f.pose[0], *f.pose[1])] if f.pose else [""] * 7
+            writer.writerow([f.stamp_ns, f.arrives_ns(), f.sequence, f"{i}_ab.pgm", f"{i}.pgm",
+                             *pose])
+    return folder
+
+
+def write_stream_recorder(folder, width, height, frames, rays=None):
+    folder.mkdir()
+    sensor = "Depth AHaT" if width == 512 else "Depth Long Throw"
+    with tarfile.open(folder / f"{sensor}.tar", "w", format=tarfile.USTAR_FORMAT) as archive, \
+            open(folder / f"{sensor}_rig2world.txt", "w") as poses:
+        for f in frames:
+            stamp = f.stamp_ns // 100 + FILE_TIME_OF_UNIX
+            for name, values in ((f"{stamp}.pgm", f.depth), (f"{stamp}_ab.pgm", f.bright)):
+                data = pgm(width, height, values)
+                entry = tarfile.TarInfo(name)
+                entry.size = len(data)
+                archive.addfile(entry, io.BytesIO(data))
+            if f.pose:
+                numbers = row_major(rig_pose(f.pose))
+                poses.write(",".join([str(stamp), *map(repr, numbers)]) + "\n")
+    (folder / f"{sensor}_extrinsics.txt").write_text(
+        ",".join(map(repr, row_major(inverse(RIG)))) + "\n")
+    if rays is not None:
+        (folder / f"{sensor}_lut.bin").write_bytes(rays.tobytes())
+    return folder
+
+
+def write_hl2ss(path, width, height, frames):
+    """AHAT is raw; long throw has one PNG a frame, as the server sends them."""
+    ahat = width == 512
+    configuration = (struct.pack("<BBBBBIB", 1, 1, 0, 255, 255, 0, 0) if ahat else
+                     struct.pack("<BBI", 1, 1, 0))
+    user = b"by hand"
+    with open(path, "wb") as file:
+        file.write(b"HL2SSV23" + struct.pack("<HI", 3804 if ahat else 3805, len(user)) + user +
+                   configuration)
+        for f in frames:
+            planes = f.depth.tobytes() + f.bright.tobytes()
+            if ahat:
+                payload = struct.pack("<II", 0, len(planes)) + planes
+            else:
+                swapped = bytearray(planes)  # the bytes are blue, green, red, alpha
+                swapped[0::4], swapped[2::4] = planes[2::4], planes[0::4]
+                payload = png_rgba(width, height, bytes(swapped))
+            payload += struct.pack("<Q", f.sequence)
+            pose = row_vectors(rig_pose(f.pose)) if f.pose else [0.0] * 16
+            file.write(struct.pack("<QI", f.stamp_ns // 100, len(payload)) + payload +
+                       struct.pack("<16f", *pose))
+    return path
+
+
+def write_hl2ss_calibration(path, rays, alias):
+    """Of unit rays: x and y at z = 1, extrinsics, scale, alias, a map and a pinhole."""
+    pixels = len(rays) // 3
+    planes = [array.array("f", (rays[3 * i + axis] / rays[3 * i + 2] if rays[3 * i + 2] else 0.0
+                                for i in range(pixels))) for axis in (0, 1)]
+    rest = array.array("f", row_vectors(inverse(RIG)) + [1000.0] + ([1055.0] if alias else []))
+    rest.extend([0.0] * (2 * pixels + 4))
+    path.write_bytes(planes[0].tobytes() + planes[1].tobytes() + rest.tobytes())
+    return path
+
+
+# MCAP, chunks without compression.
+
+class Cdr:
+    def __init__(self):
+        self.bytes = bytearray(b"\0\1\0\0")
+
+    def put(self, kind, *values):
+        size = struct.calcsize(kind)
+        for value in values:
+            self.bytes += b"\0" * (-(len(self.bytes) - 4) % size) + struct.pack("<" + kind, value)
+        return self
+
+    def text(self, text):
+        self.put("I", len(text) + 1)
+        self.bytes += text.encode() + b"\0"
+        return self
+
+    def raw(self, data):
+        self.put("I", len(data))
+        self.bytes += data
+        return self
+
+    def header(self, stamp_ns, frame):
+        return self.put("i", stamp_ns // 10**9).put("I", stamp_ns % 10**9).text(frame)
+
+
+def image(stamp_ns, frame, width, height, encoding, data):
+    step = len(data) // height
+    return bytes(Cdr().header(stamp_ns, frame).put("I", height, width).text(encoding)
+                 .put("B", 0).put("I", step).raw(data).bytes)
+
+
+def transforms(items):
+    """(stamp, parent, child, (rotation, position)) each."""
+    cdr = Cdr().put("I", len(items))
+    for stamp_ns, parent, child, (rotation, position) in items:
+        cdr.header(stamp_ns, parent).text(child).put("d", *position)
+        cdr.put("d", *quaternion_of(rotation))
+    return bytes(cdr.bytes)
+
+
+def pose_stamped(stamp_ns, frame, position, q):
+    return bytes(Cdr().header(stamp_ns, frame).put("d", *position, *q).bytes)
+
+
+class Mcap:
+    """A file of one chunk each `chunk_messages` messages, with index and checksums."""
+
+    def __init__(self, path, chunk_messages=16):
+        self.file = open(path, "wb")
+        self.file.write(b"\x89MCAP0\r\n")
+        self._record(1, self._text("ros2") + self._text("by hand"))
+        self.channels, self.counts, self.times = {}, {}, []
+        self.chunk, self.messages, self.chunk_messages = bytearray(), 0, chunk_messages
+        self.index = []
+
+    @staticmethod
+    def _text(text):
+        return struct.pack("<I", len(text)) + text.encode()
+
+    @staticmethod
+    def _bytes(kind, content):
+        return struct.pack("<BQ", kind, len(content)) + content
+
+    def _record(self, kind, content):
+        self.file.write(self._bytes(kind, content))
+
+    def _declare(self, topic, schema):
+        number = len(self.channels) + 1
+        self.channels[topic] = (number,
+                                self._bytes(3, struct.pack("<H", number) + self._text(schema) +
+                                            self._text("ros2msg") + struct.pack("<I", 0)) +
+                                self._bytes(4, struct.pack("<HH", number, number) +
+                                            self._text(topic) + self._text("cdr") +
+                                            struct.pack("<I", 0)))
+        self.chunk += self.channels[topic][1]
+
+    def write(self, topic, schema, log_ns, payload):
+        if topic not in self.channels:
+            self._declare(topic, schema)
+        number = self.channels[topic][0]
+        self.counts[number] = self.counts.get(number, 0) + 1
+        self.chunk += self._bytes(5, struct.pack("<HIQQ", number, self.messages & 0xFFFFFFFF,
+                                                 log_ns, log_ns) + payload)
+        self.times.append(log_ns)
+        self.messages += 1
+        if self.messages % self.chunk_messages == 0:
+            self._close_chunk()
+
+    def _close_chunk(self):
+        if not self.chunk:
+            return
+        start, end = (min(self.times), max(self.times)) if self.times else (0, 0)
+        at = self.file.tell()
+        content = (struct.pack("<QQQI", start, end, len(self.chunk), zlib.crc32(self.chunk)) +
+                   self._text("") + struct.pack("<Q", len(self.chunk)) + bytes(self.chunk))
+        self._record(6, content)
+        self.index.append((start, end, at, self.file.tell() - at, len(self.chunk)))
+        self.chunk, self.times = bytearray(), []
+
+    def close(self):
+        self._close_chunk()
+        self._record(15, struct.pack("<I", 0))
+        start = self.file.tell()
+        for _, declaration in self.channels.values():
+            self.file.write(declaration)
+        for first, last, at, length, size in self.index:
+            self._record(8, struct.pack("<QQQQIQ", first, last, at, length, 0, 0) + self._text("") +
+                         struct.pack("<QQ", size, size))
+        counts = b"".join(struct.pack("<HQ", *item) for item in self.counts.items())
+        self._record(11, struct.pack("<QHIIIIQQ", self.messages, len(self.channels),
+                                     len(self.channels), 0, 0, len(self.index), 0, 0) +
+                     struct.pack("<I", len(counts)) + counts)
+        self._record(2, struct.pack("<QQI", start, 0, 0))
+        self.file.write(b"\x89MCAP0\r\n")
+        self.file.close()
+
+
+def write_bag(path, width, height, frames):
+    """Head pose by tf: world <- rig moves, rig <- camera is static."""
+    bag = Mcap(path)
+    first = frames[0].stamp_ns
+    bag.write("/tf_static", "tf2_msgs/msg/TFMessage", first,
+              transforms([(0, "rig", "tof_optical", RIG)]))
+    for f in frames:
+        if f.pose:
+            bag.write("/tf", "tf2_msgs/msg/TFMessage", f.stamp_ns,
+                      transforms([(f.stamp_ns, "world", "rig", rig_pose(f.pose))]))
+        for topic, encoding, values in (("/tof/depth", "16UC1", f.depth),
+                                        ("/tof/reflectivity", "mono16", f.bright)):
+            bag.write(topic, "sensor_msgs/msg/Image", f.arrives_ns(),
+                      image(f.stamp_ns, "tof_optical", width, height, encoding, values.tobytes()))
+    bag.close()
+    return path
+
+
+class _Bytes:
+    def __init__(self, data):
+        self.data, self.at = data, 4
+
+    def get(self, kind, count=1):
+        size = struct.calcsize(kind)
+        self.at += -(self.at - 4) % size
+        values = struct.unpack_from("<%d%s" % (count, kind), self.data, self.at)
+        self.at += size * count
+        return values if count > 1 else values[0]
+
+    def take(self):
+        count = self.get("I")
+        self.at += count
+        return self.data[self.at - count:self.at]
+
+    def header(self):
+        return self.get("i") * 10**9 + self.get("I"), self.take()
+
+
+def read_recording(path):
+    """(width, height, frames) of a recording of Glint at level full."""
+    data = path.read_bytes()
+    names, planes, frames, head = {}, {}, [], {}
+    width = height = 0
+
+    def message(topic, payload):
+        nonlocal width, height
+        cdr = _Bytes(payload)
+        if topic in ("/glint/reflectivity", "/glint/depth"):
+            cdr.header()
+            height, width = cdr.get("I"), cdr.get("I")
+            cdr.take(), cdr.get("B"), cdr.get("I")
+            planes[topic] = array.array("H", cdr.take())
+        elif topic == "/glint/head_pose":
+            cdr.header()
+            time, valid = cdr.get("q"), cdr.get("B")
+            numbers = cdr.get("d", 7)
+            head[time] = (numbers[:3], numbers[3:]) if valid else None
+        elif topic == "/glint/frame":
+            cdr.header()
+            stamp, arrival, sequence = cdr.get("q"), cdr.get("q"), cdr.get("I")
+            frames.append(Frame(stamp, planes["/glint/reflectivity"], planes["/glint/depth"],
+                                head.get(stamp), sequence, arrival))
+
+    def records(start, end):
+        at = start
+        while at + 9 <= end:
+            kind, length = struct.unpack_from("<BQ", data, at)
+            at += 9
+            if kind == 4:
+                number, size = struct.unpack_from("<H", data, at)[0], struct.unpack_from(
+                    "<I", data, at + 4)[0]
+                names[number] = data[at + 8:at + 8 + size].decode()
+            elif kind == 5:
+                number = struct.unpack_from("<H", data, at)[0]
+                message(names[number], data[at + 22:at + length])
+            elif kind == 6:
+                size = struct.unpack_from("<I", data, at + 28)[0]
+                assert size == 0, "compressed"
+                records(at + 40, at + length)
+            elif kind == 15:
+                return
+            at += length
+
+    records(8, len(data))
+    return width, height, frames

@@ -1,0 +1,147 @@
+// [camera] and [source] of a cell: presets, what differs from them, lenses from elsewhere.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kernels/pose/camera_model.hpp"
+#include "tests/unit/platform/cells/complaint.hpp"
+
+namespace glint {
+namespace {
+
+using test::complaint_about;
+
+constexpr const char* k_generic =
+    "[camera]\nmodel = \"generic\"\nwidth = 4\nheight = 2\nthreshold = 100\n";
+constexpr const char* k_lens_file =
+    "[camera]\nlens = \"brown\"\nwidth = 4\nheight = 2\nfx_px = 3\nfy_px = 3\ncx_px = 2\n"
+    "cy_px = 1\nk1_k2_p1_p2_k3_k4_k5_k6 = [0, 0, 0, 0, 0, 0, 0, 0]\nfield_tangent = 2\n";
+
+Cell generic_cell() { return cell_from_text(k_generic, "cell.toml"); }
+
+std::vector<float> eight_rays() {
+  std::vector<float> rays;
+  for (int i = 0; i < 8; ++i) {
+    const Vector3 ray = Vector3(0.3 * (i % 4 - 1.5), 0.3 * (i / 4 - 0.5), 1).normalized();
+    for (int axis = 0; axis < 3; ++axis) rays.push_back(static_cast<float>(ray[axis]));
+  }
+  return rays;
+}
+
+std::string refusal(const auto& call) {
+  try {
+    call();
+    return "accepted";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST(CellCamera, LeavesThePresetsBitsWhereNothingIsStated) {
+  const Cell cell = cell_from_text("[camera]\ndepth_unit_mm = 1\nperiod_ms = 22.222222\n", "c");
+  const Camera preset = hololens2_ahat();
+  EXPECT_EQ(cell.camera.depth.wrap_range_m, preset.depth.wrap_range_m);
+  EXPECT_EQ(cell.camera.depth.unit_m, preset.depth.unit_m);
+  EXPECT_EQ(cell.camera.period, preset.period);
+}
+
+TEST(CellCamera, TakesWhatDiffersFromThePreset) {
+  const Cell cell = cell_from_text(
+      std::string(k_generic) +
+          "depth = \"radial\"\ndepth_unit_mm = 0.25\ndepth_invalid_from = 60000\n"
+          "depth_wraps_mm = 7500\nreflectivity_bits = 8\nperiod_ms = 10\nexposure_ms = 3\n"
+          "transport_ms = 4\nrange_mm = [200, 3000]\n",
+      "cell.toml");
+  const Camera& camera = cell.camera;
+  EXPECT_EQ(camera.model.width, 4);
+  EXPECT_EQ(camera.model.height, 2);
+  EXPECT_EQ(camera.threshold, 100);
+  EXPECT_EQ(camera.depth.kind, DepthKind::radial);
+  EXPECT_DOUBLE_EQ(camera.depth.unit_m, 0.00025);
+  EXPECT_EQ(camera.depth.invalid_from, 60000);
+  EXPECT_DOUBLE_EQ(camera.depth.wrap_range_m, 7.5);
+  EXPECT_EQ(camera.reflectivity_bits, 8);
+  EXPECT_EQ(camera.period, milliseconds(10));
+  EXPECT_EQ(camera.exposure, milliseconds(3));
+  EXPECT_EQ(camera.transport, milliseconds(4));
+  EXPECT_DOUBLE_EQ(camera.range_min_m, 0.2);
+  EXPECT_DOUBLE_EQ(camera.range_max_m, 3);
+  EXPECT_EQ(generic_cell().camera.depth.kind, DepthKind::z);
+}
+
+TEST(CellCamera, RefusesWhatNoCameraHas) {
+  for (const auto& [text, part] :
+       {std::pair{"[camera]\nmodel = \"ahat2\"\n",
+                  "cell.toml:2: camera.model: \"ahat2\"; expected"},
+        std::pair{"[camera]\nmodel = \"generic\"\nthreshold = 9\n", "no width and height"},
+        std::pair{"[camera]\nmodel = \"hololens2_long_throw\"\n", "camera.threshold: none"},
+        std::pair{"[camera]\nreflectivity_bits = 12\n", "expected 8 or 16"},
+        std::pair{"[camera]\nreflectivity_bits = 8\n", "threshold"},
+        std::pair{"[camera]\ndepth = \"planar\"\n", "radial"},
+        std::pair{"[camera]\nrange_mm = [900, 200]\n", "no range"},
+        std::pair{"[camera]\nwidth = 640\n", "512"},
+        std::pair{"[camera]\nperiod_ms = 0\n", "period_ms"}}) {
+    EXPECT_NE(complaint_about(text).find(part), std::string::npos) << text << complaint_about(text);
+  }
+}
+
+TEST(CellCamera, NeedsALensFromSomewhere) {
+  Cell cell = generic_cell();
+  EXPECT_FALSE(names_lens(cell));
+  EXPECT_NE(refusal([&] { require_lens(cell); }).find("generic has no lens of its own"),
+            std::string::npos);
+  set_lens(cell, {"bag:/info", {}, k_lens_file});
+  EXPECT_TRUE(names_lens(cell));
+  EXPECT_EQ(cell.camera.model.fx, 3);
+  EXPECT_EQ(refusal([&] { require_lens(cell); }), "accepted");
+  Cell table = generic_cell();
+  set_lens(table, {"lut.bin", eight_rays(), {}});
+  EXPECT_TRUE(names_lens(table));
+  EXPECT_TRUE(unproject(table.camera.model, {1.5, 0.5}));
+  EXPECT_EQ(refusal([&] { require_lens(default_cell()); }), "accepted");
+  Cell other = default_cell();
+  EXPECT_NE(refusal([&] {
+              set_lens(other, {"lut.bin", eight_rays(), {}});
+            }).find("24 numbers"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] {
+              set_lens(other, {"bag", {}, k_lens_file});
+            }).find("4 x 2 pixels"),
+            std::string::npos);
+}
+
+// The cell's text names none; a recording carries what the source brought.
+TEST(CellCamera, ComesBackFromARecordingWithTheSourcesLens) {
+  CellFiles carried;
+  carried.named["camera.file"] = k_lens_file;
+  EXPECT_EQ(cell_from_text(k_generic, "run.mcap", &carried).camera.model.fx, 3);
+  CellFiles rays;
+  rays.rays = std::make_shared<const std::vector<float>>(eight_rays());
+  EXPECT_EQ(cell_from_text(k_generic, "run.mcap", &rays).camera.model.lens, Lens::lut);
+}
+
+TEST(CellSource, ReadsItsKeysAndRefusesThoseOfAnotherKind) {
+  const Cell cell = cell_from_text(
+      "[source]\nkind = \"rosbag\"\npath = \"bag\"\nreflectivity_topic = \"/ir\"\n"
+      "depth_topic = \"/d\"\ncamera_info_topic = \"/i\"\npose_topic = \"/p\"\n"
+      "world_frame = \"map\"\n",
+      "dir/cell.toml");
+  EXPECT_EQ(cell.source.path, "dir/bag");
+  EXPECT_EQ(cell.source.reflectivity_topic, "/ir");
+  EXPECT_EQ(cell.source.depth_topic, "/d");
+  EXPECT_EQ(cell.source.camera_info_topic, "/i");
+  EXPECT_EQ(cell.source.pose_topic, "/p");
+  EXPECT_EQ(cell.source.world_frame, "map");
+  const std::string why = complaint_about("[source]\nkind = \"folder\"\npose_topic = \"/p\"\n");
+  EXPECT_NE(why.find("cell.toml:3: source.pose_topic: of a source of kind rosbag"),
+            std::string::npos)
+      << why;
+  EXPECT_NE(complaint_about("[source]\nkind = \"rosbag\"\ncalibration = \"c\"\n")
+                .find("source.calibration"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace glint
