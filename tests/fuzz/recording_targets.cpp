@@ -1,7 +1,15 @@
-// Recordings: the MCAP container, and each of Glint's messages by itself.
+// Recordings: the MCAP container, each of Glint's messages by itself, and what other programs
+// record.
+#include <filesystem>
+
 #include "kernels/wire/output_record.hpp"
 #include "platform/record/glint_messages.hpp"
 #include "platform/record/recording_reader.hpp"
+#include "platform/sources/folder_frames.hpp"
+#include "platform/sources/hl2ss_frames.hpp"
+#include "platform/sources/ros_images.hpp"
+#include "platform/sources/rosbag_frames.hpp"
+#include "platform/sources/tar_file.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/memory_file.hpp"
 
@@ -61,8 +69,58 @@ void read_message(Bytes bytes) {
   }
 }
 
+Camera tiny_camera() {
+  Camera camera = hololens2_ahat();
+  camera.model.width = camera.model.height = 2;
+  return camera;
+}
+
+void read_frames(FrameReader& reader) {
+  ReadFrame frame;
+  while (reader.next(frame)) {
+  }
+  (void)reader.text();
+  (void)reader.unix_offset();
+}
+
+void read_rosbag(Bytes bytes) {
+  SourceSettings source;
+  source.path = file_of(bytes);
+  RosbagFrames frames(source, tiny_camera(), {true, true});
+  (void)frames.lens();
+  read_frames(frames);
+}
+
+void read_lens_of_bag(Bytes bytes) { (void)lens_text_of_camera_info(bytes, "/info"); }
+
+void read_hl2ss(Bytes bytes) {
+  SourceSettings source;
+  source.path = file_of(bytes);
+  Hl2ssFrames frames(source, tiny_camera());
+  read_frames(frames);
+}
+
+void read_tar(Bytes bytes) {
+  const InputFile archive(file_of(bytes));
+  std::uint64_t cut = 0;
+  for (const TarEntry& entry : tar_entries(archive, cut)) {
+    expect(entry.offset + entry.bytes <= archive.size(), "an entry inside the archive");
+  }
+  expect(cut <= archive.size(), "no more is cut than there is");
+}
+
+void read_frames_csv(Bytes bytes) {
+  const std::filesystem::path file = file_of(bytes, ".csv");
+  const std::filesystem::path link = file.parent_path() / "frames.csv";
+  if (!std::filesystem::exists(link)) std::filesystem::create_symlink(file, link);
+  FolderFrames frames(file.parent_path().string(), tiny_camera());
+  read_frames(frames);
+}
+
 constexpr Target k_recording_targets[] = {
-    {"mcap", read_whole}, {"mcap_tolerant", read_tolerant}, {"messages", read_message}};
+    {"mcap", read_whole},    {"mcap_tolerant", read_tolerant},  {"messages", read_message},
+    {"rosbag", read_rosbag}, {"camera_info", read_lens_of_bag}, {"hl2ss", read_hl2ss},
+    {"tar", read_tar},       {"frames_csv", read_frames_csv}};
 
 }  // namespace
 
