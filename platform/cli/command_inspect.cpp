@@ -1,9 +1,13 @@
-// glint inspect: what Glint sees in one frame, with a picture.
+// glint inspect: what Glint sees in one frame, why a tool is or is not tracked, with a picture.
+#include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,18 +17,22 @@
 #include "platform/cli/cell_option.hpp"
 #include "platform/cli/commands.hpp"
 #include "platform/cli/output_file.hpp"
+#include "platform/cli/progress.hpp"
 #include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
 #include "platform/report/picture.hpp"
 #include "platform/sensors/frame_files.hpp"
+#include "platform/session/diagnosis.hpp"
 #include "platform/session/pipeline.hpp"
+#include "platform/sources/open_source.hpp"
 
 namespace glint {
 namespace {
 
 struct InspectArguments {
-  std::string frame, layout = "adi", config, json, out = "out";
+  std::string frame, layout = "adi", config, json, out = "out", recording, kind;
+  double at_s = -1;  // less than 0: none
   std::vector<std::string> tools;
   int threshold = 0;
 };
@@ -89,11 +97,29 @@ nlohmann::ordered_json tool_json(const Tool& tool, const Track& track) {
           {"rms_mm", track.rms_m * 1e3}};
 }
 
-int inspect_frame(const InspectArguments& arguments) {
-  const FrameFileLayout layout = frame_file_layout_of(arguments.layout);
-  const FrameBuffer pixels = load_frame(arguments.frame, layout);
-  Cell cell = cell_or_default(arguments.config);
-  if (arguments.config.empty()) set_camera(cell, camera_for(layout, pixels));
+std::size_t frame_number(const std::string& text) {
+  std::size_t number = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error == std::errc{} && rest == text.data() + text.size()) return number;
+  throw InputError("--frame " + text + ": expected a frame's number, from 0, with --recording");
+}
+
+// The frame that is looked at, and what the tracker made of it.
+struct Inspected {
+  Cell cell;
+  std::unique_ptr<Tracker> tracker = std::make_unique<Tracker>();
+  FrameBuffer pixels;                   // of a frame file
+  std::unique_ptr<FrameSource> source;  // of a recording; owns the frame's pixels
+  std::string text, picture_name;
+  std::optional<CheckRow> at_that_time;  // whether a frame was there
+};
+
+void start_tracker(Inspected& inspected) {
+  configure(inspected.cell, *inspected.tracker);
+  inspected.tracker->latest<ToolSet>().set(inspected.cell.tools, 1, 0);
+}
+
+void put_overrides(const InspectArguments& arguments, Cell& cell) {
   if (arguments.threshold > 0) {
     cell.camera.threshold = static_cast<std::uint16_t>(arguments.threshold);
   }
@@ -106,63 +132,181 @@ int inspect_frame(const InspectArguments& arguments) {
     cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] =
         built_in ? *built_in : load_tool(file);
   }
+}
 
-  auto tracker = std::make_unique<Tracker>();
-  configure(cell, *tracker);
-  tracker->latest<ToolSet>().set(cell.tools, 1, 0);
-  tracker->input<Frame>() = pixels.view(Time{} + milliseconds(1), Time{} + milliseconds(1), 1);
-  tracker->activate();
+Inspected inspected_file(const InspectArguments& arguments) {
+  const FrameFileLayout layout = frame_file_layout_of(arguments.layout);
+  Inspected inspected;
+  inspected.cell = cell_or_default(arguments.config);
+  inspected.pixels = load_frame(arguments.frame, layout);
+  if (arguments.config.empty()) set_camera(inspected.cell, camera_for(layout, inspected.pixels));
+  put_overrides(arguments, inspected.cell);
+  start_tracker(inspected);
+  const Time time = Time{} + milliseconds(1);
+  inspected.tracker->input<Frame>() = inspected.pixels.view(time, time, 1);
+  inspected.tracker->activate();
+  inspected.text = arguments.frame;
+  inspected.picture_name = std::filesystem::path(arguments.frame).stem().string();
+  return inspected;
+}
 
-  const Blobs& blobs = tracker->token<Blobs>();
-  const Markers& markers = tracker->token<Markers>();
+// Tracks up to the frame, so that it is seen as a run would see it.
+Inspected inspected_recording(const InspectArguments& arguments) {
+  const bool by_time = arguments.at_s >= 0;
+  const std::size_t wanted = by_time ? SIZE_MAX : frame_number(arguments.frame);
+  Inspected inspected;
+  inspected.cell = recorded_source_cell(arguments.recording, arguments.config, arguments.kind);
+  Cell& cell = inspected.cell;
+  put_overrides(arguments, cell);
+  inspected.source = open_source(cell);
+  start_tracker(inspected);
+  Progress progress("tracking");
+  inspected.source->start({});
+  ArrivedFrame current, next;
+  std::size_t frames = 0;
+  double after_s = 0;
+  const Time at{static_cast<std::int64_t>(std::llround(std::max(0.0, arguments.at_s) * 1e9))};
+  while (frames <= wanted && inspected.source->wait(next)) {
+    if (by_time && next.frame.arrival > at) {
+      after_s = (next.frame.arrival - Time{}).seconds();
+      break;
+    }
+    if (frames++ > 0) inspected.source->give_back(current);
+    current = next;
+    inspected.tracker->input<Frame>() = current.frame;
+    inspected.tracker->input<HeadPose>() = current.head;
+    inspected.tracker->activate();
+  }
+  progress.clear();
+  const auto seconds = [](Time time) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3f s", (time - Time{}).seconds());
+    return std::string(text);
+  };
+  if (frames == 0) {
+    throw InputError(arguments.recording + ": no frame arrived up to " + seconds(at) +
+                     "; expected a time after its first");
+  }
+  if (!by_time && frames <= wanted) {
+    throw InputError(arguments.recording + ": " + std::to_string(frames) +
+                     " frames; expected --frame from 0 to " + std::to_string(frames - 1));
+  }
+  inspected.text =
+      "frame " + std::to_string(frames - 1) + ", arrived at " + seconds(current.frame.arrival);
+  inspected.picture_name = "frame_" + std::to_string(frames - 1);
+  if (by_time) {
+    const double age_ms = (at - current.frame.arrival).seconds() * 1e3;
+    const bool fresh = age_ms <= 1.5e3 * cell.camera.period.seconds();
+    char text[96];
+    std::snprintf(text, sizeof text, "the newest one is %.0f ms old", age_ms);
+    inspected.at_that_time = CheckRow{
+        "frame at that time", fresh, text,
+        fresh ? ""
+              : "see the source's gaps; " +
+                    (after_s > 0 ? "the next frame arrives at " + std::to_string(after_s) + " s"
+                                 : std::string("it is the last one"))};
+  }
+  return inspected;
+}
+
+nlohmann::ordered_json rows_json(const std::vector<CheckRow>& rows) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const CheckRow& row : rows) {
+    list.push_back({{"check", row.check},
+                    {"holds", row.holds},
+                    {"found", row.found},
+                    {"next_step", row.next_step}});
+  }
+  return list;
+}
+
+void print_rows(const ToolDiagnosis& diagnosis) {
+  std::printf("%s: %s\n", printable(diagnosis.tool).c_str(),
+              diagnosis.cause.empty() ? "tracked" : ("not tracked: " + diagnosis.cause).c_str());
+  for (const CheckRow& row : diagnosis.rows) {
+    std::printf("  %-3s %-19s %s\n", row.holds ? "ok" : "NO", row.check.c_str(),
+                printable(row.found).c_str());
+    if (!row.next_step.empty()) std::printf("      next: %s\n", printable(row.next_step).c_str());
+  }
+}
+
+int inspect(const InspectArguments& arguments) {
+  Inspected inspected =
+      arguments.recording.empty() ? inspected_file(arguments) : inspected_recording(arguments);
+  const Cell& cell = inspected.cell;
+  Tracker& tracker = *inspected.tracker;
+  const Blobs& blobs = tracker.token<Blobs>();
+  const Markers& markers = tracker.token<Markers>();
+  const std::vector<std::string> names = marker_names(cell, tracker);
   nlohmann::ordered_json blob_list = nlohmann::ordered_json::array();
   for (int i = 0; i < blobs.count; ++i) {
-    blob_list.push_back(blob_json(blobs.items[static_cast<std::size_t>(i)], marker_of(markers, i)));
+    const auto at = static_cast<std::size_t>(i);
+    blob_list.push_back(blob_json(blobs.items[at], marker_of(markers, i)));
+    if (!names[at].empty()) blob_list.back()["marker"] = names[at];
   }
   nlohmann::ordered_json found = nlohmann::ordered_json::array();
   nlohmann::ordered_json reasons = nlohmann::ordered_json::array();
-  std::vector<std::string> lines;
-  const Estimates& estimates = tracker->output<Estimates>();
-  for (int t = 0; t < cell.tools.count; ++t) {
-    const auto i = static_cast<std::size_t>(t);
+  std::vector<std::string> lines{inspected.text};
+  std::printf("%s: %d blobs, %u outside the size gate, %u beyond the budget\n",
+              printable(inspected.text).c_str(), blobs.count, blobs.dropped - blobs.left_out,
+              blobs.left_out);
+  const Estimates& estimates = tracker.output<Estimates>();
+  std::vector<ToolDiagnosis> all = diagnose(cell, tracker);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    ToolDiagnosis& diagnosis = all[i];
+    if (inspected.at_that_time) {
+      diagnosis.rows.insert(diagnosis.rows.begin(), *inspected.at_that_time);
+      if (!inspected.at_that_time->holds) diagnosis.cause = inspected.at_that_time->check;
+    }
     const Track& track = estimates.tracks[i];
-    const std::string name = cell.tools.items[i].name.data();
-    const std::string reason(name_of(track.reason));
     if (track.seen_now) found.push_back(tool_json(cell.tools.items[i], track));
-    reasons.push_back({{"tool", name}, {"reason", reason}});
-    lines.push_back(name + ": " + (track.seen_now ? "found" : reason));
-    std::printf("%-16s %s\n", printable(name).c_str(), track.seen_now ? "found" : reason.c_str());
+    reasons.push_back({{"tool", diagnosis.tool},
+                       {"reason", std::string(name_of(track.reason))},
+                       {"cause", diagnosis.cause},
+                       {"checks", rows_json(diagnosis.rows)}});
+    lines.push_back(diagnosis.tool + ": " +
+                    (diagnosis.cause.empty() ? "tracked" : "not tracked: " + diagnosis.cause));
+    print_rows(diagnosis);
   }
-  std::printf("%-16s %d (and %u outside the size gate, %u beyond the budget)\n", "blobs",
-              blobs.count, blobs.dropped - blobs.left_out, blobs.left_out);
 
   make_folder(arguments.out);
-  const std::string picture = (std::filesystem::path(arguments.out) /
-                               (std::filesystem::path(arguments.frame).stem().string() + ".png"))
-                                  .string();
-  write_picture(picture, tracker->input<Frame>(), tracker->token<Rois>(), blobs, markers, lines);
+  const std::string picture =
+      (std::filesystem::path(arguments.out) / (inspected.picture_name + ".png")).string();
+  write_picture(picture, tracker.input<Frame>(), tracker.token<Rois>(), blobs, markers, lines,
+                names);
   std::printf("%-16s %s\n", "picture", picture.c_str());
-  write_json(arguments.json, {{"frame", arguments.frame},
-                              {"layout", arguments.layout},
-                              {"threshold", cell.camera.threshold},
-                              {"tools", found},
-                              {"reasons", reasons},
-                              {"blobs", blob_list},
-                              {"blobs_dropped", blobs.dropped},
-                              {"blobs_left_out", blobs.left_out},
-                              {"picture", picture}});
+  write_json(arguments.json,
+             {{"frame", inspected.text},
+              {"layout", arguments.recording.empty() ? arguments.layout : "recording"},
+              {"threshold", cell.camera.threshold},
+              {"tools", found},
+              {"reasons", reasons},
+              {"blobs", blob_list},
+              {"blobs_dropped", blobs.dropped},
+              {"blobs_left_out", blobs.left_out},
+              {"picture", picture}});
   return 0;
 }
 
 }  // namespace
 
 void add_inspect(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("inspect", "Show what Glint sees in one frame");
+  CLI::App* command = app.add_subcommand(
+      "inspect", "What Glint sees in one frame, and why a tool is or is not tracked");
   auto arguments = std::make_shared<InspectArguments>();
   command->footer(
-      "Example: glint inspect --frame frame.bin --layout adi --tool pen --json seen.json\n"
-      "The picture goes to --out, named after the frame.");
-  command->add_option("--frame", arguments->frame, "a frame file")->required();
+      "Examples:\n  glint inspect --recording out/run.mcap --at 12.3\n"
+      "  glint inspect --recording bag --config my_cell.toml --frame 512\n"
+      "  glint inspect --frame frame.bin --layout adi --tool pen --json seen.json\n"
+      "A recording is tracked from its beginning up to the frame. The picture goes to --out.");
+  command->add_option("--frame", arguments->frame,
+                      "frame file; with --recording the frame's number, from 0");
+  command->add_option("--recording", arguments->recording,
+                      "recorded frames of any kind that `glint track` reads");
+  command->add_option("--at", arguments->at_s, "with --recording: time in the session, s")
+      ->check(in_range(0.0, 1e6));
+  command->add_option("--kind", arguments->kind,
+                      "of the recording: " + recorded_kinds() + "; default: by what is there");
   command->add_option("--layout", arguments->layout,
                       "adi: depth u16, confidence u8, brightness u16 planes; ahat: depth and "
                       "brightness u16 planes; pgm: NAME.pgm beside NAME_ab.pgm");
@@ -172,7 +316,19 @@ void add_inspect(CLI::App& app, int& exit_code) {
       ->check(in_range(1, 65534));
   command->add_option("--out", arguments->out, "folder of the picture")->capture_default_str();
   command->add_option("--json", arguments->json, "write what was seen here");
-  command->callback([arguments, &exit_code] { exit_code = inspect_frame(*arguments); });
+  command->callback([arguments, &exit_code] {
+    const bool recorded = !arguments->recording.empty();
+    const bool by_time = arguments->at_s >= 0;
+    if (arguments->frame.empty() != (recorded && by_time)) {
+      throw InputError(
+          "glint inspect: expected --frame FILE, or --recording SOURCE with either --at or "
+          "--frame");
+    }
+    if (!recorded && by_time) {
+      throw InputError("glint inspect: --at without --recording; expected both");
+    }
+    exit_code = inspect(*arguments);
+  });
 }
 
 }  // namespace glint

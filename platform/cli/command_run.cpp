@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -27,7 +26,6 @@
 #include "platform/programming/key_buttons.hpp"
 #include "platform/programming/key_terminal.hpp"
 #include "platform/session/injection_text.hpp"
-#include "platform/session/recorded_cell.hpp"
 #include "platform/session/source_run.hpp"
 #include "platform/sources/open_source.hpp"
 #include "platform/stop_signals.hpp"
@@ -52,43 +50,10 @@ struct RunArguments {
   ReadTolerance tolerance;
 };
 
-std::string kind_of(const RunArguments& arguments) {
-  if (!arguments.kind.empty()) return arguments.kind;
-  const std::string kind = kind_at(arguments.source);
-  if (!kind.empty()) return kind;
-  if (!std::filesystem::is_directory(arguments.source)) return "recording";  // states what is wrong
-  throw InputError(arguments.source +
-                   ": no recorded frames in this folder; expected frames.csv, .mcap files, or "
-                   "\"Depth AHaT.tar\" of StreamRecorder");
-}
-
-// A recording has a cell of its own.
-Cell cell_of_recorded(const RunArguments& arguments) {
-  const std::string kind = arguments.source.empty() ? "" : kind_of(arguments);
-  Cell cell;
-  if (kind == "recording" && arguments.config.empty()) {
-    RecordingReader reader(arguments.source, arguments.tolerance);
-    cell = recorded_cell(reader, arguments.source);
-    cell.source = {};
-  } else {
-    cell = cell_or_default(arguments.config);
-  }
-  if (!kind.empty()) {
-    cell.source.kind = kind;
-    cell.source.path = arguments.source;
-    cell.source.place =
-        (arguments.config.empty() ? arguments.source : arguments.config) + ": source";
-  }
-  if (cell.source.kind == "simulator") {
-    throw InputError(
-        "track: neither a SOURCE nor a [source] in the cell; expected recorded frames: a "
-        "recording, a bag, a folder with frames.csv or a headset's capture");
-  }
-  return cell;
-}
-
 Cell cell_of(const RunArguments& arguments) {
-  Cell cell = arguments.recorded ? cell_of_recorded(arguments) : cell_or_default(arguments.config);
+  Cell cell = arguments.recorded ? recorded_source_cell(arguments.source, arguments.config,
+                                                        arguments.kind, arguments.tolerance)
+                                 : cell_or_default(arguments.config);
   if (!arguments.can.empty()) cell.can.sink = arguments.can;
   if (!arguments.level.empty()) cell.record.level = arguments.level;
   if (arguments.duration_s > 0) cell.simulator.duration_s = arguments.duration_s;

@@ -17,7 +17,7 @@ constexpr int k_enlarge = 2;  // so that a marker of 6 px can be looked at
 constexpr int k_line_height = 20;
 constexpr double k_white_part = 0.999;
 const cv::Scalar k_roi_colour{80, 200, 80}, k_blob_colour{60, 160, 255},
-    k_marker_colour{255, 220, 60}, k_text_colour{230, 230, 230};
+    k_marker_colour{255, 220, 60}, k_tool_colour{255, 90, 255}, k_text_colour{230, 230, 230};
 
 std::uint16_t reflectivity_at(const Frame& frame, int x, int y) {
   return frame.reflectivity_8.empty() ? frame.reflectivity_16.row(y)[x]
@@ -59,7 +59,8 @@ void write_text(cv::Mat& picture, const std::string& text, cv::Point at, const c
   cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.42, colour, 1, cv::LINE_AA);
 }
 
-void draw_blobs(cv::Mat& picture, const Blobs& blobs, const Markers& markers) {
+void draw_blobs(cv::Mat& picture, const Blobs& blobs, const Markers& markers,
+                std::span<const std::string> names) {
   std::vector<const Marker*> marker_of(static_cast<std::size_t>(std::max(blobs.count, 0)), nullptr);
   for (int i = 0; i < markers.count; ++i) {
     const Marker& marker = markers.items[static_cast<std::size_t>(i)];
@@ -69,7 +70,10 @@ void draw_blobs(cv::Mat& picture, const Blobs& blobs, const Markers& markers) {
     const Blob& blob = blobs.items[i];
     const Marker* marker = marker_of[i];
     const bool ranged = marker != nullptr && !(marker->flags & k_marker_no_depth);
-    const cv::Scalar& colour = ranged ? k_marker_colour : k_blob_colour;
+    const std::string name = i < names.size() ? names[i] : "";
+    const cv::Scalar& colour = !name.empty() ? k_tool_colour
+                               : ranged      ? k_marker_colour
+                                             : k_blob_colour;
     const cv::Point middle = on_picture(blob.centroid_px);
     const int side = std::max(blob.x1 - blob.x0, blob.y1 - blob.y0);
     const int radius = k_enlarge * (side / 2 + 3);
@@ -80,14 +84,16 @@ void draw_blobs(cv::Mat& picture, const Blobs& blobs, const Markers& markers) {
     } else {
       std::snprintf(label.data(), label.size(), "%zu", i);
     }
-    write_text(picture, label.data(), middle + cv::Point(radius + 2, 4), colour);
+    write_text(picture, label.data() + (name.empty() ? "" : "  " + name),
+               middle + cv::Point(radius + 2, 4), colour);
   }
 }
 
 }  // namespace
 
 void write_picture(const std::string& path, const Frame& frame, const Rois& rois,
-                   const Blobs& blobs, const Markers& markers, std::span<const std::string> lines) {
+                   const Blobs& blobs, const Markers& markers, std::span<const std::string> lines,
+                   std::span<const std::string> names) {
   if (frame.width() <= 0 || frame.height() <= 0) {
     throw InputError(path + ": the frame has no reflectivity to draw; expected at least a pixel");
   }
@@ -100,7 +106,7 @@ void write_picture(const std::string& path, const Frame& frame, const Rois& rois
     cv::rectangle(picture, cv::Point(roi.x0, roi.y0) * k_enlarge,
                   cv::Point(roi.x1, roi.y1) * k_enlarge - cv::Point(1, 1), k_roi_colour);
   }
-  draw_blobs(picture, blobs, markers);
+  draw_blobs(picture, blobs, markers, names);
   int baseline = image.rows + k_line_height - 4;
   for (const std::string& line : lines) {
     write_text(picture, line, {6, baseline}, k_text_colour);
