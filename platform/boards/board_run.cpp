@@ -27,6 +27,7 @@ BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& opti
   SessionOptions session;
   session.out = options.out;
   session.with_reader = false;
+  session.by_rate = false;
   session.stop = options.stop;
   session.plan = plan_on_one_core(cell, options.core, options.bounds);
   session.write_map = false;

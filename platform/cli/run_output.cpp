@@ -1,10 +1,12 @@
 #include "platform/cli/run_output.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "kernels/angles.hpp"
 #include "platform/session/losses.hpp"
 
 namespace glint {
@@ -69,6 +71,91 @@ std::vector<std::pair<std::string, std::string>> source_rows(const SessionResult
   return rows;
 }
 
+// Null where no pose has a truth.
+ordered_json errors_of(const OutputErrors& errors) {
+  if (errors.count == 0) return nullptr;
+  const auto n = static_cast<double>(errors.count);
+  return {{"n", errors.count},
+          {"tip_rms_mm", 1e3 * std::sqrt(errors.square_m2 / n)},
+          {"tip_p95_mm", 0.1 * quantile(errors.histogram, 0.95)},
+          {"tip_max_mm", 1e3 * errors.largest_m},
+          {"tip_stated_mm", 1e3 * std::sqrt(errors.stated_m2 / n)},
+          {"angle_rms_deg", k_degrees_per_radian * std::sqrt(errors.square_rad2 / n)},
+          {"angle_stated_deg", k_degrees_per_radian * std::sqrt(errors.stated_rad2 / n)},
+          {"coverage_tip", share(errors.inside_position, errors.count)},
+          {"coverage_angle", share(errors.inside_rotation, errors.count)}};
+}
+
+// One item for each rate of frames at which there were ticks.
+ordered_json by_rate(const OutputByRate& rates, std::size_t tool, Duration period) {
+  const double period_ms = milliseconds_of(period);
+  const double limits_ms[k_frame_rates + 1] = {0, 1.5 * period_ms, 4.5 * period_ms, INFINITY};
+  ordered_json list = ordered_json::array();
+  for (std::size_t r = 0; r < k_frame_rates; ++r) {
+    const RateFigures& figures = rates.tools[tool][r];
+    if (figures.ticks == 0) continue;
+    const double seconds = rates.seconds[r];
+    list.push_back(
+        {{"gap_from_ms", limits_ms[r]},
+         {"gap_to_ms", std::isfinite(limits_ms[r + 1]) ? ordered_json(limits_ms[r + 1]) : nullptr},
+         {"frames_per_s",
+          seconds > 0 ? ordered_json(static_cast<double>(rates.gaps[r]) / seconds) : nullptr},
+         {"ticks", figures.ticks},
+         {"measured", share(figures.measured, figures.ticks)},
+         {"predicted", share(figures.predicted, figures.ticks)},
+         {"lost", share(figures.ticks - figures.measured - figures.predicted, figures.ticks)},
+         {"age_ms", {{"p50", quantile(figures.ages, 0.5)}, {"p99", quantile(figures.ages, 0.99)}}},
+         {"errors_measured", errors_of(figures.of_measured)},
+         {"errors_predicted", errors_of(figures.of_predicted)}});
+  }
+  return list;
+}
+
+std::string rate_text(const ordered_json& rate) {
+  char text[256];
+  std::snprintf(text, sizeof text, "measured %s, predicted %s, lost %s; age p50 %.0f, p99 %.0f ms",
+                percent(rate.at("measured")).c_str(), percent(rate.at("predicted")).c_str(),
+                percent(rate.at("lost")).c_str(), rate.at("age_ms").at("p50").get<double>(),
+                rate.at("age_ms").at("p99").get<double>());
+  return text;
+}
+
+std::string error_text(const ordered_json& errors) {
+  char text[256];
+  std::snprintf(
+      text, sizeof text,
+      "tip %.2f mm rms (stated %.2f), angle %.2f deg (%.2f); inside 95 %%: %s, %s",
+      errors.at("tip_rms_mm").get<double>(), errors.at("tip_stated_mm").get<double>(),
+      errors.at("angle_rms_deg").get<double>(), errors.at("angle_stated_deg").get<double>(),
+      percent(errors.at("coverage_tip")).c_str(), percent(errors.at("coverage_angle")).c_str());
+  return text;
+}
+
+std::string rate_name(const ordered_json& rate) {
+  char text[64];
+  if (rate.at("gap_to_ms").is_null()) {
+    std::snprintf(text, sizeof text, "  frames over %.0f ms apart",
+                  rate.at("gap_from_ms").get<double>());
+  } else {
+    std::snprintf(text, sizeof text, "  frames %.0f to %.0f ms apart",
+                  rate.at("gap_from_ms").get<double>(), rate.at("gap_to_ms").get<double>());
+  }
+  return text;
+}
+
+void add_rate_rows(const ordered_json& tool, const std::string& whose,
+                   std::vector<std::pair<std::string, std::string>>& rows) {
+  for (const ordered_json& rate : tool.at("by_rate")) {
+    rows.emplace_back(rate_name(rate) + whose, rate_text(rate));
+    for (const char* state : {"measured", "predicted"}) {
+      const ordered_json& errors = rate.at(std::string("errors_") + state);
+      if (!errors.is_null()) {
+        rows.emplace_back(std::string("    error, ") + state, error_text(errors));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 ordered_json source_json(const SessionResult& result) {
@@ -89,6 +176,7 @@ ordered_json output_of(const Cell& cell, const SessionResult& result) {
          {"lost", share(tool.lost, tool.all())},
          {"none_yet", share(tool.none, tool.all())},
          {"longest_without_measurement_ms", milliseconds_of(tool.longest_without_measurement)}});
+    if (result.by_rate) tools.back()["by_rate"] = by_rate(*result.by_rate, i, cell.camera.period);
   }
   return {{"ticks_left", result.sent.ticks},
           {"longest_gap_ms", milliseconds_of(result.sent.longest_gap)},
@@ -120,6 +208,7 @@ std::vector<std::pair<std::string, std::string>> output_rows(const ordered_json&
     rows.emplace_back("left over CAN" + whose, text + " of " + left);
     rows.emplace_back("longest unmeasured" + whose,
                       in_milliseconds(tool.at("longest_without_measurement_ms"), result));
+    if (tool.contains("by_rate")) add_rate_rows(tool, whose, rows);
   }
   rows.emplace_back("longest gap of ticks", in_milliseconds(output.at("longest_gap_ms"), result));
   for (auto& row : source_rows(result)) rows.push_back(std::move(row));

@@ -1,31 +1,35 @@
 #include "platform/session/file_sink.hpp"
 
 #include <chrono>
+#include <utility>
 
 namespace glint {
 namespace {
 constexpr auto k_poll = std::chrono::milliseconds(2);
 }  // namespace
 
-FileSink::FileSink(const std::string& tum_file, const std::string& csv_file, WhenFull when_full)
-    : when_full_(when_full) {
+FileSink::FileSink(const std::string& tum_file, const std::string& csv_file, WhenFull when_full,
+                   const Cell& cell, TruthOfTool truth)
+    : figures_(cell, std::move(truth)), when_full_(when_full) {
   if (!tum_file.empty()) tum_ = std::make_unique<TumFile>(tum_file);
   if (!csv_file.empty()) csv_ = std::make_unique<CsvFile>(csv_file);
   thread_ = std::thread([this] { run(); });
 }
 
-void FileSink::offer(const PoseSample& sample) noexcept {
+void FileSink::offer(const PoseSample& sample, std::optional<Time> newest_frame) noexcept {
   while (when_full_ == WhenFull::wait && waiting_ >= k_ring_capacity) {
     std::this_thread::sleep_for(k_poll);
   }
   ++waiting_;
-  if (!ring_.push(sample)) --waiting_;
+  if (!ring_.push({sample, newest_frame})) --waiting_;
 }
 
 bool FileSink::write_waiting() {
-  PoseSample sample;
-  if (!ring_.pop(sample)) return false;
+  Offered offered;
+  if (!ring_.pop(offered)) return false;
   --waiting_;
+  const PoseSample& sample = offered.sample;
+  figures_.add(sample, offered.newest_frame);
   if (tum_ != nullptr) tum_->write(sample);
   if (csv_ != nullptr) csv_->write(sample);
   count_lost();

@@ -66,6 +66,10 @@ class FrameSource {
     static const std::vector<FrameTruth> none;
     return none;
   }
+  // T_world_tool of the cell's tool; nothing: no truth at that time. From any thread.
+  [[nodiscard]] virtual std::optional<Pose> truth_of_tool(int /*tool*/, Time /*time*/) const {
+    return std::nullopt;
+  }
   // Added to the session's time it gives Unix time, where the frames' stamps do; for a run in
   // order.
   [[nodiscard]] virtual std::optional<Duration> unix_offset() const noexcept {

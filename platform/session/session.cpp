@@ -76,6 +76,7 @@ SessionResult run_session(const Cell& cell, FrameSource& source, const SessionOp
   Clock now = [&nominal_now] { return nominal_now; };
   if (cell.realtime) now = [epoch] { return Time{} + (monotonic_now() - epoch); };
 
+  options.truth = [&source](int tool, Time time) { return source.truth_of_tool(tool, time); };
   Sinks sinks(cell, options, unix_offset_ns);
   std::optional<KeyReader> keys;
   if (options.keys) {

@@ -49,6 +49,9 @@ class SimulatedSource final : public FrameSource {
   }
   [[nodiscard]] double delivered_part() const noexcept override;
   [[nodiscard]] const std::vector<FrameTruth>& truths() const noexcept override { return truths_; }
+  [[nodiscard]] std::optional<Pose> truth_of_tool(int tool, Time time) const override {
+    return simulator_.truth_tool(tool, time);
+  }
 
  private:
   // Until its frame was given back a slot belongs to the frame group.

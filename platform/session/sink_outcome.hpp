@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "platform/dds/dds_sink.hpp"
 #include "platform/dds/reader_result.hpp"
 #include "platform/record/recording.hpp"
+#include "platform/session/output_figures.hpp"
 
 namespace glint {
 
@@ -18,6 +20,8 @@ struct SinkOptions {
   std::string out = "out";               // folder of all files that the cell names relatively
   bool with_reader = true;               // a DDS reader process of its own counts what arrives
   std::vector<std::string> best_effort;  // what this machine spoils: said in every output
+  bool by_rate = true;                   // figures by frame rate
+  TruthOfTool truth{};                   // of run_session()'s source, for them
 };
 
 // Messages of other DDS participants that named a tool.
@@ -35,9 +39,10 @@ struct SinkOutcome {
   std::vector<ToolOrders> tool_orders;  // by tool; empty: no DDS
   ReaderResult dds_reader;
   bool dds_was_read = false;
-  std::string dds_not_read;      // why the reader process has no result, where there was one
-  std::uint64_t files_lost = 0;  // lines that TUM and CSV files lack
-  std::string files_wrong;       // the first write of these that failed
+  std::string dds_not_read;  // why the reader process has no result, where there was one
+  std::shared_ptr<const OutputByRate> by_rate;  // null: not wanted
+  std::uint64_t files_lost = 0;                 // lines that TUM and CSV files lack
+  std::string files_wrong;                      // the first write of these that failed
   RecordingOutcome recording;
   std::string recording_file;
   std::string output_sha256;

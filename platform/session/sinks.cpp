@@ -92,8 +92,9 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
 
   if (!cell.files.tum.empty()) tum_file_ = in_folder(out_, cell.files.tum);
   if (!cell.files.csv.empty()) csv_file_ = in_folder(out_, cell.files.csv);
-  if (!tum_file_.empty() || !csv_file_.empty()) {
-    files_ = std::make_unique<FileSink>(tum_file_, csv_file_, can.when_full);
+  if (!tum_file_.empty() || !csv_file_.empty() || options.by_rate) {
+    files_ = std::make_unique<FileSink>(tum_file_, csv_file_, can.when_full, cell, options.truth);
+    by_rate_ = options.by_rate;
   }
 
   if (cell.can.buttons) {
@@ -167,6 +168,7 @@ void Sinks::close(SinkOutcome& result) {
   if (files_ != nullptr) {
     result.files_wrong = files_->close();
     result.files_lost = files_->lost();
+    if (by_rate_) result.by_rate = std::make_shared<const OutputByRate>(files_->by_rate());
     losses_.store(LossKind::files, result.files_lost);
     for (const std::string& file : {tum_file_, csv_file_}) {
       if (!file.empty()) result.files.push_back(file);

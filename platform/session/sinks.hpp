@@ -64,6 +64,7 @@ class Sinks {
  private:
   std::string out_;
   double can_bus_load_ = 0;
+  bool by_rate_ = false;
   OverrunCounters overruns_;
   LossCounters losses_;
   FollowedRobotNotes robot_notes_;

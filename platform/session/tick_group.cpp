@@ -87,6 +87,8 @@ void TickGroup::answer(const Now& now) noexcept {
 
 void TickGroup::offer_samples() noexcept {
   std::array<std::uint8_t, k_output_record_bytes> record;
+  const std::optional<Time> newest =
+      samples_->any_frame ? std::optional(samples_->newest_frame) : std::nullopt;
   for (int t = 0; t < samples_->count; ++t) {
     const PoseSample& sample = samples_->items[static_cast<std::size_t>(t)];
     encode(sample, record);
@@ -94,7 +96,7 @@ void TickGroup::offer_samples() noexcept {
     ++records_;
     if (sinks_.lane != nullptr) (void)sinks_.lane->offer_output(sample, record);
     if (sinks_.dds != nullptr) (void)sinks_.dds->offer(sample);
-    if (sinks_.files != nullptr) sinks_.files->offer(sample);
+    if (sinks_.files != nullptr) sinks_.files->offer(sample, newest);
   }
 }
 

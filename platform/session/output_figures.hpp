@@ -1,0 +1,74 @@
+// What the receiver got, by frame rate: states, age, and the error against truth where there is
+// one.
+//
+// A tick's rate follows from the time between the two newest frames, or since the newest one where
+// that is longer: nominal up to 1.5 of the camera's gaps, reduced up to 4.5, low beyond.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+
+#include "kernels/limits.hpp"
+#include "kernels/wire/pose_sample.hpp"
+#include "platform/cells/cell.hpp"
+
+namespace glint {
+
+// T_world_tool of the cell's tool at a time of the session; nothing: not known.
+using TruthOfTool = std::function<std::optional<Pose>(int tool, Time time)>;
+
+inline constexpr int k_frame_rates = 3;  // nominal, reduced, low
+inline constexpr int k_ages = 512;       // of 1 ms; the last one holds all beyond
+inline constexpr int k_errors = 2048;    // of 0.1 mm; likewise
+
+// Of poses whose truth is known, at the time that the pose is for, in the pose's own frame.
+struct OutputErrors {
+  std::uint64_t count = 0, inside_position = 0, inside_rotation = 0;  // the stated 95 % ellipsoid
+  double square_m2 = 0, square_rad2 = 0;                              // sums of squared errors
+  double stated_m2 = 0, stated_rad2 = 0;  // sums of the stated covariances' traces
+  double largest_m = 0;
+  std::array<std::uint64_t, k_errors> histogram{};
+};
+
+struct RateFigures {
+  std::uint64_t ticks = 0, measured = 0, predicted = 0;  // the others had no pose
+  std::array<std::uint64_t, k_ages> ages{};              // of poses
+  OutputErrors of_measured, of_predicted;
+};
+
+struct OutputByRate {
+  std::array<std::uint64_t, k_frame_rates> gaps{};  // between frames
+  std::array<double, k_frame_rates> seconds{};      // in all
+  std::array<std::array<RateFigures, k_frame_rates>, k_tools_max> tools{};
+};
+
+// The value below which this share of the counted ones lies, in bins.
+[[nodiscard]] double quantile(std::span<const std::uint64_t> counts, double share);
+
+class OutputFigures {
+ public:
+  // The simulator's world is the cell's; its reference body is the cell's reference tool.
+  OutputFigures(const Cell& cell, TruthOfTool truth);
+
+  // Each sample once, in the order of their ticks; `newest_frame`: arrival of the newest frame by
+  // then, nothing before the first.
+  void add(const PoseSample& sample, std::optional<Time> newest_frame);
+
+  [[nodiscard]] const OutputByRate& figures() const { return figures_; }
+
+ private:
+  void judge(const PoseSample& sample, OutputErrors& errors);
+  [[nodiscard]] std::optional<Pose> true_tip(const PoseSample& sample) const;
+  [[nodiscard]] int rate_of(Duration gap) const;
+
+  const Cell& cell_;
+  TruthOfTool truth_;
+  std::optional<Time> newest_;
+  Duration gap_;
+  OutputByRate figures_;
+};
+
+}  // namespace glint
