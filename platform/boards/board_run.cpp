@@ -37,8 +37,8 @@ BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& opti
       loop, {options.frames, period, period, k_arrival_priority, options.core, options.stop});
   BoardResult result{run_session(cell, source, session), source.worst_shown(),
                      source.wake_ups_ns()};
-  if (!source.report().refused.empty()) {
-    result.refused.push_back(source.report().name + ": " + source.report().refused);
+  if (!source.thread_report().refused.empty()) {
+    result.refused.push_back(source.thread_report().name + ": " + source.thread_report().refused);
   }
   return result;
 }

@@ -49,7 +49,7 @@ class LoopSource final : public FrameSource {
   }
   [[nodiscard]] std::int64_t worst_shown() const { return worst_shown_; }
   // Of the thread that lets frames arrive, in a live run.
-  [[nodiscard]] const ThreadReport& report() const { return arrivals_->report(); }
+  [[nodiscard]] const ThreadReport& thread_report() const { return arrivals_->report(); }
 
  private:
   void arrive();
