@@ -2,6 +2,8 @@
 // recorded frames, as fast as possible.
 #include <unistd.h>
 
+#include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -108,14 +110,17 @@ int report(const Cell& cell, const SessionOptions& options, const std::string& j
 
 int run(const RunArguments& arguments) {
   Cell cell = cell_of(arguments);
-  const std::unique_ptr<FrameSource> source = open_source(cell, arguments.tolerance);
+  const std::atomic<bool>& stop = stop_on_signals();
+  const auto duration_ns = static_cast<std::int64_t>(std::llround(arguments.duration_s * 1e9));
+  const std::unique_ptr<FrameSource> source =
+      open_source(cell, arguments.tolerance, {Duration{duration_ns}, &stop});
   SessionOptions options;
   options.plan = planned_run(cell, arguments.board, arguments.plan);
   for (const std::string& text : arguments.inject) {
     options.injections.push_back(injection_of(text));
   }
   options.trace = arguments.trace;
-  options.stop = &stop_on_signals();
+  options.stop = &stop;
   std::optional<KeyTerminal> terminal;
   listen_to_keys(arguments, cell, terminal);
   if (terminal) options.keys = terminal->descriptor();

@@ -1,18 +1,17 @@
 #include "platform/sources/file_source.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "platform/input_error.hpp"
 #include "platform/rt/clock.hpp"
+#include "platform/sources/head_pose_check.hpp"
 
 namespace glint {
 namespace {
 
 constexpr std::size_t k_slots = 24;                         // half a second of AHAT, 1 MB each
 constexpr Duration k_transport_max = milliseconds(10'000);  // a later arrival is not this frame's
-constexpr double k_position_max_m = 1e4;                    // beyond it the file is in another unit
 
 std::string size_text(int width, int height) {
   return std::to_string(width) + " x " + std::to_string(height);
@@ -111,24 +110,6 @@ std::string FileSource::misfit(const FrameBuffer& pixels) const {
   return {};
 }
 
-void FileSource::check_head_pose(HeadPose& head) {
-  if (!head.valid) {
-    ++without_pose_;
-    return;
-  }
-  Quaternion& rotation = head.T_world_camera.rotation;
-  const Vector3& position = head.T_world_camera.translation;
-  const double square = rotation.squaredNorm();
-  head.valid = std::abs(square - 1) < 1e-2 && position.cwiseAbs().maxCoeff() <= k_position_max_m &&
-               position.allFinite();
-  if (!head.valid) {
-    head = HeadPose{};
-    ++poses_refused_;
-  } else if (std::abs(square - 1) > 1e-12) {  // as printed; a recorded one keeps its bits
-    rotation.normalize();
-  }
-}
-
 void FileSource::put_in_session_time(Slot& slot) {
   ReadFrame& frame = slot.frame;
   const Duration moved = gate_.offset() - origin_;
@@ -139,7 +120,10 @@ void FileSource::put_in_session_time(Slot& slot) {
   slot.arrival = std::max((stated ? *frame.arrival : declared) + moved, newest_arrival_);
   newest_arrival_ = slot.arrival;
   frame.mid_exposure = frame.mid_exposure + moved;
+  const bool has_pose = frame.head.valid;
   check_head_pose(frame.head);
+  without_pose_ += has_pose ? 0 : 1;
+  poses_refused_ += has_pose && !frame.head.valid ? 1 : 0;
   frame.head.time = frame.mid_exposure;
   slot.sequence = frame.sequence.value_or(next_sequence_);
   next_sequence_ = slot.sequence + 1;

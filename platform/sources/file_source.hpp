@@ -50,7 +50,6 @@ class FileSource final : public FrameSource {
   void stop();
   [[nodiscard]] bool read_usable(Slot& slot);
   [[nodiscard]] std::string misfit(const FrameBuffer& pixels) const;
-  void check_head_pose(HeadPose& head);
   void put_in_session_time(Slot& slot);
   [[nodiscard]] Slot& slot_of(std::size_t number) { return slots_[number % slots_.size()]; }
 

@@ -117,21 +117,28 @@ std::string kind_at(const std::string& path) {
   return {};
 }
 
-std::unique_ptr<FrameSource> open_source(Cell& cell, ReadTolerance tolerance) {
+std::unique_ptr<FrameSource> open_source(Cell& cell, ReadTolerance tolerance, LiveSettings live) {
   const SourceSettings& source = cell.source;
   if (source.kind == "simulator") {
     require_lens(cell);
     return nullptr;
   }
+  if (source.path.empty()) {
+    throw InputError(source.place + ".path: none; expected the file, folder or socket of the " +
+                     printable(source.kind));
+  }
+  if (source.kind == "shm") {
+    if (!cell.realtime) {
+      throw InputError(source.place + ".kind: shm is live; expected a run in real time");
+    }
+    require_lens(cell);
+    return std::make_unique<ShmSource>(source.path, cell.camera, live);
+  }
   const auto kind = std::find_if(k_kinds.begin(), k_kinds.end(),
                                  [&](const SourceKind& one) { return one.name == source.kind; });
   if (kind == k_kinds.end()) {
     throw InputError(source.place + ".kind: \"" + printable(source.kind) +
-                     "\"; expected simulator, " + recorded_kinds());
-  }
-  if (source.path.empty()) {
-    throw InputError(source.place + ".path: none; expected the file or folder of the " +
-                     source.kind);
+                     "\"; expected simulator, shm, " + recorded_kinds());
   }
   Opened reader = kind->open(cell, tolerance);
   if (!names_lens(cell)) {

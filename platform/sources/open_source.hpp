@@ -7,6 +7,7 @@
 #include "platform/cells/cell.hpp"
 #include "platform/record/recording_reader.hpp"
 #include "platform/session/frame_source.hpp"
+#include "platform/sources/shm_source.hpp"
 
 namespace glint {
 
@@ -18,7 +19,9 @@ namespace glint {
 
 // What `[source]` names, for frames of the cell's camera; null for the simulator. The cell takes
 // the lens that is recorded with the frames where it names none. Throws InputError: an unknown
-// kind, no path, no lens, and what the kind's reader and FileSource throw.
-[[nodiscard]] std::unique_ptr<FrameSource> open_source(Cell& cell, ReadTolerance tolerance = {});
+// kind, no path, no lens, a live kind for a run in order, and what the kind's reader and FileSource
+// throw.
+[[nodiscard]] std::unique_ptr<FrameSource> open_source(Cell& cell, ReadTolerance tolerance = {},
+                                                       LiveSettings live = {});
 
 }  // namespace glint

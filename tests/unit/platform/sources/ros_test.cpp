@@ -122,7 +122,7 @@ TEST(CameraInfo, ProjectsAsRosDocumentsIt) {
     const CameraModel lens = lens_of_info(info_message(model, d));
     const Vector3 point(0.11, -0.07, 0.4);
     const double x = point.x() / point.z(), y = point.y() / point.z(), r2 = x * x + y * y;
-    const auto k = [&](std::size_t i) { return i < d.size() ? d[i] : 0.0; };
+    const auto k = [&numbers = d](std::size_t i) { return i < numbers.size() ? numbers[i] : 0.0; };
     const double radial = (1 + k(0) * r2 + k(1) * r2 * r2 + k(4) * r2 * r2 * r2) /
                           (1 + k(5) * r2 + k(6) * r2 * r2 + k(7) * r2 * r2 * r2);
     const double u = x * radial + 2 * k(2) * x * y + k(3) * (r2 + 2 * x * x);

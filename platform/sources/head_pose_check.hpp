@@ -1,0 +1,28 @@
+// Whether a head pose from outside can be one.
+#pragma once
+
+#include <cmath>
+
+#include "kernels/pose/head_pose.hpp"
+
+namespace glint {
+
+// Clears a pose that no headset has: not a rotation, not a number, or beyond 10 km, where it is in
+// another unit. Makes its quaternion unit where it was printed or rounded; a recorded one keeps its
+// bits.
+inline void check_head_pose(HeadPose& head) {
+  constexpr double k_position_max_m = 1e4;
+  if (!head.valid) return;
+  Quaternion& rotation = head.T_world_camera.rotation;
+  const Vector3& position = head.T_world_camera.translation;
+  const double square = rotation.squaredNorm();
+  head.valid = std::abs(square - 1) < 1e-2 && position.cwiseAbs().maxCoeff() <= k_position_max_m &&
+               position.allFinite();
+  if (!head.valid) {
+    head = HeadPose{};
+  } else if (std::abs(square - 1) > 1e-12) {
+    rotation.normalize();
+  }
+}
+
+}  // namespace glint

@@ -1,0 +1,395 @@
+#include "platform/sources/shm_source.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include "platform/input_error.hpp"
+#include "platform/rt/clock.hpp"
+#include "platform/sources/glint_frames.h"
+#include "platform/sources/head_pose_check.hpp"
+
+namespace glint {
+namespace {
+
+constexpr std::size_t k_waiting_frames = 8;         // frames that wait for the tracker
+constexpr int k_poll_ms = 50;              // until the end of a run is noticed
+constexpr std::uint32_t k_slots_max = 64;  // of a producer
+
+constexpr std::int64_t k_stamp_max_ns = 4'000'000'000'000'000'000;  // differences of two fit
+
+class Descriptor {
+ public:
+  explicit Descriptor(int fd = -1) : fd_(fd) {}
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    return *this;
+  }
+  [[nodiscard]] int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+class Mapping {
+ public:
+  Mapping(int fd, std::size_t bytes)
+      : bytes_(bytes), at_(::mmap(nullptr, bytes, PROT_READ, MAP_SHARED, fd, 0)) {}
+  ~Mapping() {
+    if (valid()) ::munmap(at_, bytes_);
+  }
+  Mapping(Mapping&& other) noexcept
+      : bytes_(other.bytes_), at_(std::exchange(other.at_, MAP_FAILED)) {}
+  Mapping& operator=(Mapping&& other) noexcept {
+    std::swap(bytes_, other.bytes_);
+    std::swap(at_, other.at_);
+    return *this;
+  }
+  [[nodiscard]] bool valid() const { return at_ != MAP_FAILED; }
+  [[nodiscard]] const char* data() const { return static_cast<const char*>(at_); }
+
+ private:
+  std::size_t bytes_;
+  void* at_;
+};
+
+sockaddr_un address_of(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path) {
+    throw InputError(path + ": " + std::to_string(path.size()) +
+                     " characters; expected a socket's path of at most " +
+                     std::to_string(sizeof address.sun_path - 1));
+  }
+  std::copy(path.begin(), path.end(), address.sun_path);
+  return address;
+}
+
+Descriptor seqpacket() {
+  return Descriptor(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+}
+
+// Of a process that has ended; one that lives is refused, and so is what is no socket.
+void remove_stale(const std::string& path, const sockaddr_un& address) {
+  struct stat state {};
+  if (::lstat(path.c_str(), &state) != 0) return;
+  if (!S_ISSOCK(state.st_mode)) {
+    throw InputError(path + ": a file that is no socket; expected a path for one");
+  }
+  const Descriptor probe = seqpacket();
+  if (::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
+    throw InputError(path + ": another process listens there; expected a path of its own");
+  }
+  ::unlink(path.c_str());
+}
+
+// The descriptor that came with a message; it belongs to the caller.
+int descriptor_in(msghdr& message) {
+  for (cmsghdr* head = CMSG_FIRSTHDR(&message); head != nullptr;
+       head = CMSG_NXTHDR(&message, head)) {
+    if (head->cmsg_level != SOL_SOCKET || head->cmsg_type != SCM_RIGHTS) continue;
+    if (head->cmsg_len != CMSG_LEN(sizeof(int))) continue;
+    int fd = -1;
+    std::memcpy(&fd, CMSG_DATA(head), sizeof fd);
+    return fd;
+  }
+  return -1;
+}
+
+}  // namespace
+
+struct ShmSource::Producer {
+  Descriptor socket;
+  std::optional<Mapping> memory;  // nothing: before its hello
+  std::uint32_t slots = 0;
+  std::uint64_t slot_bytes = 0;
+  std::optional<std::uint64_t> sequence;  // of the newest frame
+};
+
+ShmSource::ShmSource(const std::string& path, const Camera& camera, LiveSettings settings)
+    : path_(path), camera_(camera), settings_(settings), slots_(k_waiting_frames) {
+  const auto pixels = static_cast<std::size_t>(camera_.model.width) *
+                      static_cast<std::size_t>(camera_.model.height);
+  for (Slot& slot : slots_) {
+    slot.pixels.width = camera_.model.width;
+    slot.pixels.height = camera_.model.height;
+    slot.pixels.depth.resize(pixels);
+    if (camera_.reflectivity_bits == 8) {
+      slot.pixels.reflectivity_8.resize(pixels);
+    } else {
+      slot.pixels.reflectivity_16.resize(pixels);
+    }
+  }
+  const sockaddr_un address = address_of(path_);
+  remove_stale(path_, address);
+  Descriptor listener = seqpacket();
+  if (::bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
+      ::listen(listener.get(), 4) != 0) {
+    throw InputError(path_ + ": " + std::strerror(errno) + "; expected a path for a socket");
+  }
+  listener_ = ::dup(listener.get());
+  thread_ = std::thread([this] { run(); });
+}
+
+ShmSource::~ShmSource() {
+  stop();
+  ::close(listener_);
+  ::unlink(path_.c_str());
+}
+
+void ShmSource::stop() {
+  stop_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+void ShmSource::start(const SourceClock& clock) {
+  if (!clock.live) {
+    throw InputError(path_ + ": a live source; expected a run in real time");
+  }
+  clock_ = clock;
+  started_ = true;
+}
+
+void ShmSource::run() noexcept {
+  std::optional<Producer> producer;
+  while (!stop_) {
+    pollfd waited[2] = {{listener_, POLLIN, 0},
+                        {producer ? producer->socket.get() : -1, POLLIN, 0}};
+    if (::poll(waited, 2, k_poll_ms) <= 0) continue;
+    if (waited[1].revents != 0) read_message(producer);
+    if (waited[0].revents != 0) accept_producer(producer);
+  }
+}
+
+void ShmSource::accept_producer(std::optional<Producer>& producer) {
+  Descriptor socket(::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+  if (socket.get() < 0) return;
+  if (producer) {
+    glint_frames_reply reply{};
+    std::snprintf(reply.refused, sizeof reply.refused, "another producer is connected");
+    (void)::send(socket.get(), &reply, sizeof reply, MSG_NOSIGNAL);
+    ++refused_;
+    if (first_refusal_.empty()) first_refusal_ = reply.refused;
+    return;
+  }
+  producer.emplace();
+  producer->socket = std::move(socket);
+}
+
+// A hello first, frames after it; whatever else ends the connection.
+void ShmSource::read_message(std::optional<Producer>& producer) {
+  alignas(8) char bytes[256];
+  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))];
+  iovec data{bytes, sizeof bytes};
+  msghdr message{};
+  message.msg_iov = &data;
+  message.msg_iovlen = 1;
+  message.msg_control = control;
+  message.msg_controllen = sizeof control;
+  const ssize_t got = ::recvmsg(producer->socket.get(), &message, MSG_CMSG_CLOEXEC);
+  const Descriptor memory(got > 0 ? descriptor_in(message) : -1);
+  if (got < 0 && (errno == EAGAIN || errno == EINTR)) return;
+  if (got <= 0) {
+    producer.reset();
+    return;
+  }
+  if (producer->memory) {
+    if (got == static_cast<ssize_t>(sizeof(glint_frames_frame)))
+      return take_frame(*producer, bytes);
+    ++malformed_;
+    producer.reset();
+    return;
+  }
+  glint_frames_hello hello{};
+  std::memcpy(&hello, bytes, std::min<std::size_t>(sizeof hello, static_cast<std::size_t>(got)));
+  glint_frames_reply reply{};
+  const auto refuse = [&](const std::string& why) {
+    std::snprintf(reply.refused, sizeof reply.refused, "%s", why.c_str());
+  };
+  const auto width = static_cast<std::uint32_t>(camera_.model.width);
+  const auto height = static_cast<std::uint32_t>(camera_.model.height);
+  const auto bits = static_cast<std::uint32_t>(camera_.reflectivity_bits);
+  const std::uint64_t planes = std::uint64_t{width} * height * (bits == 8 ? 3 : 4);
+  struct stat state {};
+  if (got != static_cast<ssize_t>(sizeof hello) ||
+      std::memcmp(hello.magic, "GLINTFR1", sizeof hello.magic) != 0) {
+    refuse("no hello of glint_frames.h, GLINTFR1");
+  } else if (hello.width != width || hello.height != height || hello.reflectivity_bits != bits) {
+    refuse(std::to_string(hello.width) + " x " + std::to_string(hello.height) + " pixels of " +
+           std::to_string(hello.reflectivity_bits) + " bits; expected " + std::to_string(width) +
+           " x " + std::to_string(height) + " of " + std::to_string(bits) + " (" + camera_.name +
+           ")");
+  } else if (hello.slots == 0 || hello.slots > k_slots_max || hello.slot_bytes % 8 != 0 ||
+             hello.slot_bytes < GLINT_FRAMES_HEAD + planes ||
+             hello.slot_bytes > 2 * planes + 4096) {
+    refuse("slots of another size than glint_frames.h makes");
+  } else if (memory.get() < 0 || ::fstat(memory.get(), &state) != 0 ||
+             static_cast<std::uint64_t>(state.st_size) < hello.slots * hello.slot_bytes) {
+    refuse("less shared memory than its slots take");
+  } else if (const int seals = ::fcntl(memory.get(), F_GET_SEALS);
+             seals < 0 || (seals & F_SEAL_SHRINK) == 0) {
+    refuse("shared memory that may shrink; expected F_SEAL_SHRINK");
+  } else {
+    producer->memory.emplace(memory.get(),
+                             static_cast<std::size_t>(hello.slots * hello.slot_bytes));
+    if (!producer->memory->valid()) refuse("shared memory that cannot be mapped");
+  }
+  producer->slots = hello.slots;
+  producer->slot_bytes = hello.slot_bytes;
+  (void)::send(producer->socket.get(), &reply, sizeof reply, MSG_NOSIGNAL);
+  if (reply.refused[0] != 0) {
+    ++refused_;
+    if (first_refusal_.empty()) first_refusal_ = reply.refused;
+    producer.reset();
+    return;
+  }
+  ++connected_;
+  if (map_) {  // another process may have another clock
+    clock_refused_ += map_->refused();
+    clock_restarts_ += map_->restarts();
+  }
+  map_.emplace(camera_.transport + Duration{camera_.exposure.nanoseconds / 2});
+  newest_stamp_ = {INT64_MIN};
+}
+
+// False: the producer wrote meanwhile.
+bool ShmSource::copy_pixels(const Producer& producer, std::uint32_t slot, Slot& to) const {
+  const char* const from = producer.memory->data() + slot * producer.slot_bytes;
+  const auto* const writes = reinterpret_cast<const std::uint64_t*>(from);
+  const std::uint64_t before = __atomic_load_n(writes, __ATOMIC_SEQ_CST);
+  const char* const pixels = from + GLINT_FRAMES_HEAD;
+  const std::size_t depth_bytes = 2 * to.pixels.depth.size();
+  std::memcpy(to.pixels.depth.data(), pixels, depth_bytes);
+  std::memcpy(to.pixels.reflectivity_8.data(), pixels + depth_bytes,
+              to.pixels.reflectivity_8.size());
+  std::memcpy(to.pixels.reflectivity_16.data(), pixels + depth_bytes,
+              2 * to.pixels.reflectivity_16.size());
+  __atomic_thread_fence(__ATOMIC_SEQ_CST);
+  return before % 2 == 0 && __atomic_load_n(writes, __ATOMIC_SEQ_CST) == before;
+}
+
+void ShmSource::take_frame(Producer& producer, const void* message) {
+  glint_frames_frame frame;
+  std::memcpy(&frame, message, sizeof frame);
+  const Time arrival = monotonic_now();
+  if (frame.slot >= producer.slots || frame.stamp_ns > k_stamp_max_ns ||
+      frame.stamp_ns < -k_stamp_max_ns) {
+    ++malformed_;
+    return;
+  }
+  const bool room = written_ - given_back_ < k_waiting_frames;
+  Slot& slot = slots_[written_ % k_waiting_frames];
+  const bool whole = room && copy_pixels(producer, frame.slot, slot);
+  (void)::send(producer.socket.get(), &frame.slot, sizeof frame.slot, MSG_NOSIGNAL);
+  if (producer.sequence && frame.sequence > *producer.sequence) {
+    skipped_ += frame.sequence - *producer.sequence - 1;
+  }
+  producer.sequence = frame.sequence;
+  const Time stamp{frame.stamp_ns};
+  if (stamp <= newest_stamp_ && newest_stamp_ - stamp < ClockMap::k_step) {
+    ++backward_;
+    return;
+  }
+  newest_stamp_ = stamp;
+  const std::optional<Time> mapped = map_->map(stamp, arrival);
+  if (!started_ || !mapped) return;
+  if (!room) {
+    ++dropped_;
+    return;
+  }
+  if (!whole) {
+    ++torn_;
+    return;
+  }
+  slot.arrival = session_time(arrival);
+  slot.mid_exposure = session_time(*mapped);
+  if (slot.mid_exposure < Time{}) return;  // exposed before the session began
+  if (slot.mid_exposure <= newest_exposure_) {
+    ++backward_;
+    return;
+  }
+  newest_exposure_ = slot.mid_exposure;
+  slot.head = HeadPose{};
+  slot.head.valid = frame.has_pose != 0;
+  const double* const p = frame.pose;
+  slot.head.T_world_camera = {Quaternion(p[6], p[3], p[4], p[5]), Vector3(p[0], p[1], p[2])};
+  if (!slot.head.valid) slot.head = HeadPose{};
+  const bool stated = slot.head.valid;
+  check_head_pose(slot.head);
+  without_pose_ += stated ? 0 : 1;
+  poses_refused_ += stated && !slot.head.valid ? 1 : 0;
+  slot.head.time = slot.mid_exposure;
+  ++written_;
+  is_read_.post();
+}
+
+bool ShmSource::wait(ArrivedFrame& arrived) {
+  for (;;) {
+    if (settings_.stop != nullptr && *settings_.stop) return false;
+    const Time now = monotonic_now();
+    if (settings_.duration > Duration{} && session_time(now) >= Time{} + settings_.duration) {
+      return false;
+    }
+    if (is_read_.wait_until(now + milliseconds(k_poll_ms))) break;
+  }
+  const std::uint64_t number = delivered_++;
+  const Slot& slot = slots_[number % k_waiting_frames];
+  arrived.frame = slot.pixels.view(slot.mid_exposure, slot.arrival, number);
+  arrived.head = slot.head;
+  arrived.slot = static_cast<int>(number % k_waiting_frames);
+  return true;
+}
+
+void ShmSource::give_back(const ArrivedFrame& /*arrived*/) noexcept { ++given_back_; }
+
+double ShmSource::delivered_part() const noexcept {
+  if (settings_.duration <= Duration{} || !started_) return 0;
+  return std::min(
+      1.0, (session_time(monotonic_now()) - Time{}).seconds() / settings_.duration.seconds());
+}
+
+SourceReport ShmSource::report() {
+  stop();
+  SourceReport report;
+  report.text = "shm " + path_ + (connected_ == 0 ? ": no producer connected" : "");
+  const std::uint64_t clock_refused = clock_refused_ + (map_ ? map_->refused() : 0);
+  const std::uint64_t clock_restarts = clock_restarts_ + (map_ ? map_->restarts() : 0);
+  const auto clock_us = map_ ? map_->uncertainty().nanoseconds / 1000 : 0;
+  report.counts = {{"producers_connected", connected_},
+                   {"producers_refused", refused_},
+                   {"messages_malformed", malformed_},
+                   {"frames_torn", torn_},
+                   {"frames_dropped", dropped_},
+                   {"frames_skipped_by_producer", skipped_},
+                   {"stamps_doubled_or_backward", backward_},
+                   {"stamps_refused", clock_refused},
+                   {"clock_restarts", clock_restarts},
+                   {"clock_uncertainty_us", static_cast<std::uint64_t>(clock_us)},
+                   {"frames_without_head_pose", without_pose_},
+                   {"head_poses_refused", poses_refused_}};
+  const auto add = [&](std::uint64_t count, const std::string& text) {
+    if (count > 0) report.failures.push_back(std::to_string(count) + text);
+  };
+  add(dropped_, " frames dropped: the tracker was slower than the producer");
+  add(torn_, " frames were written while they were read");
+  add(malformed_, " messages of no known kind");
+  add(refused_, " producers refused, the first: " + first_refusal_);
+  return report;
+}
+
+}  // namespace glint

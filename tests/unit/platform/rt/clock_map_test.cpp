@@ -1,0 +1,112 @@
+#include "platform/rt/clock_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+namespace glint {
+namespace {
+
+constexpr Duration k_delay = milliseconds(9);
+constexpr std::int64_t k_start_ns = 5'000'000'000'000;
+
+struct Stream {
+  double rate = 45, seconds = 60;
+  double drift = 50e-6;
+  std::function<double(double)> step_s = [](double) { return 0.0; };  // of the device's clock
+  std::function<double(std::mt19937_64&)> jitter_s;
+};
+
+struct Outcome {
+  double rms_ms = 0;
+  std::vector<double> errors_ms;  // of what was mapped, in order
+};
+
+// Frames exposed at a steady rate by the device's clock, delivered late by the jitter.
+Outcome run(const Stream& stream, ClockMap& map, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  Outcome outcome;
+  double squares = 0;
+  const int frames = static_cast<int>(stream.seconds * stream.rate);
+  for (int i = 0; i < frames; ++i) {
+    const double t = i / stream.rate;
+    const Time exposed{k_start_ns + static_cast<std::int64_t>(1e9 * t)};
+    const Time stamp{
+        static_cast<std::int64_t>(1e9 * (777 + t * (1 + stream.drift) + stream.step_s(t)))};
+    const Time arrival =
+        exposed + k_delay + Duration{static_cast<std::int64_t>(1e9 * stream.jitter_s(random))};
+    const auto mapped = map.map(stamp, arrival);
+    if (!mapped) continue;
+    EXPECT_LE(*mapped, arrival);
+    outcome.errors_ms.push_back((*mapped - exposed).seconds() * 1e3);
+    squares += outcome.errors_ms.back() * outcome.errors_ms.back();
+  }
+  outcome.rms_ms = std::sqrt(squares / static_cast<double>(outcome.errors_ms.size()));
+  return outcome;
+}
+
+double uniform_5_ms(std::mt19937_64& random) {
+  return std::uniform_real_distribution<double>(0, 0.005)(random);
+}
+double half_normal_5_ms(std::mt19937_64& random) {
+  return std::abs(std::normal_distribution<double>(0, 0.005)(random));
+}
+
+TEST(ClockMap, FollowsOffsetAndDriftUnderJitter) {
+  for (const double rate : {45.0, 15.0, 5.0}) {
+    for (const double drift : {50e-6, -50e-6}) {
+      for (const auto& jitter : {uniform_5_ms, half_normal_5_ms}) {
+        for (const std::uint64_t seed : {1u, 2u, 3u}) {
+          ClockMap map(k_delay);
+          Stream stream;
+          stream.rate = rate;
+          stream.drift = drift;
+          stream.jitter_s = jitter;
+          const Outcome outcome = run(stream, map, seed);
+          EXPECT_LT(outcome.rms_ms, 1.0) << rate << " " << drift << " " << seed;
+          EXPECT_EQ(map.refused(), 0u);
+          EXPECT_NEAR(map.drift(), -drift, rate > 20 ? 20e-6 : 100e-6);
+          EXPECT_LT(map.uncertainty(), milliseconds(2));
+        }
+      }
+    }
+  }
+}
+
+TEST(ClockMap, RefusesAStepAndThenFollowsTheNewClock) {
+  for (const double step : {1.0, -1.0}) {
+    ClockMap map(k_delay);
+    Stream stream;
+    stream.jitter_s = uniform_5_ms;
+    stream.step_s = [step](double t) { return t >= 30 ? step : 0.0; };
+    const Outcome outcome = run(stream, map, 7);
+    EXPECT_EQ(map.refused(), static_cast<std::uint64_t>(ClockMap::k_agreeing));
+    EXPECT_EQ(map.restarts(), 1u);
+    EXPECT_LT(outcome.rms_ms, 1.0);
+  }
+}
+
+// A few stamps off by a second are refused, and the others mapped as if they were not there.
+TEST(ClockMap, RefusesSingleStampsWithoutAStep) {
+  ClockMap map(k_delay);
+  Stream stream;
+  stream.jitter_s = uniform_5_ms;
+  stream.step_s = [](double t) { return std::fmod(t, 10) < 0.1 && t > 5 ? 1.0 : 0.0; };
+  const Outcome outcome = run(stream, map, 7);
+  EXPECT_EQ(map.refused(), 25u);
+  EXPECT_EQ(map.restarts(), 0u);
+  EXPECT_LT(outcome.rms_ms, 0.5);
+}
+
+// By the arrival alone, until there is more: never later than it.
+TEST(ClockMap, BeginsWithTheDeclaredDelay) {
+  ClockMap map(k_delay);
+  EXPECT_EQ(map.map(Time{500}, Time{} + milliseconds(100)), Time{} + milliseconds(91));
+  EXPECT_EQ(map.uncertainty(), Duration{});
+}
+
+}  // namespace
+}  // namespace glint
