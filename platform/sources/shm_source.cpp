@@ -23,9 +23,9 @@
 namespace glint {
 namespace {
 
-constexpr std::size_t k_waiting_frames = 8;         // frames that wait for the tracker
-constexpr int k_poll_ms = 50;              // until the end of a run is noticed
-constexpr std::uint32_t k_slots_max = 64;  // of a producer
+constexpr std::size_t k_waiting_frames = 8;  // frames that wait for the tracker
+constexpr int k_poll_ms = 50;                // until the end of a run is noticed
+constexpr std::uint32_t k_slots_max = 64;    // of a producer
 
 constexpr std::int64_t k_stamp_max_ns = 4'000'000'000'000'000'000;  // differences of two fit
 
