@@ -232,6 +232,9 @@ std::vector<std::string> failures_of(const SessionResult& result) {
                                                    : result.frames_tracked > 0;
   if (!any_pose) {
     lines.emplace_back("not one pose in the whole run: see the tools, the camera and the method");
+  } else if (result.sent.ticks > 0 && !result.sent.any_measured()) {
+    lines.emplace_back(
+        "not one measured tick left over CAN, though frames gave poses: see the age of the frames");
   }
   return lines;
 }

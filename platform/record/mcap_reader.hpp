@@ -58,8 +58,6 @@ class McapReader {
   // Data of the attachment; `index` is one of attachments().
   [[nodiscard]] Bytes attachment(const McapAttachmentIndex& index) const;
 
-  // Of the index, where the file has one: before the first message.
-  [[nodiscard]] const std::map<std::uint16_t, McapChannel>& channels() const { return channels_; }
   [[nodiscard]] const std::string& profile() const { return profile_; }
   [[nodiscard]] const std::vector<McapAttachmentIndex>& attachments() const { return attachments_; }
   [[nodiscard]] const std::map<std::string, McapTexts>& metadata() const { return metadata_; }

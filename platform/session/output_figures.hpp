@@ -17,14 +17,14 @@
 
 namespace glint {
 
-// T_world_tool of the cell's tool at a time of the session; nothing: not known.
+// True T_world_tool of the cell's tool at a time of the session; nothing: no truth.
 using TruthOfTool = std::function<std::optional<Pose>(int tool, Time time)>;
 
 inline constexpr int k_frame_rates = 3;  // nominal, reduced, low
 inline constexpr int k_ages = 512;       // of 1 ms; the last one holds all beyond
 inline constexpr int k_errors = 2048;    // of 0.1 mm; likewise
 
-// Of poses whose truth is known, at the time that the pose is for, in the pose's own frame.
+// Of poses with a truth, at the time that they are predicted to, in the pose's own frame.
 struct OutputErrors {
   std::uint64_t count = 0, inside_position = 0, inside_rotation = 0;  // the stated 95 % ellipsoid
   double square_m2 = 0, square_rad2 = 0;                              // sums of squared errors

@@ -39,6 +39,11 @@ std::vector<std::string> files_of(const std::string& path) {
 // The frame of a pose topic's camera, for the tree of transforms.
 std::string camera_of(const std::string& topic) { return "the camera of " + topic; }
 
+Time logged(const McapMessage& message) {
+  return {static_cast<std::int64_t>(
+      std::min<std::uint64_t>(message.heading.log_time, 4'000'000'000'000'000'000))};
+}
+
 std::string sibling(const std::string& topic) {
   return topic.substr(0, topic.rfind('/') + 1) + "camera_info";
 }
@@ -102,7 +107,13 @@ void RosbagFrames::scan(const McapMessage& message) {
   const std::string &type = message.schema->name, &topic = message.channel->topic;
   if (type == k_image_type) {
     ImageTopic& images = images_[topic];
-    if (images.count++ == 0) images.first = ros_header_of(message.payload, topic);
+    const RosHeader header = ros_header_of(message.payload, topic);
+    const Duration delay = logged(message) - header.stamp;
+    if (images.count++ == 0) {
+      images.first = header;
+      images.least_delay = delay;
+    }
+    images.least_delay = std::min(images.least_delay, delay);
   } else if (type == k_camera_info_type) {
     infos_.try_emplace(topic, message.payload.begin(), message.payload.end());
   } else if (type == k_tf_type) {
@@ -204,7 +215,7 @@ bool RosbagFrames::next(ReadFrame& frame) {
     }
     try {
       Image image{ros_image_of(message->payload, camera_.depth.unit_m, source_.path + ":" + topic),
-                  {static_cast<std::int64_t>(message->heading.log_time)}};
+                  logged(*message)};
       if (pair_up(std::move(image), is_depth, frame)) return true;
     } catch (const InputError& error) {
       if (unreadable_++ == 0) first_unreadable_ = error.what();
@@ -246,10 +257,23 @@ bool RosbagFrames::pair_up(Image arrived, bool is_depth, ReadFrame& frame) {
   return true;
 }
 
+Duration RosbagFrames::least_delay() const {
+  return std::max(images_.at(source_.reflectivity_topic).least_delay,
+                  images_.at(source_.depth_topic).least_delay);
+}
+
+// Whether stamps and log times are of two clocks: no delay is less than 0, and none of a camera's
+// that works is always longer than its transport and a frame.
+bool RosbagFrames::clocks_differ() const {
+  const Duration least = least_delay();
+  return least < Duration{} || least > declared_delay() + camera_.period;
+}
+
 void RosbagFrames::fill(Image reflectivity, Image depth, ReadFrame& frame) const {
   frame = ReadFrame{};
   frame.mid_exposure = reflectivity.image.header.stamp;
   frame.arrival = std::max(reflectivity.logged, depth.logged);
+  if (clocks_differ()) frame.arrival = *frame.arrival - least_delay() + declared_delay();
   if (!world_.empty()) {
     if (const auto pose = transforms_.at(world_, camera_frame_, frame.mid_exposure)) {
       frame.head.valid = true;
@@ -269,7 +293,8 @@ std::string RosbagFrames::missing() const { return missing_; }
 std::string RosbagFrames::text() const {
   return "rosbag " + source_.path + ": " + printable(source_.reflectivity_topic) + " and " +
          printable(source_.depth_topic) +
-         (world_.empty() ? ", no head pose" : ", head pose in " + printable(world_));
+         (world_.empty() ? ", no head pose" : ", head pose in " + printable(world_)) +
+         (clocks_differ() ? ", log times of another clock than the stamps" : "");
 }
 
 std::optional<Duration> RosbagFrames::unix_offset() const {

@@ -1,5 +1,5 @@
-// Live frames of another process through shared memory: a Unix socket passes the memory and says
-// which of its slots holds a frame (glint_frames.h, for producers). A thread copies each frame,
+// Live frames of another process through shared memory: a Unix socket passes the memory and, for
+// each frame, the number of its slot (glint_frames.h, for producers). A thread copies the frame,
 // maps its stamp to this machine's clock and hands it over.
 #pragma once
 
