@@ -70,6 +70,16 @@ TEST(RenderDepth, KeepsWhatIsNearerWhicheverCameFirst) {
   }
 }
 
+// Its pixels are more than an integer can number.
+TEST(RenderDepth, LeavesOutWhatLiesFarBesideThePicture) {
+  for (const float far : {1e12f, -1e12f}) {
+    Picture picture;
+    ASSERT_EQ(picture.render({{far, -1, 1}, {2 * far, -1, 1}, {far, 1, 1}}, {{0, 1, 2}}),
+              Reason::none);
+    for (const std::int32_t face : picture.face) EXPECT_EQ(face, -1);
+  }
+}
+
 TEST(RenderDepth, LeavesOutWhatIsBehindOrNotANumber) {
   Picture picture;
   const float nan = std::numeric_limits<float>::quiet_NaN();
