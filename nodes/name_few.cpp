@@ -27,8 +27,9 @@ void NameFew::operator()(const FrameVerdict& verdict, const Markers& markers,
     }
   }
   if (!any_wanted) return;
-  const FewWork work = name_few({expected_.data(), count}, markers, limits.blobs, taken, noise,
-                                scratch_, std::span(seen.tools).first(count));
+  const FewWork work =
+      name_few({expected_.data(), count}, markers, limits.blobs, taken,
+               noise_now(predictions.noise, noise), scratch_, std::span(seen.tools).first(count));
   counts_ = {{1, static_cast<std::int64_t>(count), work.gates, work.tests}};
 }
 

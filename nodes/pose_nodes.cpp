@@ -1,5 +1,6 @@
 #include "nodes/pose_nodes.hpp"
 
+#include <algorithm>
 #include <span>
 
 #include "nodes/predict_tracks.hpp"
@@ -35,6 +36,17 @@ void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
   CorrespondSettings gated = settings;
   gated.markers_max = limits.blobs;
   gated.search_steps_max = 0;
+  // Never narrower gates than the declared noise's: residuals do not show how far a marker may be
+  // off that strays or a hand half hide.
+  const double noisier =
+      predictions.noise.known ? predictions.noise.noise.range_sigma_m / settings.range_sigma_m : 1;
+  if (noisier > 1) {
+    gated.range_sigma_m *= noisier;
+    gated.max_rms_m *= noisier;
+  }
+  if (predictions.noise.known) {
+    gated.pixel_sigma_px = std::max(gated.pixel_sigma_px, predictions.noise.noise.pixel_sigma_px);
+  }
   for (int t = slice.index; t < count; t += slice.count) {
     const auto i = static_cast<std::size_t>(t);
     Labelings& out = labelings.tools[i];
@@ -48,7 +60,7 @@ void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
     gated.prior_gate_m = settings.prior_gate_m + prediction.reach_m;
     gated.prior_sigma_m = prediction.reach_m / k_reach_sigmas;
     gated.only_near = prediction.only_near;
-    gated.few_gate_m = prediction.reach_m + 3 * settings.range_sigma_m;
+    gated.few_gate_m = prediction.reach_m + 3 * gated.range_sigma_m;
     gated.search_steps_max += limits.search_steps;
     const CorrespondWork work = propose_labelings(
         markers, tool, gated, prediction.has_prior ? &prediction.T_camera_tool : nullptr, scratch_,

@@ -97,6 +97,7 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
   const Pose T_camera_world = anchor.value().state.corrected(head.T_world_camera).inverse();
   predictions.marker_count = 0;
   predictions.turn = verdict.accepted;
+  predictions.noise = last.value().noise;
   counts_ = {{1}};
   int lens_steps = 0, searched_everywhere = 0, cut_short = 0;
   const ToolSet& set = tools.value();

@@ -15,9 +15,11 @@ namespace {
 // The labelled markers, weighed, and which of the tool's each is.
 struct SeenMarkers {
   std::array<WeightedMarker, k_markers_per_tool_max> items;
+  std::array<MarkerVariance, k_markers_per_tool_max> variances;
   std::array<int, k_markers_per_tool_max> of_tool{};
   std::array<bool, k_markers_per_tool_max> whole{};  // neither merged nor partly hidden
   std::size_t count = 0;
+  bool have_images = true;
   Reason reason = Reason::none;
 
   [[nodiscard]] std::size_t whole_count() const {
@@ -32,6 +34,7 @@ SeenMarkers without(const SeenMarkers& seen, int left_out) {
   --kept.count;
   for (std::size_t i = first; i < kept.count; ++i) {
     kept.items[i] = seen.items[i + 1];
+    kept.variances[i] = seen.variances[i + 1];
     kept.of_tool[i] = seen.of_tool[i + 1];
     kept.whole[i] = seen.whole[i + 1];
   }
@@ -54,6 +57,7 @@ SeenMarkers weigh(const Tool& tool, int marker_count, const Markers& markers,
     sights[out.count] = sight_of(marker, seen.range_m, noise);
     strips[out.count] = strip_px(marker, sights[out.count].rays, tool, seen.range_m);
     common.add(strips[out.count]);
+    out.have_images = out.have_images && marker.along_x.squaredNorm() > 0;
     out.whole[out.count] = (marker.flags & k_marker_uneven) == 0;
     out.of_tool[out.count++] = i;
   }
@@ -65,6 +69,7 @@ SeenMarkers weigh(const Tool& tool, int marker_count, const Markers& markers,
                                                         out.items[i].range_m, sights[i].variance);
     if (!weighed) out.reason = weighed.reason;
     out.items[i] = weighed.value;
+    out.variances[i] = sights[i].variance;
   }
   return out;
 }
@@ -85,8 +90,9 @@ constexpr double k_surprise_most = chi_square_limit(6);
 }  // namespace
 
 void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& labeling,
-                     const Prediction& prediction, FittedTool& out) noexcept {
-  const SeenMarkers seen = weigh(tool, markers_within(tool, limits), markers, labeling, noise);
+                     const Prediction& prediction, const MarkerNoise& now,
+                     FittedTool& out) noexcept {
+  const SeenMarkers seen = weigh(tool, markers_within(tool, limits), markers, labeling, now);
   out.reason = seen.reason;
   if (out.reason != Reason::none) return;
   constexpr RefineSettings k_most;
@@ -139,6 +145,12 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
     out.marker_mask = static_cast<std::uint8_t>(out.marker_mask | (1u << kept.of_tool[i]));
   }
   out.rms_m = std::sqrt(squares / static_cast<double>(kept.count));
+  if (kept.have_images) {
+    out.residuals = residuals_of({kept.items.data(), kept.count},
+                                 {kept.variances.data(), kept.count}, pose.T_camera_tool, now);
+    counts_[3] += k_residual_steps;
+    counts_[4] += k_residual_steps * static_cast<int>(kept.count);
+  }
   out.T_camera_tool = correct_bias(correction, pose.T_camera_tool).T_camera_tool;
   out.near_T_camera_tool = correct_bias(correction, out.near_T_camera_tool).T_camera_tool;
 }
@@ -157,7 +169,8 @@ void RefinePose::operator()(const FrameVerdict& verdict, const Markers& markers,
     out = FittedTool{};
     out.reason = verdict.usable() ? assignment.reason[i] : verdict.reason;
     if (out.reason == Reason::none)
-      fit(set.items[i], markers, assignment.labeling[i], predictions.tools[i], out);
+      fit(set.items[i], markers, assignment.labeling[i], predictions.tools[i],
+          noise_now(predictions.noise, noise), out);
   }
 }
 

@@ -39,8 +39,8 @@ struct RefinePose {
   }
   [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
 
-  RefineSettings settings;  // at most the default's steps are taken: worst() counts on these
-  MarkerNoise noise;
+  RefineSettings settings;    // at most the default's steps are taken: worst() counts on these
+  MarkerNoise noise;          // declared: until residuals show it
   BiasCorrection correction;  // of every tool, where it holds; none unless a cell names one
   Limits limits;
   void operator()(const FrameVerdict& verdict, const Markers& markers,
@@ -49,15 +49,20 @@ struct RefinePose {
                   FittedTools& fitted) noexcept GLINT_NONBLOCKING;
 
  private:
-  // What the markers tell a filter may be read a second time, near where the tool is expected.
+  // What the residuals of a pose cost, in steps of a fit.
+  static constexpr int k_residual_steps = 3;
+  // What the markers tell a filter may be read a second time, near where the tool is expected; of
+  // the pose that stands the residuals are taken.
   [[nodiscard]] static constexpr RefineWork work_max(int markers) noexcept {
     constexpr RefineSettings k_most = {.markers_left_least = k_predicted_left_least};
     RefineWork work = refine_work_max(markers, k_most);
     work += {1, k_most.steps_max, k_most.steps_max * markers};
+    work += {0, k_residual_steps, k_residual_steps * markers};
     return work;
   }
   void fit(const Tool& tool, const Markers& markers, const Labeling& labeling,
-           const Prediction& prediction, FittedTool& out) noexcept GLINT_NONBLOCKING;
+           const Prediction& prediction, const MarkerNoise& now,
+           FittedTool& out) noexcept GLINT_NONBLOCKING;
 
   graph::LoopCounts counts_;
 };

@@ -12,6 +12,7 @@
 #include "kernels/pose/few_markers.hpp"
 #include "kernels/pose/labeling.hpp"
 #include "kernels/pose/lever_arm.hpp"
+#include "kernels/pose/noise_estimate.hpp"
 #include "kernels/pose/tool.hpp"
 #include "kernels/reason.hpp"
 #include "kernels/units.hpp"
@@ -71,6 +72,7 @@ struct Predictions {
   // The whole frame had more runs than the budget: a part of it is searched, another each turn.
   bool narrowed = false;
   std::uint32_t turn = 0;  // number of the accepted frame
+  NoiseEstimate noise;     // of the markers, as the frames before showed it
 };
 
 struct ToolLabelings {
@@ -99,6 +101,7 @@ struct FittedTool {
   bool tells_near = false;
   Pose near_T_camera_tool;
   Matrix6 near_covariance = Matrix6::Zero();  // of the markers' middle
+  MarkerResiduals residuals;
 };
 struct FittedTools {
   std::array<FittedTool, k_tools_max> tools;
@@ -177,6 +180,7 @@ struct Estimates {
   std::array<Vector3, k_tools_max> arm_m;
   bool reference_known = false;
   Pose T_world_reference;  // where the reference tool is
+  NoiseEstimate noise;     // of the markers
   std::array<Track, k_tools_max> tracks;
 };
 

@@ -97,6 +97,7 @@ void TrackTools::operator()(const FrameVerdict& verdict, const Anchor& anchor,
   estimates.tool_count = count;
   estimates.reference_known = anchor.state.known();
   estimates.T_world_reference = anchor.T_world_reference;
+  estimates.noise = last.value().noise;
   for (int t = 0; t < count; ++t) {
     Track& track = estimates.tracks[t];
     const Tool& shape = set.items[t];
@@ -111,8 +112,9 @@ void TrackTools::operator()(const FrameVerdict& verdict, const Anchor& anchor,
     const FollowedTool& tool = followed[t % k_tool_slices].items[t / k_tool_slices];
     if (tool.reason == Reason::none && tool.stands) {
       ++counts_[2];
-      accept(fitted[t % k_tool_slices].tools[t], tool, verdict.stamp, anchor.now,
-             settings.velocity_gap_max, track);
+      const FittedTool& found = fitted[t % k_tool_slices].tools[t];
+      if (estimate_noise) add(found.residuals, noise, estimates.noise);
+      accept(found, tool, verdict.stamp, anchor.now, settings.velocity_gap_max, track);
       continue;
     }
     track.seen_now = false;

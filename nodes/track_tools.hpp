@@ -29,6 +29,8 @@ struct TrackTools {
   [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
 
   TrackSettings settings;
+  MarkerNoise noise;  // declared: where the estimate begins
+  bool estimate_noise = true;
   Limits limits;
   void operator()(const FrameVerdict& verdict, const Anchor& anchor,
                   const graph::Latest<ToolSet>& tools,

@@ -16,7 +16,8 @@ target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/pose_factor.cpp
   ${CMAKE_CURRENT_LIST_DIR}/expected_pose.cpp ${CMAKE_CURRENT_LIST_DIR}/pose_prior.cpp
   ${CMAKE_CURRENT_LIST_DIR}/weighted_fit.cpp ${CMAKE_CURRENT_LIST_DIR}/agreed_pose.cpp
   ${CMAKE_CURRENT_LIST_DIR}/depth_flip.cpp ${CMAKE_CURRENT_LIST_DIR}/refine_pose.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/decide_labeling.cpp ${CMAKE_CURRENT_LIST_DIR}/few_markers.cpp)
+  ${CMAKE_CURRENT_LIST_DIR}/decide_labeling.cpp ${CMAKE_CURRENT_LIST_DIR}/few_markers.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/noise_estimate.cpp)
 # Nobody reads errno or asks for floating-point traps here; where either might be seen, the pass over
 # all pairs handles one at a time. Neither changes a result.
 set_source_files_properties(${CMAKE_CURRENT_LIST_DIR}/pair_matches.cpp PROPERTIES

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "kernels/pose/local_rays.hpp"
+#include "kernels/pose/noise_estimate.hpp"
 #include "platform/cells/calibration_files.hpp"
 #include "platform/cells/cell_timing.hpp"
 #include "platform/cells/depth_bias_table.hpp"
@@ -76,6 +77,11 @@ void read_sensor(TomlReader& reader, Cell& cell) {
     camera.range_min_m = 1e-3 * (*range_mm)[0];
     camera.range_max_m = 1e-3 * (*range_mm)[1];
   }
+  camera.range_sigma_m = metres_of(reader, "range_sigma_mm", camera.range_sigma_m,
+                                   1e3 * k_range_sigma_least_m, 1e3 * k_range_sigma_most_m);
+  camera.pixel_sigma_px = reader.real("pixel_sigma_px", camera.pixel_sigma_px,
+                                      k_pixel_sigma_least_px, k_pixel_sigma_most_px);
+  camera.estimate_noise = reader.boolean("estimate_noise", camera.estimate_noise);
   const int top = camera.reflectivity_bits == 8 ? 255 : 65535;
   camera.threshold =
       static_cast<std::uint16_t>(reader.integer("threshold", camera.threshold, 0, top - 1));

@@ -122,6 +122,15 @@ std::string released_text(std::uint64_t released) {
   return released == 0 ? "" : "; " + std::to_string(released) + " released, their sender gone";
 }
 
+// Beyond what a marker's own pixels show, 1 sigma.
+ordered_json noise_json(const Cell& cell, const SessionResult& result) {
+  const MarkerNoise declared{cell.camera.range_sigma_m, cell.camera.pixel_sigma_px};
+  const MarkerNoise& noise = noise_now(result.noise, declared);
+  return {{"estimated", result.noise.known},
+          {"range_sigma_mm", 1e3 * noise.range_sigma_m},
+          {"pixel_sigma_px", noise.pixel_sigma_px}};
+}
+
 }  // namespace
 
 ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResult& result) {
@@ -139,6 +148,7 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
       {"frames", result.frames},
       {"frames_tracked", result.frames_tracked},
       {"source", source_json(result)},
+      {"marker_noise", noise_json(cell, result)},
       {"frames_refused", accuracy.refused},
       {"frames_late_rendered", result.frames_late},
       {"ticks_source_late", result.ticks_source_late},

@@ -70,8 +70,16 @@ NominalMarker nominal_marker(const ToolSet& tools) {
   return nominal;
 }
 
+MarkerNoise marker_noise(const Camera& camera) {
+  return {camera.range_sigma_m, camera.pixel_sigma_px, camera.model.fx};
+}
+
 CorrespondSettings correspond_settings(const Cell& cell) {
   CorrespondSettings settings;
+  // As many declared sigmas as by default.
+  settings.max_rms_m *= cell.camera.range_sigma_m / settings.range_sigma_m;
+  settings.range_sigma_m = cell.camera.range_sigma_m;
+  settings.pixel_sigma_px = cell.camera.pixel_sigma_px;
   settings.focal_px = cell.camera.model.fx;
   // A smaller labeling is of use only where another tool may hold the missing marker.
   settings.fewer_kept = cell.tools.count > 1 ? 1 : 0;
@@ -106,11 +114,11 @@ void configure_common(const Cell& cell, AnyTracker& tracker) {
   });
   tracker.template node<AssignMarkers>().limits = limits;
   tracker.template node<NameFew>().limits = limits;
-  tracker.template node<NameFew>().noise.focal_px = cell.camera.model.fx;
+  const MarkerNoise noise = marker_noise(cell.camera);
+  tracker.template node<NameFew>().noise = noise;
   tracker.template for_each<RefinePose>([&](RefinePose& node) {
     node.limits = limits;
-    node.noise = MarkerNoise{};
-    node.noise.focal_px = cell.camera.model.fx;
+    node.noise = noise;
     node.correction = cell.correction;
   });
   tracker.template node<AnchorHead>().limits = limits;
@@ -121,6 +129,8 @@ void configure_common(const Cell& cell, AnyTracker& tracker) {
     node.settings.motion = cell.motion;
   });
   tracker.template node<TrackTools>().settings = track_settings(cell);
+  tracker.template node<TrackTools>().noise = noise;
+  tracker.template node<TrackTools>().estimate_noise = cell.camera.estimate_noise;
   tracker.template node<TrackTools>().limits = limits;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/pose/noise_estimate.hpp"
 #include "platform/cells/cell.hpp"
 #include "platform/rt/machine_check.hpp"
 #include "platform/session/accuracy.hpp"
@@ -47,6 +48,7 @@ struct SessionResult : SinkOutcome {
   std::uint64_t ticks_source_late = 0;  // without a measurement, while the source was late
   std::int64_t frames = 0;
   std::int64_t frames_tracked = 0;  // of these, with at least one tool seen
+  NoiseEstimate noise;              // of the markers, after the last frame
   std::int64_t ticks = 0;
   std::int64_t ticks_late = 0, ticks_skipped = 0;
   std::vector<std::int64_t> tick_wake_up_ns;  // live: the newest, and the largest

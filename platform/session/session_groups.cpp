@@ -122,6 +122,7 @@ void SessionGroups::report(SessionResult& result) {
   result.outcomes = std::move(outcomes_);
   result.frames = static_cast<std::int64_t>(processed_);
   result.frames_tracked = static_cast<std::int64_t>(tracked_);
+  result.noise = frame_.newest().noise;
   const SentTicks& sent = tick_.sent();
   result.sent = sent.left();
   result.latencies = sent.latencies().entries();

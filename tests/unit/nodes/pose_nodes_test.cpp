@@ -25,6 +25,17 @@ class Correspond : public testing::Test {
     return labelings_->tools[0].reason;
   }
 
+  // The tool's markers, half a metre ahead and larger by this factor.
+  void show_scaled_by(double factor) {
+    const Tool& tool = set_->items[0];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vector3 seen = tool.markers_m[i] * factor + Vector3(0, 0, 0.5);
+      markers_->items[i].ray = seen.normalized();
+      markers_->items[i].surface_range_m = seen.norm() - tool.centre_offset_m();
+    }
+    markers_->count = 3;
+  }
+
   std::unique_ptr<ToolSet> set_ = std::make_unique<ToolSet>();
   graph::Latest<ToolSet> tools_;
   std::unique_ptr<Markers> markers_ = std::make_unique<Markers>();
@@ -46,6 +57,20 @@ TEST_F(Correspond, BlamesABlobBudgetForNoToolThatWasPredicted) {
   predictions_->tools[0].has_prior = true;
   EXPECT_EQ(reason(Reason::blobs_full), Reason::too_few_markers);
   EXPECT_EQ(reason(Reason::runs_full), Reason::runs_full);
+}
+
+// Markers whose distances are off by more than the declared noise explains.
+TEST_F(Correspond, OpensItsGatesWithTheNoiseThatWasSeenAndNeverClosesThem) {
+  show_scaled_by(1.2);
+  EXPECT_NE(reason(Reason::none), Reason::none);
+  predictions_->noise.known = true;
+  predictions_->noise.noise = {0.01, 0.1};
+  EXPECT_EQ(reason(Reason::none), Reason::none);
+  show_scaled_by(1.02);
+  for (const double sigma_m : {0.01, 0.0001}) {
+    predictions_->noise.noise.range_sigma_m = sigma_m;
+    EXPECT_EQ(reason(Reason::none), Reason::none) << sigma_m;
+  }
 }
 
 }  // namespace

@@ -91,6 +91,47 @@ TEST_F(RefinePose, BeatsTheRigidFitOnNoisyMarkersAndSaysHowSureItIs) {
   EXPECT_NEAR(nees, 1, 0.05);  // 3,000 means of six squares: 0.01, 1 sigma
 }
 
+// Markers with three times the declared noise: their residuals show it, and once the frames before
+// have shown it, the pose is as unsure as it is wrong.
+TEST_F(RefinePose, WeighsMarkersByTheNoiseThatWasSeenAndStatesTheirResiduals) {
+  Random random(31);
+  const Tool tool = test::random_tool(random, 6);
+  constexpr int k_trials = 1000;
+  double nees = 0;
+  MarkerResiduals sums;
+  world_->predictions.noise = {{}, {3 * k_range_sigma_m, 3 * k_pixel_sigma_px, 253}, true};
+  for (int trial = 0; trial < k_trials; ++trial) {
+    start_over();
+    const Pose truth = test::tilted_pose(tool, random.within(0.4, 1), k_place, random);
+    add_tool(0, tool, truth, 3, random);
+    const FittedTool& found = run_one();
+    ASSERT_EQ(found.reason, Reason::none);
+    const Vector6 error = error_of(found, truth, tool.tip_m);
+    nees += error.dot(pose_factor(found.covariance).value.solve(error)) / (6 * k_trials);
+    sums.range.squares += found.residuals.range.squares;
+    sums.range.freedom += found.residuals.range.freedom;
+    sums.pixel.squares += found.residuals.pixel.squares;
+    sums.pixel.freedom += found.residuals.pixel.freedom;
+  }
+  EXPECT_NEAR(nees, 1, 0.08);
+  EXPECT_NEAR(std::sqrt(sums.range.squares / sums.range.freedom), 3 * k_range_sigma_m,
+              0.05 * 3 * k_range_sigma_m);
+  EXPECT_NEAR(std::sqrt(sums.pixel.squares / sums.pixel.freedom), 3 * k_pixel_sigma_px,
+              0.05 * 3 * k_pixel_sigma_px);
+  EXPECT_NEAR((sums.range.freedom + sums.pixel.freedom) / k_trials, 3 * 6 - 6, 0.01);
+}
+
+// In metres they would be: they tell nothing of pixels.
+TEST_F(RefinePose, StatesNoResidualsOfPointsWithoutAnImage) {
+  Random random(32);
+  const Tool tool = test::random_tool(random, 6);
+  add_tool(0, tool, test::tilted_pose(tool, 0.5, k_place, random), 1, random);
+  for (int i = 0; i < 6; ++i) marker_of(0, i).along_x = marker_of(0, i).along_y = Vector3::Zero();
+  const FittedTool& found = run_one();
+  ASSERT_EQ(found.reason, Reason::none);
+  EXPECT_EQ(found.residuals.pixel.freedom, 0);
+}
+
 TEST_F(RefinePose, LeavesOutOneBadMarkerOfFiveAndTheMaskSaysSo) {
   Random random(2);
   for (int bad = 0; bad < 6; ++bad) {

@@ -66,6 +66,28 @@ TEST_F(TrackToolsInTime, MakesAPoseByFewMarkersTheNewestAndKeepsWhyThereAreNoMor
   EXPECT_LT((middle - Vector3(0.1, 0, 0.5)).norm(), 1e-12);
 }
 
+TEST_F(TrackToolsInTime, EstimatesTheNoiseFromThePosesThatStandAndFromNoOthers) {
+  (*fitted_)[0].tools[0].residuals = {{9e-6, 1}, {0.04, 4}};
+  (void)found(false);
+  (void)few(true);
+  EXPECT_FALSE(out_->noise.known);
+  for (int i = 0; i < 2000; ++i) (void)found();
+  EXPECT_NEAR(out_->noise.noise.range_sigma_m, 0.003, 1e-4);
+  EXPECT_NEAR(out_->noise.noise.pixel_sigma_px, 0.1, 1e-3);
+  const double freedom = out_->noise.sums.range.freedom;
+  refused_ = true;
+  (void)found();
+  EXPECT_EQ(out_->noise.sums.range.freedom, freedom) << "a refused frame shows nothing";
+  EXPECT_TRUE(out_->noise.known) << "and what was known stays";
+}
+
+TEST_F(TrackToolsInTime, KeepsToTheDeclaredNoiseWhereItIsToldTo) {
+  node_.estimate_noise = false;
+  (*fitted_)[0].tools[0].residuals = {{9e-6, 1}, {0.04, 4}};
+  for (int i = 0; i < 10; ++i) (void)found();
+  EXPECT_FALSE(out_->noise.known);
+}
+
 TEST_F(TrackToolsInTime, CountsItsToolsAndThoseThatWereFound) {
   (void)found();
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 1, 1}}));

@@ -44,6 +44,8 @@ TEST(CellCamera, LeavesThePresetsBitsWhereNothingIsStated) {
   const Camera preset = hololens2_ahat();
   EXPECT_EQ(cell.camera.depth.wrap_range_m, preset.depth.wrap_range_m);
   EXPECT_EQ(cell.camera.depth.unit_m, preset.depth.unit_m);
+  EXPECT_EQ(cell.camera.range_sigma_m, preset.range_sigma_m);
+  EXPECT_TRUE(cell.camera.estimate_noise);
   EXPECT_EQ(cell.camera.period, preset.period);
 }
 
@@ -52,7 +54,8 @@ TEST(CellCamera, TakesWhatDiffersFromThePreset) {
       std::string(k_generic) +
           "depth = \"radial\"\ndepth_unit_mm = 0.25\ndepth_invalid_from = 60000\n"
           "depth_wraps_mm = 7500\nreflectivity_bits = 8\nperiod_ms = 10\nexposure_ms = 3\n"
-          "transport_ms = 4\nrange_mm = [200, 3000]\n",
+          "transport_ms = 4\nrange_mm = [200, 3000]\nrange_sigma_mm = 3\n"
+          "pixel_sigma_px = 0.25\nestimate_noise = false\n",
       "cell.toml");
   const Camera& camera = cell.camera;
   EXPECT_EQ(camera.model.width, 4);
@@ -68,6 +71,9 @@ TEST(CellCamera, TakesWhatDiffersFromThePreset) {
   EXPECT_EQ(camera.transport, milliseconds(4));
   EXPECT_DOUBLE_EQ(camera.range_min_m, 0.2);
   EXPECT_DOUBLE_EQ(camera.range_max_m, 3);
+  EXPECT_DOUBLE_EQ(camera.range_sigma_m, 0.003);
+  EXPECT_DOUBLE_EQ(camera.pixel_sigma_px, 0.25);
+  EXPECT_FALSE(camera.estimate_noise);
   EXPECT_EQ(generic_cell().camera.depth.kind, DepthKind::z);
 }
 

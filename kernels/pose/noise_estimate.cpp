@@ -1,0 +1,108 @@
+#include "kernels/pose/noise_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kernels/pose/normal_equations.hpp"
+
+namespace glint {
+namespace {
+
+// Squared: a residual beyond three sigma counts as three.
+constexpr double k_clip_square = 9;
+
+// y' y of L y = gradient: the part of a residual's variance that the fit takes.
+double leverage_of(const PoseFactor& factor, const Vector3& gradient, const Vector3& lever) {
+  Vector6 y;
+  y << gradient, lever.cross(gradient);
+  for (int c = 0; c < 6; ++c) {
+    y(c) *= factor.inverse_diagonal(c);
+    for (int r = c + 1; r < 6; ++r) y(r) -= factor.lower(r, c) * y(c);
+  }
+  return std::min(y.squaredNorm(), 1.0);
+}
+
+// Residuals of one kind and what they were weighed with.
+class Kind {
+ public:
+  // least: the smallest variance of all; declared: the part that is in each.
+  Kind(double least, double declared) : least_(least), declared_(declared) {}
+
+  // sigmas: the residual in its standard deviation.
+  void add(double sigmas, double leverage, double variance) {
+    const double weight = (least_ / variance) * (least_ / variance), free = 1 - leverage;
+    const double own = std::max(variance - declared_, 0.0);
+    const double square = std::min(sigmas * sigmas, k_clip_square * free) * variance;
+    sum_.squares += weight * (square - free * own);
+    sum_.freedom += weight * free;
+  }
+  [[nodiscard]] const ResidualSum& sum() const { return sum_; }
+
+ private:
+  double least_, declared_;
+  ResidualSum sum_;
+};
+
+double squared(double x) { return x * x; }
+
+// The variance of all ranges or pixels; the declared one is worth some residuals.
+double update(const ResidualSum& newest, double declared, double least, double most, bool known,
+              ResidualSum& sum) {
+  if (!known) sum = {k_noise_declared_worth * declared, k_noise_declared_worth};
+  const double kept = std::max(0.0, 1 - newest.freedom / k_noise_memory);
+  sum.squares = kept * sum.squares + newest.squares;
+  sum.freedom = kept * sum.freedom + newest.freedom;
+  return std::clamp(sum.squares / sum.freedom, least, most);
+}
+
+}  // namespace
+
+MarkerResiduals residuals_of(std::span<const WeightedMarker> markers,
+                             std::span<const MarkerVariance> variances, const Pose& T_camera_tool,
+                             const MarkerNoise& noise) noexcept {
+  const Vector3 mean_m = mean_of(markers);
+  NormalEquations normal;
+  if (markers.empty() || !add_markers(markers, T_camera_tool, mean_m, normal)) return {};
+  const Result<PoseFactor> factor = pose_factor(normal.matrix);
+  if (!factor) return {};
+  double least_m2 = std::numeric_limits<double>::infinity(), least_px2 = least_m2;
+  for (const MarkerVariance& variance : variances) {
+    least_m2 = std::min(least_m2, variance.range_m2);
+    least_px2 = std::min({least_px2, variance.xx_px2, variance.yy_px2});
+  }
+  Kind range(least_m2, squared(noise.range_sigma_m));
+  Kind pixel(least_px2, squared(noise.pixel_sigma_px));
+  for (std::size_t i = 0; i < markers.size(); ++i) {
+    const WeightedMarker& marker = markers[i];
+    const Vector3 lever = T_camera_tool.rotation * (marker.model_m - mean_m);
+    const Vector3 point = T_camera_tool * marker.model_m;
+    const double distance = point.norm();
+    range.add((distance - marker.range_m) * marker.per_range_sigma,
+              leverage_of(factor.value, point * (marker.per_range_sigma / distance), lever),
+              variances[i].range_m2);
+    const double inverse = 1 / marker.ray.dot(point);
+    const auto add_pixel = [&](const Vector3& across, double variance) {
+      const double sigmas = across.dot(point) * inverse;
+      pixel.add(sigmas, leverage_of(factor.value, (across - marker.ray * sigmas) * inverse, lever),
+                variance);
+    };
+    add_pixel(marker.across_first, variances[i].xx_px2);
+    add_pixel(marker.across_second, variances[i].yy_px2);
+  }
+  return {range.sum(), pixel.sum()};
+}
+
+void add(const MarkerResiduals& residuals, const MarkerNoise& declared,
+         NoiseEstimate& estimate) noexcept {
+  estimate.noise = declared;
+  estimate.noise.range_sigma_m = std::sqrt(
+      update(residuals.range, squared(declared.range_sigma_m), squared(k_range_sigma_least_m),
+             squared(k_range_sigma_most_m), estimate.known, estimate.sums.range));
+  estimate.noise.pixel_sigma_px = std::sqrt(
+      update(residuals.pixel, squared(declared.pixel_sigma_px), squared(k_pixel_sigma_least_px),
+             squared(k_pixel_sigma_most_px), estimate.known, estimate.sums.pixel));
+  estimate.known = true;
+}
+
+}  // namespace glint

@@ -1,0 +1,126 @@
+#include "kernels/pose/noise_estimate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "kernels/pose/weighted_fit.hpp"
+#include "tests/unit/kernels/pose/weighted_scene.hpp"
+
+namespace glint {
+namespace {
+
+using test::Random;
+
+MarkerVariance variance_of(const MarkerNoise& noise, const MarkerVariance& own) {
+  const double pixel = noise.pixel_sigma_px * noise.pixel_sigma_px;
+  return {own.xx_px2 + pixel, 0, own.yy_px2 + pixel,
+          own.range_m2 + noise.range_sigma_m * noise.range_sigma_m};
+}
+
+// Markers seen with the noise `truth`, weighed with another.
+std::vector<WeightedMarker> seen(const Tool& tool, const Pose& pose, const MarkerVariance& truth,
+                                 const MarkerVariance& taken, Random& random) {
+  std::vector<WeightedMarker> markers = test::weighted_view(tool, pose, truth, 1, random);
+  const CameraModel camera = test::pinhole();
+  for (WeightedMarker& marker : markers) {
+    int steps = 0;
+    const LocalRays rays =
+        local_rays(camera, project(camera, marker.ray).value, k_ray_steps_max, steps).value;
+    marker = weigh_marker(marker.model_m, rays, marker.range_m, taken).value;
+  }
+  return markers;
+}
+
+class NoiseOf : public ::testing::TestWithParam<MarkerNoise> {
+ protected:
+  static constexpr MarkerNoise k_declared{0.0015, 0.1, 253};
+
+  // The estimate after so many frames of one tool in random poses, and of each marker an own
+  // variance that is known.
+  static NoiseEstimate after(int frames, const Tool& tool, const MarkerNoise& truth,
+                             const MarkerVariance& own, std::uint64_t seed, double outlier_m = 0) {
+    Random random(seed);
+    NoiseEstimate estimate;
+    for (int frame = 0; frame < frames; ++frame) {
+      const MarkerNoise& now = noise_now(estimate, k_declared);
+      const Pose pose = test::tilted_pose(tool, random.within(0.2, 1.2),
+                                          {0.1, -0.05, random.within(0.4, 0.7)}, random);
+      const MarkerVariance taken = variance_of(now, own);
+      std::vector<WeightedMarker> markers =
+          seen(tool, pose, variance_of(truth, own), taken, random);
+      if (frame % 20 == 0) markers[0].range_m += outlier_m;
+      const WeightedFit fit = fit_weighted(markers, mean_of(markers), pose, nullptr, 20);
+      EXPECT_EQ(fit.reason, Reason::none);
+      const std::vector<MarkerVariance> variances(markers.size(), taken);
+      add(residuals_of(markers, variances, fit.T_camera_tool, now), k_declared, estimate);
+    }
+    return estimate;
+  }
+};
+
+TEST_P(NoiseOf, IsFoundByTheResidualsWhateverWasDeclared) {
+  const MarkerNoise truth = GetParam();
+  double range = 0, pixel = 0;
+  constexpr int k_runs = 10;
+  for (const bool flat : {true, false}) {
+    Random random(3);
+    const Tool tool = flat ? test::flat_tool() : test::random_tool(random, 5);
+    for (int run = 0; run < k_runs; ++run) {
+      const MarkerVariance own{1e-4, 0, 1e-4, 2.5e-7};
+      const NoiseEstimate found = after(900, tool, truth, own, 100 + run);
+      range += found.noise.range_sigma_m / (2 * k_runs);
+      pixel += found.noise.pixel_sigma_px / (2 * k_runs);
+    }
+  }
+  std::printf("  range %.2f mm, pixel %.3f px\n", 1e3 * range, pixel);
+  // Ten runs' means of a sigma that each has within 4 %; what was declared is nearly forgotten.
+  EXPECT_NEAR(range, truth.range_sigma_m, 0.06 * truth.range_sigma_m);
+  EXPECT_NEAR(pixel, truth.pixel_sigma_px, 0.06 * truth.pixel_sigma_px);
+}
+
+INSTANTIATE_TEST_SUITE_P(Residuals, NoiseOf,
+                         ::testing::Values(MarkerNoise{0.0006, 0.04}, MarkerNoise{0.0006, 0.3},
+                                           MarkerNoise{0.0015, 0.1}, MarkerNoise{0.003, 0.04},
+                                           MarkerNoise{0.005, 0.1}, MarkerNoise{0.005, 0.3},
+                                           MarkerNoise{0.012, 0.04}));
+
+class NoiseEstimateTest : public NoiseOf {};
+
+TEST_F(NoiseEstimateTest, GrowsWithinASecondToThreeTimesTheDeclared) {
+  const NoiseEstimate found = after(30, test::flat_tool(), {0.005, 0.1}, {}, 7);
+  EXPECT_GT(found.noise.range_sigma_m, 0.0035);
+}
+
+TEST_F(NoiseEstimateTest, IsHardlyMovedByAMarkerThatIsFarOff) {
+  Random random(3);
+  const NoiseEstimate found =
+      after(900, test::random_tool(random, 6), {0.0015, 0.1}, {1e-4, 0, 1e-4, 2.5e-7}, 8, 0.05);
+  EXPECT_LT(found.noise.range_sigma_m, 0.0015 * 1.3);
+}
+
+TEST_F(NoiseEstimateTest, StaysWithinItsLimits) {
+  const NoiseEstimate quiet =
+      after(2000, test::flat_tool(), {1e-6, 1e-4}, {1e-6, 0, 1e-6, 1e-10}, 9);
+  EXPECT_GE(quiet.noise.range_sigma_m, k_range_sigma_least_m);
+  EXPECT_GE(quiet.noise.pixel_sigma_px, k_pixel_sigma_least_px);
+  NoiseEstimate loud;
+  for (int i = 0; i < 1000; ++i) add({{1e3, 1}, {1e3, 1}}, k_declared, loud);
+  EXPECT_EQ(loud.noise.range_sigma_m, k_range_sigma_most_m);
+  EXPECT_EQ(loud.noise.pixel_sigma_px, k_pixel_sigma_most_px);
+}
+
+TEST_F(NoiseEstimateTest, LearnsNothingFromMarkersThatFixNoPose) {
+  const std::vector<WeightedMarker> one(1);
+  const MarkerResiduals found =
+      residuals_of(one, std::vector<MarkerVariance>(1), Pose{}, k_declared);
+  EXPECT_EQ(found.range.freedom, 0);
+  EXPECT_EQ(found.pixel.freedom, 0);
+  NoiseEstimate estimate;
+  add(found, k_declared, estimate);
+  EXPECT_NEAR(estimate.noise.range_sigma_m, k_declared.range_sigma_m, 1e-12);
+}
+
+}  // namespace
+}  // namespace glint
