@@ -33,10 +33,11 @@ enum class Reason : std::uint8_t {
   overrun_predicted = 21,  // the last known motion goes on
   overrun_stopped = 22,    // everything is declared lost
   tool_changed = 23,       // another tool, or none, is in its place since
-  unsure = 24,             // found, but not surely enough to be called measured
+  imprecise = 24,          // found, but its standard deviation is above the limit (once `unsure`)
   cloud_full = 25,         // more points or voxels than the capacity; the first ones were kept
+  ambiguous = 26,          // found, but another labeling or pose explains the frame nearly as well
 };
-inline constexpr Reason k_last_reason = Reason::cloud_full;
+inline constexpr Reason k_last_reason = Reason::ambiguous;
 
 // Whether it stands for a measurement that was not in time.
 [[nodiscard]] constexpr bool is_overrun(Reason reason) {
@@ -50,8 +51,8 @@ inline constexpr Reason k_last_reason = Reason::cloud_full;
       "degenerate",    "collinear",         "bad_fit",         "frame_late",   "frame_doubled",
       "frame_invalid", "head_pose_missing", "too_old",         "runs_full",    "blobs_full",
       "search_full",   "not_prepared",      "out_of_range",    "no_reference", "overrun_skipped",
-      "overrun_held",  "overrun_predicted", "overrun_stopped", "tool_changed", "unsure",
-      "cloud_full"};
+      "overrun_held",  "overrun_predicted", "overrun_stopped", "tool_changed", "imprecise",
+      "cloud_full",    "ambiguous"};
   const auto i = static_cast<std::size_t>(reason);
   return i < sizeof names / sizeof names[0] ? names[i] : "unknown";
 }

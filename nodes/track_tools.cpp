@@ -118,7 +118,7 @@ void TrackTools::operator()(const FrameVerdict& verdict, const Anchor& anchor,
       continue;
     }
     track.seen_now = false;
-    track.reason = tool.reason != Reason::none ? tool.reason : Reason::unsure;
+    track.reason = tool.reason != Reason::none ? tool.reason : Reason::imprecise;
     if (tool.reason == Reason::none && track.alive && track.base == tool.base)
       move_on(tool, 6, track);
     if (tool.few_mask != 0 && track.alive)

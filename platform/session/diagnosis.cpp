@@ -99,8 +99,10 @@ const char* mismatch_text(Reason reason) {
   switch (reason) {
     case Reason::bad_fit:
       return "three spots or more have about the tool's distances, but beyond the noise";
-    case Reason::unsure:
+    case Reason::imprecise:
       return "the spots fit, but too imprecisely: few, or nearly on a line";
+    case Reason::ambiguous:
+      return "the spots fit in two ways: a symmetric or flat tool, or a far one";
     case Reason::taken_by_other:
       return "the spots that fit belong to another tool";
     case Reason::search_full:

@@ -108,14 +108,14 @@ TEST_F(TrackToolsInTime, LosesAToolWhosePoseByFewMarkersIsTooUnsure) {
 }
 
 TEST_F(TrackToolsInTime, CallsNoPoseMeasuredThatIsUnsureButGoesOnByIt) {
-  EXPECT_FALSE(found(false).alive) << "a first pose that is unsure";
-  EXPECT_EQ(out_->tracks[0].reason, Reason::unsure);
+  EXPECT_FALSE(found(false).alive) << "a first pose that is imprecise";
+  EXPECT_EQ(out_->tracks[0].reason, Reason::imprecise);
   const Time sure = found().newest.time;
   followed().estimate.pose.translation.x() = 0.01;
   const Track& track = found(false);
   EXPECT_TRUE(track.alive);
   EXPECT_FALSE(track.seen_now);
-  EXPECT_EQ(track.reason, Reason::unsure);
+  EXPECT_EQ(track.reason, Reason::imprecise);
   EXPECT_EQ(track.newest.time, sure);
   EXPECT_EQ(track.motion.pose.translation.x(), 0.01);
 }
