@@ -12,6 +12,7 @@
 #include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
+#include "platform/session/label_path.hpp"
 #include "platform/session/replay.hpp"
 #include "platform/session/replay_points.hpp"
 
@@ -72,9 +73,15 @@ int replay_marker_points(const ReplayArguments& arguments) {
   }
   const PointsResult result = replay_points(arguments.points, arguments.tool);
   const auto frames = static_cast<std::int64_t>(result.frames.size());
-  std::printf("frames   %lld\nsolved   %lld\nrms      mean %.3f mm, largest %.3f mm\n",
-              static_cast<long long>(frames), static_cast<long long>(result.solved),
-              result.rms_mean_m * 1e3, result.rms_max_m * 1e3);
+  std::printf(
+      "frames     %lld\nsolved     %lld\nambiguous  %lld\nrms        mean %.3f mm, largest %.3f "
+      "mm\n",
+      static_cast<long long>(frames), static_cast<long long>(result.solved),
+      static_cast<long long>(result.ambiguous), result.rms_mean_m * 1e3, result.rms_max_m * 1e3);
+  if (result.solved > 0)
+    std::printf(
+        "margin     least %.1f of chi-square to another pose; below %.1f a frame is ambiguous\n",
+        result.margin_min, k_margin_min);
   nlohmann::ordered_json poses = nlohmann::ordered_json::array();
   for (const PointPose& pose : result.frames) {
     nlohmann::ordered_json item{{"time_s", static_cast<double>(pose.time.nanoseconds) * 1e-9},
@@ -83,17 +90,22 @@ int replay_marker_points(const ReplayArguments& arguments) {
       const Vector3& t = pose.pose.translation;
       const Quaternion& q = pose.pose.rotation;
       item["rms_mm"] = pose.rms_m * 1e3;
+      item["margin"] = pose.margin;  // null: no other pose is in question
       item["marker_mask"] = pose.marker_mask;
       item["position_m"] = {t.x(), t.y(), t.z()};
       item["rotation_xyzw"] = {q.x(), q.y(), q.z(), q.w()};
       item["tip_m"] = {pose.tip_m.x(), pose.tip_m.y(), pose.tip_m.z()};
     } else {
       item["reason"] = std::string(name_of(pose.reason));
+      if (pose.reason == Reason::ambiguous) item["margin"] = pose.margin;
     }
     poses.push_back(std::move(item));
   }
   write_json(arguments.json, {{"frames", frames},
                               {"solved", result.solved},
+                              {"ambiguous", result.ambiguous},
+                              {"margin_min", result.margin_min},
+                              {"margin_limit", k_margin_min},
                               {"rms_mean_mm", result.rms_mean_m * 1e3},
                               {"rms_max_mm", result.rms_max_m * 1e3},
                               {"poses", std::move(poses)}});
@@ -109,7 +121,9 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->footer(
       "Examples:\n  glint replay out/run.mcap --workers 2 --json replay.json\n"
       "  glint replay --points markers.csv --tool probe.toml --json poses.json\n"
-      "markers.csv: time_s,x_m,y_m,z_m, one unlabelled marker a row.");
+      "markers.csv: time_s,x_m,y_m,z_m, one unlabelled marker a row. Frames less than 0.16 s apart "
+      "are decided\ntogether; where another pose is nearly as likely a frame is `ambiguous`: exit "
+      "code 1.");
   command->add_option("recording", arguments->recording, "a recording of `glint run`");
   command->add_option("--points", arguments->points, "marker positions without images (CSV)");
   command->add_option("--tool", arguments->tool,
