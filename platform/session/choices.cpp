@@ -1,5 +1,7 @@
 #include "platform/session/choices.hpp"
 
+#include <algorithm>
+
 namespace glint {
 
 FrameStamp overrun_stamp(const Frame& frame) {
@@ -17,6 +19,16 @@ ChoiceRecord as_record(const graph::Choice& choice, std::int64_t unix_offset_ns)
   }
   record.unix_offset_ns = unix_offset_ns;
   return record;
+}
+
+graph::Choice as_choice(const ChoiceRecord& record) {
+  graph::Choice choice;
+  choice.group = record.group;
+  choice.activation = record.activation;
+  choice.nominal_ns = record.nominal.nanoseconds;
+  choice.version_count = std::min<int>(record.version_count, k_recorded_versions);
+  std::copy_n(record.versions.begin(), choice.version_count, choice.versions.begin());
+  return choice;
 }
 
 }  // namespace glint

@@ -27,5 +27,6 @@ using OverrunNotes = graph::Ring<OverrunNote, 64>;
 [[nodiscard]] FrameStamp overrun_stamp(const Frame& frame);
 
 [[nodiscard]] ChoiceRecord as_record(const graph::Choice& choice, std::int64_t unix_offset_ns);
+[[nodiscard]] graph::Choice as_choice(const ChoiceRecord& record);
 
 }  // namespace glint

@@ -1,5 +1,7 @@
 #include "platform/session/frame_group.hpp"
 
+#include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "graph/describe.hpp"
@@ -9,6 +11,7 @@
 namespace glint {
 
 template class GroupRunner<Tracker>;
+template class GroupRunner<MarkerTracker>;
 namespace {
 
 // The first node of a kind, by its number in the order of execution.
@@ -24,14 +27,42 @@ constexpr int k_locate_rois = number_of("LocateRois");
 constexpr int k_back_project = number_of("BackProject");
 static_assert(k_locate_rois > 0 && k_back_project > k_locate_rois);
 
+// The last node of G that has run when `after_node` is the last one of Tracker that has; -1: none.
+template <class G>
+int last_node(int after_node) {
+  const auto& recorded = graph::Description<Tracker>::nodes;
+  const auto end = recorded.begin() + std::min<int>(after_node + 1, Tracker::node_count);
+  int last = -1, number = 0;
+  for (const graph::NodeInfo& node : graph::Description<G>::nodes) {
+    const auto is_same = [&](const graph::NodeInfo& other) {
+      return other.name == node.name && other.copy == node.copy;
+    };
+    if (std::any_of(recorded.begin(), end, is_same)) last = number;
+    ++number;
+  }
+  return last;
+}
+
+void give(const ArrivedFrame& arrived, Tracker& tracker) noexcept {
+  tracker.input<Frame>() = arrived.frame;
+  tracker.input<HeadPose>() = arrived.head;
+}
+void give(const ArrivedFrame& arrived, MarkerTracker& tracker) noexcept {
+  FrameStamp& stamp = tracker.input<FrameStamp>();
+  stamp = overrun_stamp(arrived.frame);
+  stamp.reason = arrived.markers->reason;
+  tracker.input<Markers>() = arrived.markers->markers;
+  tracker.input<HeadPose>() = arrived.head;
+}
+
 }  // namespace
 
-FrameGroup::FrameGroup(const Cell& cell, graph::TripleBuffer<ToolSet>& tool_set, Clock now,
-                       GroupRunner<Tracker>& runner, RecorderLane* lane,
-                       std::unique_ptr<FrameMethod> method)
+template <class G>
+FrameGroupOf<G>::FrameGroupOf(const Cell& cell, graph::TripleBuffer<ToolSet>& tool_set, Clock now,
+                              GroupRunner<G>& runner, RecorderLane* lane,
+                              std::unique_ptr<FrameMethod> method)
     : group_(*tracker_, k_frame_group),
       method_(std::move(method)),
-      newest_(&tracker_->output<Estimates>()),
       now_(std::move(now)),
       runner_(&runner),
       lane_(lane),
@@ -39,80 +70,104 @@ FrameGroup::FrameGroup(const Cell& cell, graph::TripleBuffer<ToolSet>& tool_set,
       T_body_robot_(cell.T_world_robot),
       lost_after_(cell.lost_after) {
   configure(cell, *tracker_);
-  tracker_->latest<ToolSet>().bind(tool_set);
+  tracker_->template latest<ToolSet>().bind(tool_set);
 }
 
-void FrameGroup::process(const ArrivedFrame& arrived) noexcept {
+template <class G>
+void FrameGroupOf<G>::process(const ArrivedFrame& arrived) noexcept {
   (void)group_.release(arrived.frame.mid_exposure.nanoseconds);
-  if (method_ != nullptr) {
-    newest_ = &method_->process(arrived);
-    publish(*newest_);
-    tell_transforms(arrived.head);
-    if (lane_ != nullptr) record(arrived);
-    return;
+  if (method_ == nullptr) {
+    give(arrived, *tracker_);
+    overrun_ = runner_->run(*tracker_, {group_.choice().activation, arrived.frame.sequence,
+                                        arrived.frame.arrival, now_(), arrived.frame.sequence});
   }
-  tracker_->input<Frame>() = arrived.frame;
-  tracker_->input<HeadPose>() = arrived.head;
-  overrun_ = runner_->run(*tracker_, {group_.choice().activation, arrived.frame.sequence,
-                                      arrived.frame.arrival, now_(), arrived.frame.sequence});
+  finish(arrived);
+}
+
+template <class G>
+void FrameGroupOf<G>::process_as(const ArrivedFrame& arrived,
+                                 const ChoiceRecord& recorded) noexcept {
+  (void)group_.release_as(as_choice(recorded));
+  give(arrived, *tracker_);
+  overrun_ = recorded.overrun;
+  runner_->run_as(*tracker_, overrun_, last_node<G>(overrun_.after_node));
+  finish(arrived);
+}
+
+template <class G>
+void FrameGroupOf<G>::finish(const ArrivedFrame& arrived) noexcept {
+  Estimates& slot = estimates_.write_slot();
+  newest_ = &slot;
   if (overrun_.happened()) {
     answer(arrived);
   } else {
-    newest_ = &tracker_->output<Estimates>();
-    publish(*newest_);
+    slot = method_ != nullptr ? method_->process(arrived) : tracker_->template output<Estimates>();
+    in_time_ = &slot;
+    publish();
   }
-  runner_->settle(*tracker_);
-  if (!overrun_.happened()) *in_time_ = *newest_;
+  if (method_ == nullptr) runner_->settle(*tracker_);
   tell_transforms(arrived.head);
-  if (lane_ != nullptr) record(arrived);
+  if constexpr (std::same_as<G, Tracker>) {
+    if (lane_ != nullptr) record(arrived);
+  }
 }
 
-void FrameGroup::publish(const Estimates& estimates) noexcept {
-  estimates_.write_slot() = estimates;
+template <class G>
+void FrameGroupOf<G>::publish() noexcept {
   estimates_.publish(group_.choice().activation, now_().nanoseconds);
 }
 
-void FrameGroup::answer(const ArrivedFrame& arrived) noexcept {
+template <class G>
+void FrameGroupOf<G>::answer(const ArrivedFrame& arrived) noexcept {
   const OverrunFrame frame{overrun_stamp(arrived.frame), arrived.head, lost_after_};
-  if (substitute(overrun_.policy, frame, *in_time_, *substitute_)) {
-    publish(*substitute_);
-  } else {
-    substitute_->tool_count = 0;
-    substitute_->verdict.reason = reason_of(overrun_.policy);
+  Estimates& slot = estimates_.write_slot();
+  if (substitute(overrun_.policy, frame, *in_time_, slot)) {
+    if (in_time_ != kept_.get()) *kept_ = *in_time_;
+    in_time_ = kept_.get();
+    publish();
+  } else {  // the slot stays the writer's, which fills it whole for the next version
+    slot.tool_count = 0;
+    slot.verdict.reason = reason_of(overrun_.policy);
   }
-  newest_ = substitute_.get();
   (void)notes_.push({k_frame_group, overrun_});  // full: the choice records it all the same
 }
 
-void FrameGroup::tell_transforms(const HeadPose& head) const noexcept {
+template <class G>
+void FrameGroupOf<G>::tell_transforms(const HeadPose& head) const noexcept {
   if (dds_ == nullptr) return;
   const bool known = robot_on_body_ && newest_->reference_known;
   (void)dds_->offer_frame(
       {head, known, known ? newest_->T_world_reference * T_body_robot_ : Pose{}});
 }
 
-void FrameGroup::record(const ArrivedFrame& arrived) noexcept {
+template <class G>
+void FrameGroupOf<G>::record(
+    const ArrivedFrame& arrived) noexcept requires std::same_as<G, Tracker> {
   const auto ran = [&](int node) { return !overrun_.happened() || overrun_.after_node >= node; };
-  const FrameVerdict& verdict = tracker_->token<FrameVerdict>();
   (void)lane_->offer_head_pose(arrived.head);
   ChoiceRecord choice = as_record(group_.choice(), 0);
   choice.overrun = overrun_;
   (void)lane_->offer_choice(choice);
   // The frame comes last: with it a replay has all that the activation was given. The one or the
   // other is left out by the recording's level. What was not computed for this frame is not there.
-  (void)lane_->offer_frame(arrived.frame, ran(k_locate_rois) ? tracker_->token<Rois>() : Rois{});
+  (void)lane_->offer_frame(arrived.frame,
+                           ran(k_locate_rois) ? tracker_->template token<Rois>() : Rois{});
   MarkerFrame markers;
   markers.mid_exposure = arrived.frame.mid_exposure;
   markers.arrival = arrived.frame.arrival;
   markers.sequence = arrived.frame.sequence;
-  markers.reason = tracker_->token<FrameStamp>().reason;
-  if (ran(k_back_project)) markers.markers = tracker_->token<Markers>();
+  markers.reason = tracker_->template token<FrameStamp>().reason;
+  if (ran(k_back_project)) markers.markers = tracker_->template token<Markers>();
   (void)lane_->offer_markers(markers);
-  const Reason dropped = overrun_.happened() ? reason_of(overrun_.policy) : verdict.reason;
+  const Reason dropped = overrun_.happened() ? reason_of(overrun_.policy)
+                                             : tracker_->template token<FrameVerdict>().reason;
   if (dropped != Reason::none) {
     (void)lane_->offer_dropped(
         {arrived.frame.mid_exposure, arrived.frame.arrival, arrived.frame.sequence, dropped});
   }
 }
+
+template class FrameGroupOf<Tracker>;
+template class FrameGroupOf<MarkerTracker>;
 
 }  // namespace glint

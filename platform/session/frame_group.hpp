@@ -2,7 +2,7 @@
 // published to the tick group, and what a replay needs is offered to the recorder.
 #pragma once
 
-#include <cstdint>
+#include <concepts>
 #include <functional>
 #include <memory>
 
@@ -17,17 +17,17 @@
 
 namespace glint {
 
-extern template class GroupRunner<Tracker>;  // in frame_group.cpp, once
-
 using Clock = std::function<Time()>;
 
-class FrameGroup {
+// G: Tracker, or MarkerTracker for a recording without pixels.
+template <class G>
+class FrameGroupOf {
  public:
   // `lane` may be null: nothing is recorded. `tool_set` and `runner` outlive this. With a `method`
   // it decides in the tracker's place, unwatched.
-  FrameGroup(const Cell& cell, graph::TripleBuffer<ToolSet>& tool_set, Clock now,
-             GroupRunner<Tracker>& runner, RecorderLane* lane,
-             std::unique_ptr<FrameMethod> method = nullptr);
+  FrameGroupOf(const Cell& cell, graph::TripleBuffer<ToolSet>& tool_set, Clock now,
+               GroupRunner<G>& runner, RecorderLane* lane,
+               std::unique_ptr<FrameMethod> method = nullptr);
 
   // Where the headset is goes there, too, after each frame's estimates, and where the robot is
   // that stands on the reference body; null: nowhere.
@@ -36,41 +36,57 @@ class FrameGroup {
   // Estimates are published before anything is offered: latency first. Of a frame that was not in
   // time, what the policy says is published.
   void process(const ArrivedFrame& arrived) noexcept;
+  // The same in a replay: the recorded decision in place of the clock's. The set of tools of the
+  // recorded version is the newest that was published.
+  void process_as(const ArrivedFrame& arrived, const ChoiceRecord& recorded) noexcept;
 
   [[nodiscard]] graph::TripleBuffer<Estimates>& estimates() noexcept { return estimates_; }
   // The overruns that somebody has to tell the world: the tick group, by CAN.
   [[nodiscard]] OverrunNotes& overrun_notes() noexcept { return notes_; }
   // The tracker, its tokens those of the last frame; null: a method or an overrun's policy made the
   // estimates.
-  [[nodiscard]] const Tracker* tracker() const noexcept {
+  [[nodiscard]] const G* tracker() const noexcept {
     return method_ == nullptr && !overrun_.happened() ? tracker_.get() : nullptr;
   }
   // What the last frame left.
   [[nodiscard]] const Estimates& newest() const noexcept { return *newest_; }
-  [[nodiscard]] std::uint64_t activations() const noexcept { return group_.choice().activation; }
 
  private:
-  void publish(const Estimates& estimates) noexcept;
+  void finish(const ArrivedFrame& arrived) noexcept;
+  void publish() noexcept;
   void answer(const ArrivedFrame& arrived) noexcept;
-  void record(const ArrivedFrame& arrived) noexcept;
+  void record(const ArrivedFrame& arrived) noexcept requires std::same_as<G, Tracker>;
   void tell_transforms(const HeadPose& head) const noexcept;
 
-  std::unique_ptr<Tracker> tracker_ = std::make_unique<Tracker>();
-  graph::RateGroup<Tracker> group_;
+  std::unique_ptr<G> tracker_ = std::make_unique<G>();
+  graph::RateGroup<G> group_;
   std::unique_ptr<FrameMethod> method_;  // null: the tracker
-  const Estimates* newest_;
   graph::TripleBuffer<Estimates> estimates_;
+  // A substitute rests on the last estimates that were in time, which are not copied for it: they
+  // stay as they are in the slot in which they were published. The writer's slot is another one
+  // then, and only publish() gives the writer a slot: this one at the earliest when the next
+  // version has been published, whatever the reader takes meanwhile. Before that they are copied to
+  // `kept_` if the next version is a substitute, since the next overrun in a row needs them again.
+  std::unique_ptr<Estimates> kept_ = std::make_unique<Estimates>();
+  const Estimates* in_time_ = kept_.get();
+  const Estimates* newest_ = kept_.get();
   Clock now_;
-  GroupRunner<Tracker>* runner_;
+  GroupRunner<G>* runner_;
   RecorderLane* lane_;
   DdsSink* dds_ = nullptr;
   bool robot_on_body_;
   Pose T_body_robot_;  // the reference body's
   Duration lost_after_;
   graph::OverrunDecision overrun_;  // of the last frame
-  std::unique_ptr<Estimates> in_time_ = std::make_unique<Estimates>();
-  std::unique_ptr<Estimates> substitute_ = std::make_unique<Estimates>();
   OverrunNotes notes_;
 };
+
+using FrameGroup = FrameGroupOf<Tracker>;
+
+// In frame_group.cpp, once.
+extern template class GroupRunner<Tracker>;
+extern template class GroupRunner<MarkerTracker>;
+extern template class FrameGroupOf<Tracker>;
+extern template class FrameGroupOf<MarkerTracker>;
 
 }  // namespace glint

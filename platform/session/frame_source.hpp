@@ -16,10 +16,13 @@
 
 namespace glint {
 
+struct MarkerFrame;
+
 struct ArrivedFrame {
   Frame frame;  // its pixels stay valid until give_back()
   HeadPose head;
-  int slot = -1;  // the source's own number for the pixels' place
+  int slot = -1;                         // the source's own number for the pixels' place
+  const MarkerFrame* markers = nullptr;  // of a recording without pixels: what was found in them
 };
 
 // The session's clock.

@@ -106,9 +106,27 @@ class GroupRunner {
     return decision;
   }
 
+  // In a replay, in place of the clock: an activation that overran ends after node `last`, or where
+  // that is -1 before the first. settle() has to follow.
+  void run_as(G& graph, const graph::OverrunDecision& recorded, int last) noexcept {
+    by_workers_ = !recorded.happened();
+    if (by_workers_) {
+      run_plain(graph);
+      return;
+    }
+    count(recorded);
+    last_overrun_ = recorded;
+    if (last < 0) return;
+    graph::OverrunDecision ended = recorded;
+    ended.after_node = static_cast<std::uint8_t>(last);
+    graph::NoTrace trace;
+    graph::RecordedBoundary boundary(ended);
+    (void)graph.activate_until(trace, boundary);
+  }
+
   // After the output has left: when this returns, no worker is inside the graph any more.
   void settle(G& graph) noexcept {
-    if (executor_ == nullptr) return;
+    if (executor_ == nullptr || !by_workers_) return;
     executor_->settle(graph);
     for (std::size_t w = 1; w < traces_.size(); ++w) traces_[w]->end_activation();
   }
@@ -164,6 +182,7 @@ class GroupRunner {
   std::vector<std::unique_ptr<NodeTrace>> traces_;
   std::vector<NodeProbe> probes_;
   std::unique_ptr<PlannedExecutor<G>> executor_;
+  bool by_workers_ = true;  // the last activation, where there is more than one
   OverrunCounts counts_;
   graph::OverrunDecision last_overrun_;
 };

@@ -12,7 +12,6 @@ namespace glint {
 struct ReplayOptions {
   int workers = 1;  // 1 or 2: the same bytes
   ReadTolerance tolerance;
-  std::string tum_file;                          // trajectory of the first tool, if not empty
   std::function<void(double seconds)> progress;  // how far into the recording
 };
 

@@ -12,11 +12,10 @@
 #include "platform/rt/page_faults.hpp"
 #include "platform/rt/periodic_loop.hpp"
 #include "platform/rt/real_time_thread.hpp"
+#include "platform/session/release_order.hpp"
 
 namespace glint {
 namespace {
-
-Duration tick_period(const Cell& cell) { return {static_cast<std::int64_t>(1e9 / cell.tick_hz)}; }
 
 bool stopped(const SessionOptions& options) noexcept {
   return options.stop != nullptr && *options.stop;
@@ -88,7 +87,7 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
   const std::uint64_t faults_before = PageFaultCounter::count();
   const auto after_epoch = [epoch](Time monotonic) { return Time{} + (monotonic - epoch); };
 
-  PeriodicLoop loop(epoch, tick_period(cell));
+  PeriodicLoop loop(epoch, tick_period_of(cell));
   WakeUpLog wake_ups(WakeUpLog::k_entries_max);
   const RunPlan& plan = options.plan;
   RealTimeThread frame_thread({"glint-frame", plan.frame.cores[0], plan.frame.priority}, [&] {
@@ -129,7 +128,7 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
   }
   const double all_s = (source.duration() + cell.lost_after).seconds();
   PrintedAboutRobot printed;
-  while (!frames_done || (reached_ns + tick_period(cell).nanoseconds < end_ns && !ends())) {
+  while (!frames_done || (reached_ns + tick_period_of(cell).nanoseconds < end_ns && !ends())) {
     // The source may be behind its time, the ticks are not.
     const double reached_s = static_cast<double>(reached_ns) * 1e-9;
     if (options.progress) {
@@ -158,31 +157,23 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
 
 void run_in_order(const Cell& cell, Time& now, FrameSource& source, SessionGroups& groups,
                   const SessionOptions& options, SessionResult& result) {
-  const Duration period = tick_period(cell);
-  Time next_tick;
-  const auto tick_until = [&](Time limit) {
-    for (; next_tick < limit; next_tick = next_tick + period) {
-      now = next_tick;
-      result.duration_s = (now - Time{}).seconds();
-      if (groups.background() != nullptr) groups.background()->reach(now);
-      groups.tick(static_cast<std::uint64_t>(result.ticks++), next_tick, next_tick);
-    }
-  };
-  ArrivedFrame arrived;
-  Time last;
+  NominalOrder order(cell, source, options.stop);
   PrintedAboutRobot printed;
-  while (!stopped(options) && source.wait(arrived)) {
-    tick_until(arrived.frame.arrival);
-    now = last = arrived.frame.arrival;
+  const auto on_tick = [&](const NextRelease& release) {
+    now = release.nominal;
+    result.duration_s = (now - Time{}).seconds();
+    ++result.ticks;
+    if (groups.background() != nullptr) groups.background()->reach(now);
+    groups.tick(release.tick, now, now);
+  };
+  const auto on_frame = [&](const NextRelease& release) {
+    now = release.nominal;
     groups.reach(now);
-    groups.process(arrived);
-    source.give_back(arrived);
+    groups.process(*release.frame);
     print_about_robot(groups, printed);
-    if (options.progress) {
-      options.progress((now - Time{}).seconds(), source.duration().seconds());
-    }
-  }
-  tick_until(last + cell.lost_after);
+    if (options.progress) options.progress((now - Time{}).seconds(), source.duration().seconds());
+  };
+  run_releases(order, on_frame, on_tick);
 }
 
 }  // namespace glint

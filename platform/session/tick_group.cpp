@@ -20,7 +20,7 @@ TickGroup::TickGroup(const Cell& cell, graph::TripleBuffer<Estimates>& estimates
                      GroupRunner<Output>& runner, OverrunNotes& frame_notes)
     : group_(*output_, k_tick_group),
       now_(std::move(now)),
-      sinks_(sinks),
+      sinks_(std::move(sinks)),
       runner_(&runner),
       frame_notes_(&frame_notes),
       node_(static_cast<unsigned>(cell.can.node)),
@@ -29,7 +29,7 @@ TickGroup::TickGroup(const Cell& cell, graph::TripleBuffer<Estimates>& estimates
       samples_(&output_->output<PoseSamples>()),
       frames_(&output_->output<CanFrames>()),
       unix_offset_ns_(unix_offset_ns),
-      losses_({sinks.can, sinks.dds, sinks.recorder, sinks.files, sinks.losses}),
+      losses_({sinks_.can, sinks_.dds, sinks_.recorder, sinks_.files, sinks_.losses}),
       sent_(latency_entries) {
   configure(cell, *output_);
   output_->latest<Estimates>().bind(estimates);
@@ -38,13 +38,29 @@ TickGroup::TickGroup(const Cell& cell, graph::TripleBuffer<Estimates>& estimates
 }
 
 void TickGroup::tick(std::uint64_t number, Time nominal, Time woken) noexcept {
-  const Now now{nominal, number, unix_offset_ns_};
-  output_->input<Now>() = now;
   (void)group_.release(nominal.nanoseconds);
+  run({nominal, number, unix_offset_ns_}, woken, nullptr);
+}
+
+bool TickGroup::release_as(const ChoiceRecord& recorded) noexcept {
+  return group_.release_as(as_choice(recorded));
+}
+
+void TickGroup::tick_as(std::uint64_t number, const ChoiceRecord& recorded) noexcept {
+  run({recorded.nominal, number, recorded.unix_offset_ns}, recorded.nominal, &recorded.overrun);
+}
+
+void TickGroup::run(const Now& now, Time woken, const graph::OverrunDecision* recorded) noexcept {
+  output_->input<Now>() = now;
   // What PackCan remembers of what it sent: taken back where that does not leave.
   const PackCan remembered = output_->node<PackCan>();
-  overrun_ = runner_->run(*output_,
-                          {group_.choice().activation, number, nominal, woken, carried_sequence()});
+  if (recorded != nullptr) {
+    overrun_ = *recorded;
+    runner_->run_as(*output_, overrun_, overrun_.after_node);
+  } else {
+    overrun_ = runner_->run(
+        *output_, {group_.choice().activation, now.number, now.tick, woken, carried_sequence()});
+  }
   skipped_ = false;
   if (overrun_.happened()) {
     output_->node<PackCan>() = remembered;
@@ -53,7 +69,7 @@ void TickGroup::tick(std::uint64_t number, Time nominal, Time woken) noexcept {
     samples_ = &output_->output<PoseSamples>();
     frames_ = &output_->output<CanFrames>();
   }
-  if (source_ != nullptr && source_->late(nominal) && measures_none()) ++ticks_source_late_;
+  if (source_ != nullptr && source_->late(now.tick) && measures_none()) ++ticks_source_late_;
   losses_.count();
   if (!skipped_) send(now, woken);
   runner_->settle(*output_);
@@ -97,6 +113,7 @@ void TickGroup::offer_samples() noexcept {
     if (sinks_.lane != nullptr) (void)sinks_.lane->offer_output(sample, record);
     if (sinks_.dds != nullptr) (void)sinks_.dds->offer(sample);
     if (sinks_.files != nullptr) sinks_.files->offer(sample, newest);
+    if (sinks_.record) sinks_.record(record);
   }
 }
 

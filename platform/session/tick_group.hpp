@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "graph/rate_group.hpp"
@@ -31,6 +33,8 @@ struct TickSinks {
   RecorderLane* lane = nullptr;
   const Recorder* recorder = nullptr;  // the lane's
   LossCounters* losses = nullptr;      // where they are counted
+  // Each output record; a replay compares it.
+  std::function<void(std::span<const std::uint8_t>)> record{};
 };
 
 class TickGroup {
@@ -43,6 +47,10 @@ class TickGroup {
   // Tick `number` at its nominal time; `woken` is when it really began. Of a tick that was not in
   // time, what the policy says leaves.
   void tick(std::uint64_t number, Time nominal, Time woken) noexcept;
+  // In a replay: takes the versions that the recorded tick read; false: one of them was not
+  // published. Then the tick itself, with the recorded decision in place of the clock's.
+  [[nodiscard]] bool release_as(const ChoiceRecord& recorded) noexcept;
+  void tick_as(std::uint64_t number, const ChoiceRecord& recorded) noexcept;
   // No tick can follow: the node's heartbeat says so.
   void stop_safe() noexcept;
 
@@ -61,6 +69,7 @@ class TickGroup {
   [[nodiscard]] std::string output_sha256() const;
 
  private:
+  void run(const Now& now, Time woken, const graph::OverrunDecision* recorded) noexcept;
   void answer(const Now& now) noexcept;
   void send(const Now& now, Time woken) noexcept;
   void send_poses(Time woken) noexcept;

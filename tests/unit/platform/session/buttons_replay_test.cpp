@@ -1,6 +1,5 @@
 // Buttons pressed while a run goes on: what left of them comes out of its recording again.
-#include <functional>
-#include <span>
+#include <vector>
 
 #include "platform/session/replay.hpp"
 #include "tests/unit/platform/session/buttons_on_the_bus.hpp"
@@ -75,34 +74,17 @@ INSTANTIATE_TEST_SUITE_P(AtEveryLevel, ButtonsReplay,
                          testing::Values("full", "roi", "blobs", "outputs"),
                          [](const auto& level) { return std::string(level.param); });
 
-// A recording at level blobs again, of each message what `keep` leaves of it.
-void copy_recording(const std::string& from, const std::string& to,
-                    const std::function<bool(RecordedMessage&)>& keep) {
-  RecordingReader reader(from);
-  RecordingWriter writer(to, info_of(reader));
-  while (auto message = reader.next()) {
-    if (!keep(*message)) continue;
-    if (const auto* head = std::get_if<HeadPose>(&*message)) writer.write_head_pose(*head);
-    if (const auto* frame = std::get_if<MarkerFrame>(&*message)) writer.write_markers(*frame);
-    if (const auto* choice = std::get_if<ChoiceRecord>(&*message)) writer.write_choice(*choice);
-    if (const auto* output = std::get_if<OutputMessage>(&*message)) {
-      const std::span<const std::uint8_t, k_output_record_bytes> record(output->record);
-      writer.write_output(decode(record).value, record);
-    }
-  }
-}
-
 TEST(ButtonsReplay, HoldsNoneWhereAnOlderRecordingSaysNothingOfThem) {
   const TemporaryFolder folder;
   const SessionResult run = short_run(short_cell(0.5, "blobs"), folder.path());
   const std::string older = folder.path() + "/older.mcap";
-  copy_recording(run.recording_file, older, [](RecordedMessage& message) {
-    if (auto* const choice = std::get_if<ChoiceRecord>(&message);
-        choice != nullptr && choice->group == k_tick_group) {
+  rewrite(run.recording_file, older, [](std::vector<RecordedMessage>& messages) {
+    for (RecordedMessage& message : messages) {
+      auto* const choice = std::get_if<ChoiceRecord>(&message);
+      if (choice == nullptr || choice->group != k_tick_group) continue;
       EXPECT_EQ(choice->version_count, 3);
       choice->version_count = 2;
     }
-    return true;
   });
   expect_same_bytes(older, run);
 }
@@ -111,9 +93,10 @@ TEST(ButtonsReplay, MissesAVersionThatTicksReadAndTheRecordingLacks) {
   const TemporaryFolder folder;
   const SessionResult run = pressed_run(pressed_cell("blobs"), folder.path());
   const std::string without = folder.path() + "/without.mcap";
-  copy_recording(run.recording_file, without, [](RecordedMessage& message) {
-    const auto* const buttons = std::get_if<PenButtonsRecord>(&message);
-    return buttons == nullptr;
+  rewrite(run.recording_file, without, [](std::vector<RecordedMessage>& messages) {
+    std::erase_if(messages, [](const RecordedMessage& message) {
+      return std::holds_alternative<PenButtonsRecord>(message);
+    });
   });
   const ReplayResult result = replay(without, {});
   EXPECT_FALSE(result.agrees());

@@ -1,13 +1,16 @@
 #include "platform/session/replay.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "platform/cells/tool_writer.hpp"
 #include "platform/input_error.hpp"
 #include "platform/record/mcap_format.hpp"
-#include "platform/record/recording_writer.hpp"
 #include "platform/session/choices.hpp"
 #include "tests/unit/platform/session/same_bytes.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
@@ -124,18 +127,14 @@ TEST(Replay, RefusesARecordingWithoutAnOutputRecord) {
   const SessionResult run = short_run(short_cell(0.3, "blobs"), folder.path());
   const std::string file = folder.path() + "/few.mcap";
   for (const bool keep_frames : {true, false}) {
-    {
-      RecordingReader reader(run.recording_file);
-      RecordingWriter writer(file, info_of(reader));
-      while (const auto message = reader.next()) {
-        if (const auto* choice = std::get_if<ChoiceRecord>(&*message);
-            choice != nullptr && (choice->group == k_frame_group) == keep_frames)
-          writer.write_choice(*choice);
-        if (!keep_frames) continue;
-        if (const auto* head = std::get_if<HeadPose>(&*message)) writer.write_head_pose(*head);
-        if (const auto* frame = std::get_if<MarkerFrame>(&*message)) writer.write_markers(*frame);
-      }
-    }
+    rewrite(run.recording_file, file, [keep_frames](std::vector<RecordedMessage>& messages) {
+      std::erase_if(messages, [keep_frames](const RecordedMessage& message) {
+        const auto* const choice = std::get_if<ChoiceRecord>(&message);
+        const bool of_tick = std::holds_alternative<OutputMessage>(message);
+        return of_tick || (choice == nullptr && !keep_frames) ||
+               (choice != nullptr && (choice->group == k_frame_group) != keep_frames);
+      });
+    });
     try {
       (void)replay(file, {});
       FAIL() << "was replayed";
@@ -147,6 +146,97 @@ TEST(Replay, RefusesARecordingWithoutAnOutputRecord) {
     }
   }
 }
+
+// Moves each activation's records: `place` has where those of frame v stand, and those of a tick
+// that read it, which is the n-th that did.
+using Place = std::function<double(bool is_tick, std::uint64_t v, int n)>;
+void move_records(std::vector<RecordedMessage>& messages, const Place& place) {
+  std::vector<std::pair<double, RecordedMessage>> placed;
+  std::uint64_t frames = 0, read = 0;
+  int n = 0;
+  double at = 0;
+  for (RecordedMessage& message : messages) {
+    if (std::holds_alternative<HeadPose>(message)) at = place(false, ++frames, 0);
+    if (const auto* choice = std::get_if<ChoiceRecord>(&message);
+        choice != nullptr && choice->group == k_tick_group) {
+      n = read == choice->versions[0] ? n + 1 : 1;
+      at = place(true, read = choice->versions[0], n);
+    }
+    placed.emplace_back(at, std::move(message));
+  }
+  std::stable_sort(placed.begin(), placed.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < placed.size(); ++i) messages[i] = std::move(placed[i].second);
+}
+
+// A run with two frames in a row and a tick that are not in time.
+class ReplayOfOtherOrder : public testing::TestWithParam<graph::OverrunPolicy> {
+ protected:
+  SessionResult run(double seconds) const {
+    Cell cell = short_cell(seconds, "blobs");
+    cell.overrun.frame = GetParam();
+    SessionOptions options;
+    options.out = folder_.path();
+    for (const std::uint64_t at : {20u, 21u}) {
+      options.injections.push_back({"", 1, false, at, cell.deadlines.frame + Duration{1}});
+    }
+    options.injections.push_back({"", 0, true, 100, cell.deadlines.tick + Duration{1}});
+    return run_simulated(cell, options);
+  }
+  std::string moved(const SessionResult& run, const Place& place) const {
+    std::string file = folder_.path() + "/moved.mcap";
+    rewrite(run.recording_file, file,
+            [&](std::vector<RecordedMessage>& messages) { move_records(messages, place); });
+    return file;
+  }
+  TemporaryFolder folder_;
+};
+
+// The tick thread was interrupted between its output and its record.
+TEST_P(ReplayOfOtherOrder, FindsTheEstimatesOfATickThatStandsBehindLaterFrames) {
+  const SessionResult run = this->run(1.0);
+  for (const int late : {1, 3}) {
+    const ReplayResult result =
+        expect_same_bytes(moved(run,
+                                [late](bool is_tick, std::uint64_t v, int /*n*/) {
+                                  return static_cast<double>(v) + (is_tick ? late + 0.5 : 0);
+                                }),
+                          run);
+    EXPECT_EQ(result.ticks, run.ticks);
+    EXPECT_EQ(result.overruns, 3);
+  }
+}
+
+// The frame thread was: its estimates are published in front of its record.
+TEST_P(ReplayOfOtherOrder, WaitsForTheFrameThatATickRead) {
+  const SessionResult run = this->run(1.0);
+  const ReplayResult result = expect_same_bytes(
+      moved(run,
+            [](bool is_tick, std::uint64_t v, int n) {
+              return static_cast<double>(v) + (!is_tick ? 0 : n <= 2 ? -0.5 : 0.5);
+            }),
+      run);
+  EXPECT_EQ(result.ticks, run.ticks);
+  EXPECT_EQ(result.versions_missing, 0);
+}
+
+TEST_P(ReplayOfOtherOrder, HoldsABoundedNumberOfFramesBack) {
+  const SessionResult run = this->run(2.0);
+  ASSERT_GT(run.frames, 80);
+  const ReplayResult result =
+      replay(moved(run, [](bool is_tick, std::uint64_t v,
+                           int /*n*/) { return static_cast<double>(v) + (is_tick ? 70.5 : 0); }),
+             {});
+  EXPECT_FALSE(result.agrees());
+  EXPECT_EQ(result.frames, run.frames);
+  EXPECT_GT(result.versions_missing, 0);
+  EXPECT_EQ(result.ticks + result.versions_missing, run.ticks);
+}
+
+INSTANTIATE_TEST_SUITE_P(ByPolicy, ReplayOfOtherOrder,
+                         testing::Values(graph::OverrunPolicy::skip_output,
+                                         graph::OverrunPolicy::predict),
+                         [](const auto& policy) { return std::string(name_of(policy.param)); });
 
 TEST(Replay, SeesADifferentSettingAsADifference) {
   TemporaryFolder folder;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "platform/session/release_order.hpp"
 #include "platform/session/session_groups.hpp"
 #include "platform/session/simulated_source.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
@@ -14,7 +15,6 @@ namespace glint {
 inline SessionResult run_with_buttons(const Cell& cell, const std::vector<ButtonEvent>& events,
                                       SessionOptions options) {
   const sim::Simulator simulator(scenario_of(cell));
-  const Duration period{static_cast<std::int64_t>(1e9 / cell.tick_hz)};
   options.plan = plan_by_rule(cell);
   Time now;
   const Clock clock = [&now] { return now; };
@@ -26,23 +26,19 @@ inline SessionResult run_with_buttons(const Cell& cell, const std::vector<Button
       0, BackgroundScene{});
   SessionResult result;
   auto event = events.begin();
-  const auto tick_until = [&](Time limit) {
-    for (Time tick = Time{} + period * result.ticks; tick < limit; tick = tick + period) {
-      now = tick;
-      for (; event != events.end() && event->time <= tick; ++event) sinks.offer_button(*event);
-      groups->tick(static_cast<std::uint32_t>(result.ticks++), tick, tick);
-    }
+  const auto on_tick = [&](const NextRelease& release) {
+    now = release.nominal;
+    for (; event != events.end() && event->time <= now; ++event) sinks.offer_button(*event);
+    groups->tick(release.tick, now, now);
+    ++result.ticks;
   };
-  ArrivedFrame arrived;
-  Time last;
-  while (source.wait(arrived)) {
-    tick_until(arrived.frame.arrival);
-    now = last = arrived.frame.arrival;
+  const auto on_frame = [&](const NextRelease& release) {
+    now = release.nominal;
     groups->reach(now);
-    groups->process(arrived);
-    source.give_back(arrived);
-  }
-  tick_until(last + cell.lost_after);
+    groups->process(*release.frame);
+  };
+  NominalOrder order(cell, source, nullptr);
+  run_releases(order, on_frame, on_tick);
   groups->report(result);
   sinks.close(result);
   return result;

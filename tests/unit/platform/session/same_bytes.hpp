@@ -3,9 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <span>
 #include <string>
+#include <vector>
 
+#include "kernels/wire/output_record.hpp"
 #include "platform/record/recording_reader.hpp"
+#include "platform/record/recording_writer.hpp"
 #include "platform/session/replay.hpp"
 #include "platform/session/session.hpp"
 
@@ -24,8 +29,10 @@ inline ReplayResult expect_same_bytes(const std::string& recording, const Sessio
   return result;
 }
 
-// Of a recording that is to be written again in part.
-inline RecordingInfo info_of(RecordingReader& reader) {
+// Writes a recording at level blobs again, after `change`.
+inline void rewrite(const std::string& from, const std::string& to,
+                    const std::function<void(std::vector<RecordedMessage>&)>& change) {
+  RecordingReader reader(from);
   RecordingInfo info;
   info.level = reader.level();
   info.nominal_tick = reader.nominal_tick();
@@ -33,7 +40,20 @@ inline RecordingInfo info_of(RecordingReader& reader) {
   for (const std::string& name : reader.attachment_names()) {
     info.attachments.push_back(reader.attachment(name));
   }
-  return info;
+  std::vector<RecordedMessage> messages;
+  while (auto message = reader.next()) messages.push_back(std::move(*message));
+  change(messages);
+  RecordingWriter writer(to, info);
+  for (const RecordedMessage& message : messages) {
+    if (const auto* head = std::get_if<HeadPose>(&message)) writer.write_head_pose(*head);
+    if (const auto* frame = std::get_if<MarkerFrame>(&message)) writer.write_markers(*frame);
+    if (const auto* choice = std::get_if<ChoiceRecord>(&message)) writer.write_choice(*choice);
+    if (const auto* held = std::get_if<PenButtonsRecord>(&message)) writer.write_pen_buttons(*held);
+    if (const auto* output = std::get_if<OutputMessage>(&message)) {
+      const std::span<const std::uint8_t, k_output_record_bytes> record(output->record);
+      writer.write_output(decode(record).value, record);
+    }
+  }
 }
 
 }  // namespace glint
