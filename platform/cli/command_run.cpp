@@ -27,8 +27,8 @@
 #include "platform/input_error.hpp"
 #include "platform/programming/key_buttons.hpp"
 #include "platform/programming/key_terminal.hpp"
-#include "platform/session/injection_text.hpp"
-#include "platform/session/source_run.hpp"
+#include "platform/session/node_probe.hpp"
+#include "platform/session/simulated_run.hpp"
 #include "platform/sources/open_source.hpp"
 #include "platform/stop_signals.hpp"
 

@@ -41,6 +41,34 @@ bool wait_until(Time due, const std::atomic<bool>& stop) noexcept {
 
 }  // namespace
 
+BackgroundScene read_background_scene(const Cell& cell, DepthPngReader png) {
+  BackgroundScene scene;
+  if (!cell.mapping) return scene;
+  const MappingSettings& mapping = *cell.mapping;
+  scene.pictures = {read_depth_sequence(mapping.source, png), mapping.period};
+  if (mapping.model.empty()) return scene;
+  scene.model = read_robot_cloud(mapping.model);
+  scene.poses = link_poses(scene.model, mapping.joints, cell.file + ": mapping.joints");
+  return scene;
+}
+
+TrackedCapsules capsules_of(const Estimates& estimates) {
+  TrackedCapsules out;
+  for (int t = 0; t < estimates.tool_count; ++t) {
+    const auto at = static_cast<std::size_t>(t);
+    const Track& track = estimates.tracks[at];
+    if (!track.alive || track.base != ReferenceFrame::world) continue;
+    const Pose& T_world_middle = track.motion.pose;
+    const Vector3 arm = T_world_middle.rotation * estimates.arm_m[at];
+    const double length = arm.norm();
+    const Vector3 back = length > 0 ? Vector3(arm * (-k_held_behind_m / length)) : Vector3::Zero();
+    const Vector3& middle = T_world_middle.translation;
+    out.items[static_cast<std::size_t>(out.count++)] = {middle + arm, middle + back,
+                                                        k_held_radius_m};
+  }
+  return out;
+}
+
 MapSettings map_settings_of(const Cell& cell) {
   MapSettings settings;
   settings.depth.stride = cell.mapping->stride;

@@ -10,24 +10,53 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "graph/latest.hpp"
+#include "kernels/cloud/leave_out_capsules.hpp"
 #include "nodes/mapper.hpp"
+#include "nodes/tokens.hpp"
 #include "platform/cells/cell.hpp"
 #include "platform/dds/dds_sink.hpp"
 #include "platform/record/recorder.hpp"
+#include "platform/robot/robot_cloud.hpp"
 #include "platform/rt/followed_robot.hpp"
 #include "platform/rt/real_time_thread.hpp"
-#include "platform/session/background_scene.hpp"
+#include "platform/session/depth_loop.hpp"
 #include "platform/session/group_runner.hpp"
 #include "platform/session/heard_robot.hpp"
 #include "platform/session/run_plan.hpp"
-#include "platform/session/tracked_capsules.hpp"
 
 namespace glint {
 
 extern template class GroupRunner<Background>;  // in background_group.cpp, once
+
+// What a background looks at and for, read from the files that its cell names.
+struct BackgroundScene {
+  DepthLoop pictures;
+  RobotCloud model;
+  LinkPoses poses;  // of the model's links, at the cell's joints
+};
+
+// Empty where the cell has no [mapping]. Throws InputError naming the file that is missing or
+// wrong; with `png` null a PNG is.
+[[nodiscard]] BackgroundScene read_background_scene(const Cell& cell, DepthPngReader png);
+
+// About a tool's line from its tip through its markers' middle, and the hand behind them.
+inline constexpr double k_held_radius_m = 0.08, k_held_behind_m = 0.15;
+
+// Where the tracked tools and the hands that hold them are: they stay out of the map.
+struct TrackedCapsules {
+  std::array<LeftOut, k_tools_max> items;  // in the world
+  int count = 0;
+  [[nodiscard]] std::span<const LeftOut> all() const {
+    return std::span(items).first(static_cast<std::size_t>(count));
+  }
+};
+
+// Of the tools that are tracked in the world.
+[[nodiscard]] TrackedCapsules capsules_of(const Estimates& estimates);
 
 struct BackgroundCounts {
   std::uint64_t slices = 0;

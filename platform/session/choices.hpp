@@ -1,6 +1,7 @@
 // The rate groups' numbers, and a release as the recording keeps it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "graph/overrun.hpp"
@@ -24,9 +25,31 @@ struct OverrunNote {
 using OverrunNotes = graph::Ring<OverrunNote, 64>;
 
 // What is known of a frame without looking at it; in a run and in its replay alike.
-[[nodiscard]] FrameStamp overrun_stamp(const Frame& frame);
+[[nodiscard]] inline FrameStamp overrun_stamp(const Frame& frame) {
+  return {frame.mid_exposure, frame.arrival, frame.sequence, Reason::none};
+}
 
-[[nodiscard]] ChoiceRecord as_record(const graph::Choice& choice, std::int64_t unix_offset_ns);
-[[nodiscard]] graph::Choice as_choice(const ChoiceRecord& record);
+[[nodiscard]] inline ChoiceRecord as_record(const graph::Choice& choice,
+                                            std::int64_t unix_offset_ns) {
+  ChoiceRecord record;
+  record.group = static_cast<std::uint8_t>(choice.group);
+  record.activation = choice.activation;
+  record.nominal = Time{choice.nominal_ns};
+  record.version_count = static_cast<std::uint8_t>(choice.version_count);
+  std::copy_n(choice.versions.begin(), std::min(choice.version_count, k_recorded_versions),
+              record.versions.begin());
+  record.unix_offset_ns = unix_offset_ns;
+  return record;
+}
+
+[[nodiscard]] inline graph::Choice as_choice(const ChoiceRecord& record) {
+  graph::Choice choice;
+  choice.group = record.group;
+  choice.activation = record.activation;
+  choice.nominal_ns = record.nominal.nanoseconds;
+  choice.version_count = std::min<int>(record.version_count, k_recorded_versions);
+  std::copy_n(record.versions.begin(), choice.version_count, choice.versions.begin());
+  return choice;
+}
 
 }  // namespace glint

@@ -74,28 +74,21 @@ FrameGroupOf<G>::FrameGroupOf(const Cell& cell, graph::TripleBuffer<ToolSet>& to
 }
 
 template <class G>
-void FrameGroupOf<G>::process(const ArrivedFrame& arrived) noexcept {
-  (void)group_.release(arrived.frame.mid_exposure.nanoseconds);
+void FrameGroupOf<G>::process(const ArrivedFrame& arrived, const ChoiceRecord* recorded) noexcept {
+  if (recorded != nullptr) {
+    (void)group_.release_as(as_choice(*recorded));
+  } else {
+    (void)group_.release(arrived.frame.mid_exposure.nanoseconds);
+  }
   if (method_ == nullptr) {
     give(arrived, *tracker_);
-    overrun_ = runner_->run(*tracker_, {group_.choice().activation, arrived.frame.sequence,
-                                        arrived.frame.arrival, now_(), arrived.frame.sequence});
+    const std::uint64_t sequence = arrived.frame.sequence;
+    overrun_ = recorded != nullptr
+                   ? runner_->run_as(*tracker_, recorded->overrun,
+                                     last_node<G>(recorded->overrun.after_node))
+                   : runner_->run(*tracker_, {group_.choice().activation, sequence,
+                                              arrived.frame.arrival, now_(), sequence});
   }
-  finish(arrived);
-}
-
-template <class G>
-void FrameGroupOf<G>::process_as(const ArrivedFrame& arrived,
-                                 const ChoiceRecord& recorded) noexcept {
-  (void)group_.release_as(as_choice(recorded));
-  give(arrived, *tracker_);
-  overrun_ = recorded.overrun;
-  runner_->run_as(*tracker_, overrun_, last_node<G>(overrun_.after_node));
-  finish(arrived);
-}
-
-template <class G>
-void FrameGroupOf<G>::finish(const ArrivedFrame& arrived) noexcept {
   Estimates& slot = estimates_.write_slot();
   newest_ = &slot;
   if (overrun_.happened()) {

@@ -12,12 +12,21 @@
 #include "platform/dds/dds_sink.hpp"
 #include "platform/record/recorder.hpp"
 #include "platform/session/choices.hpp"
-#include "platform/session/frame_method.hpp"
+#include "platform/session/frame_source.hpp"
 #include "platform/session/group_runner.hpp"
 
 namespace glint {
 
 using Clock = std::function<Time()>;
+
+// Another way from a frame to estimates, in the tracker's place: the caller hands it in, so that
+// the groups need none of what it is built from.
+class FrameMethod {
+ public:
+  virtual ~FrameMethod() = default;
+  // What is known after this frame; valid until the next call.
+  [[nodiscard]] virtual const Estimates& process(const ArrivedFrame& arrived) = 0;
+};
 
 // G: Tracker, or MarkerTracker for a recording without pixels.
 template <class G>
@@ -34,11 +43,9 @@ class FrameGroupOf {
   void tell_transforms_to(DdsSink* dds) noexcept { dds_ = dds; }
 
   // Estimates are published before anything is offered: latency first. Of a frame that was not in
-  // time, what the policy says is published.
-  void process(const ArrivedFrame& arrived) noexcept;
-  // The same in a replay: the recorded decision in place of the clock's. The set of tools of the
-  // recorded version is the newest that was published.
-  void process_as(const ArrivedFrame& arrived, const ChoiceRecord& recorded) noexcept;
+  // time, what the policy says is published. In a replay `recorded` decides in place of the clock;
+  // the newest set of tools that was published is the recorded one.
+  void process(const ArrivedFrame& arrived, const ChoiceRecord* recorded = nullptr) noexcept;
 
   [[nodiscard]] graph::TripleBuffer<Estimates>& estimates() noexcept { return estimates_; }
   // The overruns that somebody has to tell the world: the tick group, by CAN.
@@ -52,7 +59,6 @@ class FrameGroupOf {
   [[nodiscard]] const Estimates& newest() const noexcept { return *newest_; }
 
  private:
-  void finish(const ArrivedFrame& arrived) noexcept;
   void publish() noexcept;
   void answer(const ArrivedFrame& arrived) noexcept;
   void record(const ArrivedFrame& arrived) noexcept requires std::same_as<G, Tracker>;

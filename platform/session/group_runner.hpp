@@ -106,22 +106,21 @@ class GroupRunner {
     return decision;
   }
 
-  // In a replay, in place of the clock: an activation that overran ends after node `last`, or where
-  // that is -1 before the first. settle() has to follow.
-  void run_as(G& graph, const graph::OverrunDecision& recorded, int last) noexcept {
+  // In a replay, as recorded: an activation that overran ends after node `last`, or where that is
+  // -1 before the first. settle() has to follow.
+  graph::OverrunDecision run_as(G& graph, graph::OverrunDecision recorded, int last) noexcept {
     by_workers_ = !recorded.happened();
     if (by_workers_) {
       run_plain(graph);
-      return;
+      return recorded;
     }
-    count(recorded);
-    last_overrun_ = recorded;
-    if (last < 0) return;
-    graph::OverrunDecision ended = recorded;
-    ended.after_node = static_cast<std::uint8_t>(last);
+    count(last_overrun_ = recorded);
+    if (last < 0) return last_overrun_;
+    recorded.after_node = static_cast<std::uint8_t>(last);
     graph::NoTrace trace;
-    graph::RecordedBoundary boundary(ended);
+    graph::RecordedBoundary boundary(recorded);
     (void)graph.activate_until(trace, boundary);
+    return last_overrun_;
   }
 
   // After the output has left: when this returns, no worker is inside the graph any more.

@@ -25,7 +25,8 @@ class HeardRobot {
  public:
   HeardRobot() = default;
   // `given`: where the model's links are until joints are heard.
-  HeardRobot(const RobotCloud& model, const LinkPoses& given, Duration lost_after);
+  HeardRobot(const RobotCloud& model, const LinkPoses& given, Duration lost_after)
+      : tree_(model.tree), inputs_(model.inputs), poses_(given), lost_after_(lost_after) {}
 
   // Where the links are, and of which state: 0 as given. The poses stay in their place and are
   // written by update() alone.
@@ -36,7 +37,25 @@ class HeardRobot {
   // Finds the links anew where something new was heard, without memory: k_heard_joints_max names
   // and k_robot_joints_max joints at most, once a picture. The model's points, which are many, are
   // FollowRobot's to pose. Nobody may hold the poses then.
-  void update(graph::TripleBuffer<HeardJoints>& heard) noexcept;
+  void update(graph::TripleBuffer<HeardJoints>& heard) noexcept {
+    const std::size_t count = inputs_.size();
+    if (count == 0 || !heard.sample()) return;
+    const std::span<double> positions = std::span(positions_).first(count);
+    const std::size_t found = positions_of(heard.value(), inputs_, positions);
+    if (found < count) {
+      ++passed_over_;
+      if (lacking_ == k_none) lacking_ = found;
+      return;
+    }
+    const Reason reason = forward_kinematics(tree_, positions, poses_);
+    if (reason != Reason::none) {
+      ++passed_over_;
+      if (unusable_ == Reason::none) unusable_ = reason;
+      return;
+    }
+    ++used_;
+    arrival_ = Time{heard.time_ns()};
+  }
 
   // Whether the links are where the robot's were then, on the clock of the states' arrival: false
   // where joints were heard once, and the last that the poses are of are too old.
@@ -49,7 +68,10 @@ class HeardRobot {
   [[nodiscard]] std::int64_t passed_over() const noexcept { return passed_over_; }
   // The joint that the first of the latter lacked that lacked one; null: none did. Any thread may
   // ask, as for the next.
-  [[nodiscard]] const std::string* lacking() const noexcept;
+  [[nodiscard]] const std::string* lacking() const noexcept {
+    const std::size_t joint = lacking_;
+    return joint == k_none ? nullptr : &inputs_[joint];
+  }
   // Why the first that lacked none could not pose the links; Reason::none: all could.
   [[nodiscard]] Reason unusable() const noexcept { return unusable_; }
 

@@ -1,4 +1,4 @@
-#include "platform/session/injection_text.hpp"
+#include "platform/session/node_probe.hpp"
 
 #include <cstdlib>
 #include <limits>

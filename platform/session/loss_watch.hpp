@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "kernels/units.hpp"
+#include "kernels/wire/node_frames.hpp"
 #include "platform/can/can_sink.hpp"
 #include "platform/dds/dds_sink.hpp"
 #include "platform/record/recorder.hpp"
@@ -25,7 +26,13 @@ struct LossSources {
 
 // CANopen emergency: identifier 0x80 + node, error code FF80 + kind, error register 81, the kind in
 // the place of the tool, the rest 0.
-[[nodiscard]] CanFrame loss_frame(unsigned node, LossKind kind) noexcept;
+[[nodiscard]] inline CanFrame loss_frame(unsigned node, LossKind kind) noexcept {
+  constexpr std::uint8_t k_losses = 0x80;  // of the device's own error codes
+  const auto number = static_cast<std::uint8_t>(kind);
+  CanFrame frame = overrun_frame(node, {number, 0, Reason::none, 0});
+  frame.data[0] = static_cast<std::uint8_t>(k_losses + number);
+  return frame;
+}
 
 class LossWatch {
  public:
@@ -34,10 +41,29 @@ class LossWatch {
   explicit LossWatch(const LossSources& sources) : sources_(sources) {}
 
   // Reads the sinks' counts into the counters. No lock, no heap.
-  void count() noexcept;
+  void count() noexcept {
+    if (sources_.counters == nullptr) return;
+    LossCounters& counters = *sources_.counters;
+    if (sources_.can != nullptr) counters.store(LossKind::can, sources_.can->counts().lost());
+    if (sources_.dds != nullptr) counters.store(LossKind::dds, sources_.dds->counts().lost());
+    if (sources_.recorder != nullptr) {
+      counters.store(LossKind::recording, sources_.recorder->lost());
+    }
+    if (sources_.files != nullptr) counters.store(LossKind::files, sources_.files->lost());
+  }
   // The kind of which more was lost than its last emergency frame reported; from then on that is
   // reported.
-  [[nodiscard]] std::optional<LossKind> take_due(Time tick) noexcept;
+  [[nodiscard]] std::optional<LossKind> take_due(Time tick) noexcept {
+    if (sources_.counters == nullptr) return {};
+    for (const LossKind kind : {LossKind::dds, LossKind::recording, LossKind::files}) {
+      Reported& reported = reported_[static_cast<std::size_t>(kind)];
+      const std::uint64_t lost = sources_.counters->of(kind);
+      if (lost <= reported.lost || tick < reported.next) continue;
+      reported = {lost, tick + k_emergency_gap};
+      return kind;
+    }
+    return {};
+  }
 
  private:
   struct Reported {

@@ -56,6 +56,10 @@ struct Injection {
   bool done = false;
 };
 
+// As it is asked for: "node=FindBlobs,delay_us=200,frame=512" or, of the tick group,
+// "node=PackCan,delay_us=200,tick=40"; copy i of a split is "RoiThreshold#i". Throws InputError.
+[[nodiscard]] Injection injection_of(const std::string& text);
+
 // One for each worker.
 class NodeProbe {
  public:

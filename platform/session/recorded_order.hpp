@@ -5,14 +5,17 @@
 // read it or a later one: all ticks that read older estimates are released by then.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <map>
+#include <utility>
 
-#include "graph/latest.hpp"
 #include "nodes/tokens.hpp"
+#include "platform/record/recording_format.hpp"
 #include "platform/record/recording_reader.hpp"
+#include "platform/session/choices.hpp"
 #include "platform/session/release_order.hpp"
 
 namespace glint {
@@ -43,24 +46,41 @@ class RecordedOrder {
   // released then, and a tick that finds other estimates is counted.
   static constexpr std::size_t k_frames_held_max = 64, k_ticks_held_max = 1024;
 
-  // `robot`: version 1, which no recording holds. `on_output` is called with each recorded output
-  // record in front of the first gap; `progress`, which may be empty, with the time reached.
-  RecordedOrder(RecordingReader& reader, const RobotFrame& robot,
-                std::function<void(OutputMessage&)> on_output,
-                std::function<void(double seconds)> progress);
+  // `on_output` is called with each recorded output record.
+  RecordedOrder(RecordingReader& reader, std::function<void(OutputMessage&)> on_output)
+      : reader_(reader), on_output_(std::move(on_output)) {}
 
-  // False: the recording ends here. What a tick read of the robot and of the buttons is published
-  // by then. Throws InputError.
-  [[nodiscard]] bool next(NextRelease& release);
+  // What ticks read of the robot and of the buttons: published before next() returns the tick.
+  RecordedVersions<RobotFrame> robot;
+  RecordedVersions<PenButtons> buttons;
+
+  // False: the recording ends here. Throws InputError.
+  [[nodiscard]] bool next(NextRelease& release) {
+    while (!tick_is_due() && !frame_is_due()) {
+      if (ended_) return false;
+      read();
+    }
+    if (tick_is_due()) {
+      tick_ = ticks_.front();
+      ticks_.pop_front();
+      robot.publish(tick_.versions[1]);
+      buttons.publish(tick_.versions[2]);
+      // Ticks that were skipped have numbers, too.
+      const auto number = tick_.nominal.nanoseconds / reader_.nominal_tick().nanoseconds;
+      release = {tick_.nominal, nullptr, static_cast<std::uint64_t>(number), &tick_};
+    } else {
+      frame_ = std::move(frames_.front());
+      frames_.pop_front();
+      arrived_ = {frame_.frame.view(), frame_.head, -1, &frame_.markers};
+      release = {frame_.frame.arrival, &arrived_, 0, &frame_.choice};
+    }
+    return true;
+  }
 
   // Messages are missing in front of what was read so far.
   [[nodiscard]] bool has_gap() const noexcept { return gaps_ > 0; }
   // Frames behind a gap that lack their head pose or their choice: they are not released.
-  [[nodiscard]] std::int64_t frames_without_inputs() const noexcept {
-    return frames_without_inputs_;
-  }
-  [[nodiscard]] RecordedVersions<RobotFrame>& robot() noexcept { return robot_; }
-  [[nodiscard]] RecordedVersions<PenButtons>& buttons() noexcept { return buttons_; }
+  [[nodiscard]] std::int64_t frames_without_inputs() const noexcept { return without_inputs_; }
 
  private:
   struct HeldFrame {
@@ -70,36 +90,86 @@ class RecordedOrder {
     ChoiceRecord choice;
   };
 
-  [[nodiscard]] bool tick_is_due() const;
-  [[nodiscard]] bool frame_is_due() const;
-  void read();
-  void hold(FrameMessage frame, MarkerFrame markers);
-  void on(FrameMessage& frame);
-  void on(MarkerFrame& frame);
-  void on(ChoiceRecord& choice);
-  void on(OutputMessage& output);
-  void on(HeadPose& head);
-  void on(RobotFrameRecord& frame);
-  void on(PenButtonsRecord& buttons);
+  [[nodiscard]] bool tick_is_due() const {
+    if (ticks_.empty()) return false;
+    const std::uint64_t read = ticks_.front().versions[0];
+    if (read <= frame_.choice.activation) return true;
+    if (!frames_.empty()) return read < frames_.front().choice.activation;
+    return ended_ || ticks_.size() > k_ticks_held_max;
+  }
+  // Where no tick is due, those that wait read this frame or a later one.
+  [[nodiscard]] bool frame_is_due() const {
+    return !frames_.empty() && (!ticks_.empty() || ended_ || frames_.size() > k_frames_held_max);
+  }
+
+  void read() {
+    auto message = reader_.next();
+    if (reader_.gaps() != gaps_) has_head_ = has_choice_ = false;
+    gaps_ = reader_.gaps();
+    ended_ = !message;
+    if (message) std::visit([this](auto& item) { on(item); }, *message);
+  }
+  void on(HeadPose& head) {
+    head_ = head;
+    has_head_ = true;
+  }
+  void on(ChoiceRecord& choice) {
+    if (choice.group == k_frame_group) {
+      choice_ = choice;
+      has_choice_ = true;
+    } else if (choice.group == k_tick_group) {
+      // Older recordings have no version of the buttons: 0, none was ever held.
+      choice.version_count = 3;
+      ticks_.push_back(choice);
+    }
+  }
+  void on(FrameMessage& frame) {
+    if (keeps_frames(reader_.level())) hold({std::move(frame), {}, {}, {}});
+  }
+  void on(MarkerFrame& markers) {
+    if (keeps_frames(reader_.level())) return;
+    hold({{markers.mid_exposure, markers.arrival, markers.sequence, {}}, markers, {}, {}});
+  }
+  void on(OutputMessage& output) { on_output_(output); }
+  void on(RobotFrameRecord& frame) {
+    robot.add(frame.version, {frame.state, frame.T_world_robot, frame.rms_m, frame.in_reference});
+  }
+  void on(PenButtonsRecord& held) { buttons.add(held.version, {held.held}); }
   void on(DroppedInput& /*input*/) {}  // the frame is there as well
   void on(ButtonEvent& /*event*/) {}   // ticks read what was held by then
 
+  void hold(HeldFrame held) {
+    if (has_gap()) {
+      if (!has_head_ || !has_choice_) {
+        ++without_inputs_;
+        return;
+      }
+      activation_ = std::max(activation_ + 1, choice_.activation) - 1;
+    }
+    // A frame without its choice has the tools of the one before, and was in time.
+    if (choice_.activation != ++activation_) choice_.overrun = {};
+    choice_.activation = activation_;
+    choice_.version_count = 1;
+    choice_.versions[0] = std::max<std::uint64_t>(choice_.versions[0], 1);
+    held.head = head_;
+    held.choice = choice_;
+    frames_.push_back(std::move(held));
+  }
+
   RecordingReader& reader_;
   std::function<void(OutputMessage&)> on_output_;
-  std::function<void(double)> progress_;
-  RecordedVersions<RobotFrame> robot_;
-  RecordedVersions<PenButtons> buttons_;
   std::deque<HeldFrame> frames_;
   std::deque<ChoiceRecord> ticks_;
-  HeldFrame frame_;  // released last
+  HeldFrame frame_;  // released last, as the next two
   ArrivedFrame arrived_;
   ChoiceRecord tick_;
-  HeadPose head_;                                // of the next frame
-  ChoiceRecord frame_choice_;                    // likewise, in front of it; after it, its own
-  std::uint64_t activation_ = 0, released_ = 0;  // of the frame read last; of the one released last
+  HeadPose head_;                             // read last
+  ChoiceRecord choice_;                       // of the frame group, likewise
+  std::uint64_t activation_ = 0;              // of the frame read last
+  bool has_head_ = true, has_choice_ = true;  // since the newest gap
   std::uint64_t gaps_ = 0;
-  bool head_since_gap_ = true, choice_since_gap_ = true, ended_ = false;
-  std::int64_t frames_without_inputs_ = 0;
+  bool ended_ = false;
+  std::int64_t without_inputs_ = 0;
 };
 
 }  // namespace glint

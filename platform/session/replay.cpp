@@ -17,38 +17,18 @@
 namespace glint {
 namespace {
 
-// Compares output records as they are recorded and as they are decided here, each in its order.
-class RecordComparison {
- public:
-  explicit RecordComparison(ReplayResult& result) : result_(result) {}
+// Output records as they were recorded and as they are decided here, each in its order.
+struct RecordComparison {
+  std::deque<std::vector<std::uint8_t>> recorded, decided;
 
-  void on_recorded(std::vector<std::uint8_t> record) {
-    recorded_.push_back(std::move(record));
-    compare();
-  }
-  // `goes_on`: more records may be recorded that are to be compared.
-  void on_decided(std::span<const std::uint8_t> record, bool goes_on) {
-    if (recorded_.empty() && !goes_on) return;
-    decided_.emplace_back(record.begin(), record.end());
-    compare();
-  }
-  // What is decided from here on is compared with nothing.
-  void end() { recorded_.clear(); }
-
- private:
-  void compare() {
-    while (!decided_.empty() && !recorded_.empty()) {
-      if (decided_.front() != recorded_.front() && result_.mismatches++ == 0) {
-        result_.first_mismatch = result_.records_compared;
+  void compare(ReplayResult& result) {
+    for (; !decided.empty() && !recorded.empty(); decided.pop_front(), recorded.pop_front()) {
+      if (decided.front() != recorded.front() && result.mismatches++ == 0) {
+        result.first_mismatch = result.records_compared;
       }
-      ++result_.records_compared;
-      decided_.pop_front();
-      recorded_.pop_front();
+      ++result.records_compared;
     }
   }
-
-  ReplayResult& result_;
-  std::deque<std::vector<std::uint8_t>> decided_, recorded_;
 };
 
 template <class G>
@@ -64,14 +44,14 @@ RunnerSettings<G> runner_settings(int workers) {
 template <class G>
 void decide_again(const Cell& cell, RecordingReader& reader, const ReplayOptions& options,
                   ReplayResult& result) {
-  RecordComparison comparison(result);
-  RecordedOrder order(
-      reader, declared_robot_frame(cell),
-      [&](OutputMessage& output) {
-        ++result.records_recorded;
-        if (!order.has_gap()) comparison.on_recorded(std::move(output.record));
-      },
-      options.progress);
+  RecordComparison comparison;
+  // Behind a gap no record is compared: the tracker lacks frames from there on.
+  RecordedOrder order(reader, [&](OutputMessage& output) {
+    ++result.records_recorded;
+    if (!order.has_gap()) comparison.recorded.push_back(std::move(output.record));
+    comparison.compare(result);
+  });
+  order.robot.add(1, declared_robot_frame(cell));
   Time nominal;
   const Clock now = [&nominal] { return nominal; };
   GroupRunner<G> frame_runner(runner_settings<G>(options.workers));
@@ -80,10 +60,12 @@ void decide_again(const Cell& cell, RecordingReader& reader, const ReplayOptions
   const auto frames = std::make_unique<FrameGroupOf<G>>(cell, tools, now, frame_runner, nullptr);
   TickSinks sinks;
   sinks.record = [&](std::span<const std::uint8_t> record) {
-    comparison.on_decided(record, !order.has_gap());
+    if (order.has_gap() && comparison.recorded.empty()) return;
+    comparison.decided.emplace_back(record.begin(), record.end());
+    comparison.compare(result);
   };
-  const auto ticks = std::make_unique<TickGroup>(cell, frames->estimates(), order.robot().buffer(),
-                                                 order.buttons().buffer(), now, sinks, 0, 1,
+  const auto ticks = std::make_unique<TickGroup>(cell, frames->estimates(), order.robot.buffer(),
+                                                 order.buttons.buffer(), now, sinks, 0, 1,
                                                  tick_runner, frames->overrun_notes());
 
   std::uint64_t tools_published = 0;
@@ -94,18 +76,19 @@ void decide_again(const Cell& cell, RecordingReader& reader, const ReplayOptions
       tools.write_slot() = tools_present(cell.tools, tools_in(version));
       tools.publish(tools_published = version, 0);
     }
-    frames->process_as(*release.frame, *release.recorded);
+    frames->process(*release.frame, release.recorded);
     ++result.frames;
   };
   // Behind a gap a tick goes on with what was there before.
   const auto on_tick = [&](const NextRelease& release) {
     nominal = release.nominal;
+    if (options.progress) options.progress((nominal - Time{}).seconds());
     if (!ticks->release_as(*release.recorded)) {
       if (!order.has_gap()) {
         ++result.versions_missing;
         return;
       }
-      comparison.end();
+      comparison.recorded.clear();
     }
     ticks->tick_as(release.tick, *release.recorded);
     ++result.ticks;

@@ -7,7 +7,7 @@
 #include "nodes/track_tools.hpp"
 #include "platform/cells/cell.hpp"
 #include "platform/seed/seed_tracker.hpp"
-#include "platform/session/frame_method.hpp"
+#include "platform/session/frame_group.hpp"
 
 namespace glint {
 

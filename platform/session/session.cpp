@@ -13,7 +13,6 @@
 #include "platform/rt/machine_check.hpp"
 #include "platform/rt/memory_lock.hpp"
 #include "platform/session/session_groups.hpp"
-#include "platform/session/session_loops.hpp"
 
 namespace glint {
 namespace {

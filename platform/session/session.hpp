@@ -14,7 +14,7 @@
 #include "platform/rt/machine_check.hpp"
 #include "platform/session/accuracy.hpp"
 #include "platform/session/background_group.hpp"
-#include "platform/session/frame_method.hpp"
+#include "platform/session/frame_group.hpp"
 #include "platform/session/frame_source.hpp"
 #include "platform/session/group_runner.hpp"
 #include "platform/session/latency.hpp"

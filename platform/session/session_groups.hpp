@@ -64,6 +64,19 @@ class SessionGroups {
   std::size_t processed_ = 0, tracked_ = 0;
 };
 
+// The loops of a run: every run uses one of the two.
+//
+// Frames when they arrive, ticks and slices by the clock, which starts at `epoch`, each group in a
+// thread of its own. Ticks go on until the last frame's poses are lost, or until the run is
+// stopped.
+void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& groups,
+              const SessionOptions& options, SessionResult& result);
+
+// Frames, ticks and slices in the order of their nominal times, in one thread: the same bytes every
+// time. `now` is the groups' clock.
+void run_in_order(const Cell& cell, Time& now, FrameSource& source, SessionGroups& groups,
+                  const SessionOptions& options, SessionResult& result);
+
 // The trace file's first line.
 [[nodiscard]] std::string trace_header(const Cell& cell, const RunPlan& plan,
                                        std::int64_t epoch_unix_ns);

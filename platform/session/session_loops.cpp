@@ -1,5 +1,3 @@
-#include "platform/session/session_loops.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -13,6 +11,7 @@
 #include "platform/rt/periodic_loop.hpp"
 #include "platform/rt/real_time_thread.hpp"
 #include "platform/session/release_order.hpp"
+#include "platform/session/session_groups.hpp"
 
 namespace glint {
 namespace {

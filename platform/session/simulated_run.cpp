@@ -27,4 +27,10 @@ SessionResult run_simulated(const Cell& cell, sim::Scenario scenario, const Sess
   return run_session(cell, source, with_desktop_parts(given));
 }
 
+SessionResult run_source(const Cell& cell, FrameSource* source, const SessionOptions& options,
+                         Duration frame_time) {
+  if (source == nullptr) return run_simulated(cell, options, frame_time);
+  return run_session(cell, *source, with_desktop_parts(options));
+}
+
 }  // namespace glint

@@ -18,4 +18,8 @@ namespace glint {
 [[nodiscard]] SessionResult run_simulated(const Cell& cell, sim::Scenario scenario,
                                           const SessionOptions& options, Duration frame_time = {});
 
+// On the frames that a cell's [source] names: `source` is open_source()'s, null for the simulator.
+[[nodiscard]] SessionResult run_source(const Cell& cell, FrameSource* source,
+                                       const SessionOptions& options, Duration frame_time = {});
+
 }  // namespace glint

@@ -20,7 +20,7 @@
 #include "platform/session/file_sink.hpp"
 #include "platform/session/held_buttons.hpp"
 #include "platform/session/sink_outcome.hpp"
-#include "platform/session/tool_requests.hpp"
+#include "platform/session/tool_roster.hpp"
 
 namespace glint {
 

@@ -54,13 +54,9 @@ void TickGroup::run(const Now& now, Time woken, const graph::OverrunDecision* re
   output_->input<Now>() = now;
   // What PackCan remembers of what it sent: taken back where that does not leave.
   const PackCan remembered = output_->node<PackCan>();
-  if (recorded != nullptr) {
-    overrun_ = *recorded;
-    runner_->run_as(*output_, overrun_, overrun_.after_node);
-  } else {
-    overrun_ = runner_->run(
-        *output_, {group_.choice().activation, now.number, now.tick, woken, carried_sequence()});
-  }
+  overrun_ = recorded != nullptr ? runner_->run_as(*output_, *recorded, recorded->after_node)
+                                 : runner_->run(*output_, {group_.choice().activation, now.number,
+                                                           now.tick, woken, carried_sequence()});
   skipped_ = false;
   if (overrun_.happened()) {
     output_->node<PackCan>() = remembered;

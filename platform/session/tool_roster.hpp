@@ -4,12 +4,13 @@
 // frame was given, replays every change without holding the sets.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 
 #include "graph/latest.hpp"
 #include "platform/cells/cell.hpp"
-#include "platform/session/tool_requests.hpp"
+#include "platform/cells/tool_changes.hpp"
 
 namespace glint {
 
@@ -22,20 +23,68 @@ namespace glint {
   return version >> 16 == 0 ? k_all_tools : static_cast<ToolsPresent>(version & 0xFFFF);
 }
 
+// Which tools somebody outside a run wants to be there: asked from one thread, taken up by another.
+class ToolRequests {
+ public:
+  // From any thread. Of several about one tool the last counts.
+  void ask(int tool, bool there) noexcept {
+    const std::uint32_t bit = 1u << tool;
+    std::uint32_t before = asked_.load(std::memory_order_relaxed), after = 0;
+    do {
+      const std::uint32_t wanted = there ? before | bit : before & ~bit;
+      after = wanted | bit << k_about;
+    } while (!asked_.compare_exchange_weak(before, after, std::memory_order_relaxed));
+  }
+
+  // What is there now, after what was asked since the last call.
+  [[nodiscard]] ToolsPresent applied_to(ToolsPresent there) noexcept {
+    const std::uint32_t asked = asked_.exchange(0, std::memory_order_relaxed);
+    const auto about = static_cast<ToolsPresent>(asked >> k_about);
+    const auto wanted = static_cast<ToolsPresent>(asked);
+    return static_cast<ToolsPresent>((there & ~about) | (wanted & about));
+  }
+
+ private:
+  static constexpr int k_about = k_tools_max;
+  static_assert(2 * k_tools_max <= 32);
+  std::atomic<std::uint32_t> asked_{0};  // below: wanted; above: which it is about
+};
+
 class ToolRoster {
  public:
   // Both outlive this; `requests` may be null.
-  explicit ToolRoster(const Cell& cell, ToolRequests* requests = nullptr);
+  explicit ToolRoster(const Cell& cell, ToolRequests* requests = nullptr)
+      : cell_(&cell),
+        requests_(requests),
+        planned_(cell.tools_at_start),
+        there_(cell.tools_at_start) {
+    publish(there_, Time{});
+  }
 
   [[nodiscard]] graph::TripleBuffer<ToolSet>& published() noexcept { return published_; }
 
   // Publishes what the cell's changes say of this time and what was asked for, if it is not what
   // holds already. To be called by one thread, not a real-time one: later than the change by as
   // much as it is called. A change of the cell touches the tools that it names, no others.
-  void reach(Time now);
+  void reach(Time now) {
+    ToolsPresent there = there_;
+    for (; next_ < cell_->tool_changes.size() && cell_->tool_changes[next_].at <= now; ++next_) {
+      const ToolsPresent planned = cell_->tool_changes[next_].now_there;
+      const auto named = static_cast<ToolsPresent>(planned ^ planned_);
+      there = static_cast<ToolsPresent>((there & ~named) | (planned & named));
+      planned_ = planned;
+    }
+    if (requests_ != nullptr) there = requests_->applied_to(there);
+    if (there == there_) return;
+    there_ = there;
+    publish(there, now);
+  }
 
  private:
-  void publish(ToolsPresent there, Time now);
+  void publish(ToolsPresent there, Time now) {
+    published_.write_slot() = tools_present(cell_->tools, there);
+    published_.publish(tools_version(++number_, there), now.nanoseconds);
+  }
 
   const Cell* cell_;
   graph::TripleBuffer<ToolSet> published_;

@@ -2,7 +2,7 @@
 #include "graph/describe.hpp"
 #include "platform/budget/export/trace_file.hpp"
 #include "platform/input_error.hpp"
-#include "platform/session/injection_text.hpp"
+#include "platform/session/node_probe.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
 
 namespace glint {

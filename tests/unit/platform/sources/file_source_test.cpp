@@ -8,7 +8,7 @@
 #include <string>
 
 #include "platform/input_error.hpp"
-#include "platform/session/source_run.hpp"
+#include "platform/session/simulated_run.hpp"
 #include "platform/sources/open_source.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
 
