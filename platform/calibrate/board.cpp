@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "platform/calibrate/say.hpp"
 #include "platform/input_error.hpp"
@@ -84,68 +86,116 @@ CameraModel model_of(const cv::Mat& matrix, const cv::Mat& distortion, const cv:
   return model;
 }
 
-struct Views {
-  cv::Size size;
-  std::vector<std::vector<cv::Point2f>> seen;
-  std::vector<std::vector<cv::Point3f>> board;
+// A board that was found.
+struct View {
+  std::vector<cv::Point2f> seen;
+  std::size_t frame = 0;
 };
 
-Views find_boards(const std::vector<std::string>& images, const BoardSettings& settings) {
+struct Views {
+  std::string what;
+  cv::Size size;
+  std::size_t searched = 0;
+  std::vector<View> found;
+};
+
+Views views_of(const std::vector<std::string>& images, const BoardSettings& settings) {
+  Views views{"--images", {}, images.size(), {}};
+  for (const std::string& path : images) {
+    const cv::Mat picture = load(path, views.size);
+    views.size = picture.size();
+    View view;
+    if (find(picture, settings, view.seen)) views.found.push_back(std::move(view));
+  }
+  return views;
+}
+
+cv::Mat reflectivity_of(const Frame& frame) {
+  cv::Mat picture(frame.height(), frame.width(), CV_16U);
+  for (int v = 0; v < picture.rows; ++v) {
+    auto* const row = picture.ptr<std::uint16_t>(v);
+    if (frame.reflectivity_8.empty()) {
+      std::copy_n(frame.reflectivity_16.row(v), picture.cols, row);
+    } else {
+      std::copy_n(frame.reflectivity_8.row(v), picture.cols, row);
+    }
+  }
+  return eight_bits(picture);
+}
+
+Views views_of(FrameSource& source, const std::string& what, const BoardSettings& settings) {
+  Views views{what, {}, 0, {}};
+  std::size_t step = k_board_frame_step;
+  source.start({});
+  ArrivedFrame arrived;
+  for (std::size_t number = 0; source.wait(arrived); ++number) {
+    if (number % step == 0) {
+      ++views.searched;
+      const cv::Mat picture = reflectivity_of(arrived.frame);
+      views.size = picture.size();
+      View view{{}, number};
+      if (find(picture, settings, view.seen)) views.found.push_back(std::move(view));
+    }
+    source.give_back(arrived);
+    if (views.found.size() <= k_board_views_max) continue;
+    step *= 2;
+    std::erase_if(views.found, [&](const View& view) { return view.frame % step != 0; });
+  }
+  return views;
+}
+
+void require_boards(const Views& views, const BoardSettings& settings) {
+  if (views.found.size() >= k_board_images_min) return;
+  throw InputError(views.what + ": a board of " + std::to_string(settings.columns) + " x " +
+                   std::to_string(settings.rows) + " was found in " +
+                   std::to_string(views.found.size()) + " of " + std::to_string(views.searched) +
+                   " pictures; expected at least " + std::to_string(k_board_images_min) +
+                   ": count the inner corners (or circles) of a row and of a column, and show " +
+                   "the whole board");
+}
+
+std::vector<cv::Point3f> board_points(const BoardSettings& settings) {
   std::vector<cv::Point3f> board;
   const auto spacing = static_cast<float>(settings.spacing_m);
   for (int row = 0; row < settings.rows; ++row)
     for (int column = 0; column < settings.columns; ++column)
       board.emplace_back(spacing * static_cast<float>(column), spacing * static_cast<float>(row),
                          0);
-  Views views;
-  for (const std::string& path : images) {
-    const cv::Mat picture = load(path, views.size);
-    views.size = picture.size();
-    std::vector<cv::Point2f> found;
-    if (!find(picture, settings, found)) continue;
-    views.seen.push_back(found);
-    views.board.push_back(board);
-  }
-  if (views.seen.size() >= k_board_images_min) return views;
-  throw InputError("--images: a board of " + std::to_string(settings.columns) + " x " +
-                   std::to_string(settings.rows) + " was found in " +
-                   std::to_string(views.seen.size()) + " of " + std::to_string(images.size()) +
-                   " pictures; expected at least " + std::to_string(k_board_images_min) +
-                   ": count the inner corners (or circles) of a row and of a column, and show " +
-                   "the whole board");
+  return board;
 }
 
-}  // namespace
-
-BoardFit calibrate_board(const std::vector<std::string>& images, const BoardSettings& settings) {
-  const Views views = find_boards(images, settings);
+BoardFit fit_lens(const Views& views, const BoardSettings& settings) {
+  require_boards(views, settings);
+  const std::vector<std::vector<cv::Point3f>> boards(views.found.size(), board_points(settings));
+  std::vector<std::vector<cv::Point2f>> seen;
+  for (const View& view : views.found) seen.push_back(view.seen);
   cv::Mat matrix, distortion;
   std::vector<cv::Mat> rotations, translations;
   const int flags = settings.lens == Lens::rational ? cv::CALIB_RATIONAL_MODEL : 0;
-  cv::calibrateCamera(views.board, views.seen, views.size, matrix, distortion, rotations,
-                      translations, flags);
+  cv::calibrateCamera(boards, seen, views.size, matrix, distortion, rotations, translations, flags);
   BoardFit fit;
   fit.tilt_rad = tilt_of(rotations);
   if (fit.tilt_rad < settings.tilt_min_rad) {
-    throw InputError("--images: the board's normal moved by only " + say_degrees(fit.tilt_rad) +
+    throw InputError(views.what + ": the board's normal moved by only " +
+                     say_degrees(fit.tilt_rad) +
                      " rms, so the focal length stays open; expected at least " +
                      say_degrees(settings.tilt_min_rad) + ": tilt the board to all sides");
   }
   fit.model = model_of(matrix, distortion, views.size, settings.lens);
-  fit.images = static_cast<int>(images.size());
-  fit.images_used = static_cast<int>(views.seen.size());
+  fit.images = static_cast<int>(views.searched);
+  fit.images_used = static_cast<int>(seen.size());
   double sum = 0;
-  for (std::size_t i = 0; i < views.seen.size(); ++i) {
+  for (std::size_t i = 0; i < seen.size(); ++i) {
     std::vector<cv::Point2f> projected;
-    cv::projectPoints(views.board[i], rotations[i], translations[i], matrix, distortion, projected);
+    cv::projectPoints(boards[i], rotations[i], translations[i], matrix, distortion, projected);
     double squares = 0;
     for (std::size_t k = 0; k < projected.size(); ++k) {
-      const cv::Point2f miss = projected[k] - views.seen[i][k];
+      const cv::Point2f miss = projected[k] - seen[i][k];
       const double length = std::hypot(miss.x, miss.y);
       squares += length * length;
       fit.most_px = std::max(fit.most_px, length);
-      const double x = (views.seen[i][k].x + 0.5 - fit.model.cx) / fit.model.fx;
-      const double y = (views.seen[i][k].y + 0.5 - fit.model.cy) / fit.model.fy;
+      const double x = (seen[i][k].x + 0.5 - fit.model.cx) / fit.model.fx;
+      const double y = (seen[i][k].y + 0.5 - fit.model.cy) / fit.model.fy;
       fit.model.field_tangent_max = std::max(fit.model.field_tangent_max, std::hypot(x, y));
     }
     fit.corners += static_cast<int>(projected.size());
@@ -154,6 +204,17 @@ BoardFit calibrate_board(const std::vector<std::string>& images, const BoardSett
   }
   fit.rms_px = std::sqrt(sum / (2.0 * fit.corners));
   return fit;
+}
+
+}  // namespace
+
+BoardFit calibrate_board(const std::vector<std::string>& images, const BoardSettings& settings) {
+  return fit_lens(views_of(images, settings), settings);
+}
+
+BoardFit calibrate_board(FrameSource& source, const std::string& what,
+                         const BoardSettings& settings) {
+  return fit_lens(views_of(source, what, settings), settings);
 }
 
 std::vector<float> ray_table_of(const CameraModel& model) {

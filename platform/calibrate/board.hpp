@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kernels/pose/camera_model.hpp"
+#include "platform/session/frame_source.hpp"
 
 namespace glint {
 
@@ -32,6 +33,13 @@ struct BoardFit {
 // Throws InputError for a picture that cannot be read or has another size, a board that is not
 // found often enough (the wrong number of corners, most likely), or boards that are all parallel.
 [[nodiscard]] BoardFit calibrate_board(const std::vector<std::string>& images,
+                                       const BoardSettings& settings);
+
+// The same from the reflectivity of recorded frames: every k_board_frame_step-th is searched, and
+// so many more are skipped as boards are found that at most k_board_views_max remain, spread over
+// the whole recording. `what` names it. The source is read to its end.
+inline constexpr std::size_t k_board_frame_step = 4, k_board_views_max = 60;
+[[nodiscard]] BoardFit calibrate_board(FrameSource& source, const std::string& what,
                                        const BoardSettings& settings);
 
 // The model's ray at each pixel's centre, zeros where it has none: what a cell's ray_table holds.

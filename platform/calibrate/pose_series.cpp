@@ -1,22 +1,30 @@
 #include "platform/calibrate/pose_series.hpp"
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "nodes/tracker.hpp"
 #include "platform/calibrate/sightings.hpp"
 #include "platform/cells/tool_file.hpp"
 #include "platform/input_error.hpp"
+#include "platform/session/frame_source.hpp"
+#include "platform/session/recorded_frames.hpp"
 #include "platform/session/replay_points.hpp"
 #include "platform/sim/trajectory.hpp"
 
 namespace glint {
 namespace {
 
-Tool named_tool(const std::string& name) {
-  const std::optional<Tool> built_in = built_in_tool(name);
-  return built_in ? *built_in : load_tool(name);
-}
-
 void check(const PoseSource& source) {
+  if (!source.recording.empty()) {
+    if (source.poses.empty() && source.points.empty() && !source.of_tip) return;
+    throw InputError(
+        "calibrate: --recording with --poses, --points or --of-tip; expected it alone");
+  }
   if (source.poses.empty() == source.points.empty()) {
     throw InputError("calibrate: expected either --poses FILE or --points FILE");
   }
@@ -42,8 +50,9 @@ void take_points(const PoseSource& source, PoseSeries& series) {
 constexpr double k_recorded_range_sigma_m = 0.0015;
 
 void take_recording(const PoseSource& source, PoseSeries& series) {
-  const BlobSeries blobs = load_blobs(source.poses, "");
-  series.tool = tool_of(blobs, source.tool);
+  const BlobSeries blobs = recorded_blobs(source.poses, "", source.tool);
+  if (!blobs.failures.empty()) throw InputError(blobs.failures.front());
+  series.tool = blobs.tool;
   const SightingSeries seen = find_tool(blobs, *series.tool, {k_recorded_range_sigma_m});
   if (seen.sightings.empty()) {
     throw InputError(source.poses + ": the tool \"" + series.tool->name.data() + "\" in none of " +
@@ -57,6 +66,31 @@ void take_recording(const PoseSource& source, PoseSeries& series) {
   series.unsolved = seen.unsolved;
 }
 
+void take_frames(const PoseSource& source, PoseSeries& series) {
+  RecordedFrames recorded = open_recorded(source.recording, source.cell_file);
+  const std::size_t tool = select_tool(recorded.cell, source.tool);
+  series.tool = recorded.cell.tools.items[tool];
+  std::vector<StampedPose> in_camera, in_world;
+  TrackedFrames tracked =
+      track_frames(recorded, Search::tracked, [&](const ArrivedFrame&, Tracker& tracker) {
+        const Track& track = tracker.output<Estimates>().tracks[tool];
+        if (!track.seen_now) return;
+        (track.base == ReferenceFrame::world ? in_world : in_camera).push_back(track.newest);
+      });
+  const bool world = in_world.size() >= in_camera.size();
+  series.poses = std::move(world ? in_world : in_camera);
+  series.frame = world ? "world" : "camera";
+  if (series.poses.empty()) {
+    throw InputError(source.recording + ": the tool \"" + series.tool->name.data() +
+                     "\" was tracked in none of " + std::to_string(tracked.frames) +
+                     " frames; expected it in view: `glint inspect --recording` names the cause");
+  }
+  series.begin = series.poses.front().time;
+  for (StampedPose& pose : series.poses) pose.time = Time{(pose.time - series.begin).nanoseconds};
+  series.unsolved = tracked.frames - static_cast<int>(series.poses.size());
+  series.failures = std::move(tracked.failures);
+}
+
 bool is_recording(const std::string& path) {
   return std::filesystem::path(path).extension() == ".mcap";
 }
@@ -66,6 +100,11 @@ bool is_recording(const std::string& path) {
 PoseSeries load_pose_series(const PoseSource& source) {
   check(source);
   PoseSeries series;
+  if (!source.recording.empty()) {
+    series.what = source.recording;
+    take_frames(source, series);
+    return series;
+  }
   if (is_recording(source.poses)) {
     if (source.of_tip) {
       throw InputError("calibrate: --of-tip with " + source.poses +

@@ -1,16 +1,15 @@
-#include <algorithm>
-#include <filesystem>
-#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
 
 #include "nodes/tracker.hpp"
 #include "platform/calibrate/sightings.hpp"
 #include "platform/cells/cell.hpp"
-#include "platform/cells/toml_reader.hpp"
-#include "platform/cells/tool_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/record/recording_reader.hpp"
-#include "platform/session/pipeline.hpp"
 #include "platform/session/recorded_cell.hpp"
+#include "platform/session/recorded_frames.hpp"
+#include "platform/sources/open_source.hpp"
 
 namespace glint {
 namespace {
@@ -42,76 +41,57 @@ BlobFrame frame_of(Time time, const Markers& markers, const Blobs* blobs, const 
   return frame;
 }
 
-// Runs the tracker as the live run did, for the regions it searched are all that was kept.
-class BlobFinder {
- public:
-  BlobFinder(const Cell& cell, BlobSeries& series) : series_(series) {
-    configure(cell, *tracker_);
-    tracker_->latest<ToolSet>().set(cell.tools, 1, 0);
-  }
-  void take(const HeadPose& head) { tracker_->input<HeadPose>() = head; }
-  void take(const FrameMessage& frame) {
-    const Frame view = frame.view();
-    tracker_->input<Frame>() = view;
-    tracker_->activate();
-    if (!tracker_->output<Estimates>().verdict.usable()) return;
-    series_.frames.push_back(frame_of(frame.mid_exposure, tracker_->token<Markers>(),
-                                      &tracker_->token<Blobs>(), series_.camera));
-  }
-  void take(const MarkerFrame& frame) {
-    if (frame.reason != Reason::none) return;
-    series_.frames.push_back(frame_of(frame.mid_exposure, frame.markers, nullptr, series_.camera));
-  }
-  template <class Other>
-  void take(const Other&) {}
-
- private:
-  BlobSeries& series_;
-  std::unique_ptr<Tracker> tracker_ = std::make_unique<Tracker>();
-};
-
-BlobSeries recorded_blobs(const std::string& path) {
-  RecordingReader reader(path);
-  if (reader.level() == RecordingLevel::outputs) {
-    throw InputError(path +
-                     ": recorded at level outputs, which keeps nothing of the frames; "
-                     "expected level blobs, roi or full ([record] level)");
-  }
-  Cell cell = recorded_cell(reader, path);
-  if (reader.level() == RecordingLevel::blobs && cell.camera.depth.bias.range_max_m > 0) {
-    throw InputError(path +
-                     ": recorded at level blobs with a depth bias taken off already; "
-                     "expected level roi or full, or a cell without camera.depth_bias");
-  }
+BlobSeries series_for(Cell& cell, const std::string& path, const std::string& tool) {
   cell.camera.depth.bias = {};
   BlobSeries series;
   series.what = path;
   series.camera = cell.camera;
-  series.brightness = reader.level() != RecordingLevel::blobs;
-  for (int t = 0; t < cell.tools.count; ++t)
-    series.tools.push_back(cell.tools.items[static_cast<std::size_t>(t)]);
-  BlobFinder finder(cell, series);
-  while (const auto message = reader.next())
-    std::visit([&](const auto& one) { finder.take(one); }, *message);
+  series.tool = cell.tools.items[select_tool(cell, tool)];
+  return series;
+}
+
+// Of level blobs: the markers that the run found.
+BlobSeries recorded_markers(RecordingReader& reader, const std::string& path,
+                            const std::string& tool) {
+  Cell cell = recorded_cell(reader, path);
+  if (cell.camera.depth.bias.range_max_m > 0) {
+    throw InputError(path +
+                     ": recorded at level blobs with a depth bias taken off already; "
+                     "expected level roi or full, or a cell without camera.depth_bias");
+  }
+  BlobSeries series = series_for(cell, path, tool);
+  while (const auto message = reader.next()) {
+    const auto* frame = std::get_if<MarkerFrame>(&*message);
+    if (frame == nullptr || frame->reason != Reason::none) continue;
+    series.frames.push_back(frame_of(frame->mid_exposure, frame->markers, nullptr, series.camera));
+  }
   return series;
 }
 
 }  // namespace
 
-BlobSeries load_blobs(const std::string& path, const std::string& cell_file) {
-  if (std::filesystem::path(path).extension() == ".mcap") return recorded_blobs(path);
-  const Cell cell = cell_file.empty() ? default_cell() : load_cell(cell_file);
-  return blobs_from_text(read_text(path), path, cell.camera);
-}
-
-Tool tool_of(const BlobSeries& series, const std::string& name) {
-  const auto named = std::find_if(series.tools.begin(), series.tools.end(),
-                                  [&](const Tool& tool) { return name == tool.name.data(); });
-  if (named != series.tools.end()) return *named;
-  if (name == "pen") return default_pen();
-  if (!name.empty()) return load_tool(name);
-  if (!series.tools.empty()) return series.tools.front();
-  throw InputError(series.what + ": a table of blobs names no tool; expected --tool");
+BlobSeries recorded_blobs(const std::string& path, const std::string& cell_file,
+                          const std::string& tool) {
+  if (kind_at(path) == "recording") {
+    RecordingReader reader(path);
+    if (reader.level() == RecordingLevel::outputs) {
+      throw InputError(path +
+                       ": recorded at level outputs, which keeps nothing of the frames; "
+                       "expected level blobs, roi or full ([record] level)");
+    }
+    if (reader.level() == RecordingLevel::blobs) return recorded_markers(reader, path, tool);
+  }
+  RecordedFrames recorded = open_recorded(path, cell_file);
+  BlobSeries series = series_for(recorded.cell, path, tool);
+  series.brightness = true;
+  // As the live run searched: of level roi no more was kept.
+  TrackedFrames tracked =
+      track_frames(recorded, Search::tracked, [&](const ArrivedFrame& arrived, Tracker& tracker) {
+        series.frames.push_back(frame_of(arrived.frame.mid_exposure, tracker.token<Markers>(),
+                                         &tracker.token<Blobs>(), series.camera));
+      });
+  series.failures = std::move(tracked.failures);
+  return series;
 }
 
 }  // namespace glint

@@ -2,7 +2,7 @@
 // brightness, and the pose that they give.
 #pragma once
 
-#include <span>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,9 +31,10 @@ struct BlobFrame {
 struct BlobSeries {
   std::vector<BlobFrame> frames;
   Camera camera;
-  bool brightness = false;  // the blobs have peaks
-  std::vector<Tool> tools;  // of the recording's cell; none for a table
-  std::string what;         // the file, for messages
+  bool brightness = false;            // the blobs have peaks
+  std::optional<Tool> tool;           // that was looked for
+  std::string what;                   // the file, for messages
+  std::vector<std::string> failures;  // what of it could not be read, a line each
 };
 
 struct SeenMarker {
@@ -62,16 +63,15 @@ struct SightingSeries {
 [[nodiscard]] SightingSeries find_tool(const BlobSeries& series, const Tool& tool,
                                        const SightingSettings& settings);
 
-// A recording (.mcap) of level blobs, roi or full, its markers found anew without any bias taken
-// off; or a table of blobs (CSV) `time_s,x_px,y_px,range_m,peak`, in which the camera of the cell
-// file (empty: the built-in one) saw them. Throws InputError for bad files.
-[[nodiscard]] BlobSeries load_blobs(const std::string& path, const std::string& cell_file);
+// Recorded frames of any kind, or a recording of level blobs: the markers found anew without any
+// bias taken off. The cell file (empty: the recording's own, else the built-in one) and the tool
+// are as open_recorded() and select_tool() have them. Throws InputError for bad files.
+[[nodiscard]] BlobSeries recorded_blobs(const std::string& path, const std::string& cell_file,
+                                        const std::string& tool);
 
-// The table alone. Pixel centres are at integer + 0.5; ranges are to the surface, radial.
+// A table of blobs (CSV) `time_s,x_px,y_px,range_m,peak`, in which this camera saw them. Pixel
+// centres are at integer + 0.5; ranges are to the surface, radial. Throws InputError.
 [[nodiscard]] BlobSeries blobs_from_text(std::string_view text, const std::string& path,
                                          const Camera& camera);
-
-// The one of the recording's tools with this name, or of a tool file; empty: the first recorded.
-[[nodiscard]] Tool tool_of(const BlobSeries& series, const std::string& name);
 
 }  // namespace glint

@@ -36,6 +36,11 @@ std::optional<Tool> built_in_tool(std::string_view name) {
   return std::nullopt;
 }
 
+Tool named_tool(const std::string& name) {
+  const std::optional<Tool> built_in = built_in_tool(name);
+  return built_in ? *built_in : load_tool(name);
+}
+
 std::string stem_of(const std::string& path) { return std::filesystem::path(path).stem().string(); }
 
 void set_name(Tool& tool, const std::string& name, const std::string& place) {

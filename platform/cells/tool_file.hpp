@@ -26,4 +26,7 @@ namespace glint {
 // "pen" or "board" as they are built in; nothing for any other name.
 [[nodiscard]] std::optional<Tool> built_in_tool(std::string_view name);
 
+// The built-in tool of that name, else load_tool(name).
+[[nodiscard]] Tool named_tool(const std::string& name);
+
 }  // namespace glint

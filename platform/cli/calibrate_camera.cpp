@@ -1,20 +1,27 @@
 // glint calibrate camera: a lens, from pictures of a board or from a device's table of rays.
 #include <cstdio>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "platform/calibrate/board.hpp"
 #include "platform/calibrate/lens_fit.hpp"
 #include "platform/calibrate/say.hpp"
 #include "platform/cli/calibrate_commands.hpp"
+#include "platform/cli/output_file.hpp"
 #include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
+#include "platform/sensors/camera.hpp"
 #include "platform/sensors/npy.hpp"
+#include "platform/session/recorded_frames.hpp"
+#include "platform/sources/open_source.hpp"
 
 namespace glint {
 namespace {
 
 struct CameraArguments {
-  std::string ray_table, board = "9x6", pattern = "chessboard", lens = "rational";
+  std::string recording, config, ray_table, board = "9x6", pattern = "chessboard",
+                                            lens = "rational";
   std::vector<std::string> images;
   int width = 0;
   double spacing_mm = 25;
@@ -64,9 +71,31 @@ BoardSettings board_settings(const CameraArguments& arguments) {
   return settings;
 }
 
-int run_images(const CameraArguments& arguments) {
-  const BoardFit fit = calibrate_board(arguments.images, board_settings(arguments));
-  const Figures figures{{"rms_px", fit.rms_px},
+// The lens is yet to be found: any will do to read the frames.
+void put_any_lens(Camera& camera) {
+  if (has_lens(camera)) return;
+  camera.model.lens = Lens::brown;
+  camera.model.fx = camera.model.fy = camera.model.width;
+  camera.model.cx = 0.5 * camera.model.width;
+  camera.model.cy = 0.5 * camera.model.height;
+}
+
+BoardFit fit_of_frames(const CameraArguments& arguments, std::vector<std::string>& failures) {
+  Cell cell = recorded_source_cell(arguments.recording, arguments.config, "");
+  put_any_lens(cell.camera);
+  const std::unique_ptr<FrameSource> source = open_source(cell);
+  BoardFit fit = calibrate_board(*source, arguments.recording, board_settings(arguments));
+  failures = source->report().failures;
+  return fit;
+}
+
+int run_boards(const CameraArguments& arguments) {
+  std::vector<std::string> failures;
+  const BoardFit fit = arguments.recording.empty()
+                           ? calibrate_board(arguments.images, board_settings(arguments))
+                           : fit_of_frames(arguments, failures);
+  const Figures figures{{"source", arguments.recording.empty() ? "--images" : arguments.recording},
+                        {"rms_px", fit.rms_px},
                         {"largest_px", fit.most_px},
                         {"images", fit.images},
                         {"images_used", fit.images_used},
@@ -81,7 +110,7 @@ int run_images(const CameraArguments& arguments) {
        {"camera_rays.npy", npy_float32_bytes({shape, ray_table_of(fit.model)})},
        {"camera.svg",
         residual_plot({"Lens: rms error of a picture", "error [px]", fit.image_rms_px})}});
-  return 0;
+  return report_losses(failures);
 }
 
 }  // namespace
@@ -92,9 +121,12 @@ void add_calibrate_camera(CLI::App& calibrate, int& exit_code) {
   auto arguments = std::make_shared<CameraArguments>();
   command->footer(
       "Examples:\n  glint calibrate camera --images board/*.png --board 9x6 --spacing-mm 25\n"
+      "  glint calibrate camera --recording frames --config cell.toml --board 9x6 --spacing-mm 25\n"
       "  glint calibrate camera --ray-table ahat_lut.npy --json lens.json\n"
+      "--recording: the frames' reflectivity; the cell has their size and bits.\n"
       "From pictures the folder also gets camera_rays.npy, for a cell's camera.ray_table.");
   command->add_option("--images", arguments->images, "pictures of the board (PNG, PGM)");
+  add_recording_options(*command, arguments->recording, arguments->config);
   command->add_option("--board", arguments->board, "inner corners or circles, COLUMNSxROWS")
       ->capture_default_str();
   command->add_option("--spacing-mm", arguments->spacing_mm, "from corner to corner")
@@ -111,10 +143,13 @@ void add_calibrate_camera(CLI::App& calibrate, int& exit_code) {
       ->check(in_range(0, 100000));
   add_output_options(*command, arguments->output);
   command->callback([arguments, &exit_code] {
-    if (arguments->images.empty() == arguments->ray_table.empty()) {
-      throw InputError("calibrate camera: expected either --images or --ray-table FILE");
+    const int given = (arguments->images.empty() ? 0 : 1) + (arguments->ray_table.empty() ? 0 : 1) +
+                      (arguments->recording.empty() ? 0 : 1);
+    if (given != 1) {
+      throw InputError(
+          "calibrate camera: expected one of --images, --recording SOURCE and --ray-table FILE");
     }
-    exit_code = arguments->images.empty() ? run_table(*arguments) : run_images(*arguments);
+    exit_code = arguments->ray_table.empty() ? run_boards(*arguments) : run_table(*arguments);
   });
 }
 

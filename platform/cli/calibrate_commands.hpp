@@ -25,6 +25,8 @@ struct CalibrationOutput {
 
 void add_output_options(CLI::App& command, CalibrationOutput& output);
 void add_pose_options(CLI::App& command, PoseSource& source);
+// --recording SOURCE, and the cell of its camera.
+void add_recording_options(CLI::App& command, std::string& recording, std::string& cell_file);
 
 struct CalibrationFile {
   std::string name;

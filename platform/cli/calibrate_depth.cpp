@@ -4,8 +4,11 @@
 
 #include "platform/calibrate/depth.hpp"
 #include "platform/calibrate/say.hpp"
+#include "platform/cells/toml_reader.hpp"
+#include "platform/cells/tool_file.hpp"
 #include "platform/cli/calibrate_commands.hpp"
 #include "platform/cli/cell_option.hpp"
+#include "platform/cli/output_file.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {
@@ -45,13 +48,26 @@ Figures figures_for(const BlobSeries& series, const Tool& tool, const SightingSe
             {"range_mm", {1e3 * found.bias.range_min_m, 1e3 * found.bias.range_max_m}}}}};
 }
 
+BlobSeries tabled_blobs(const DepthArguments& arguments) {
+  const std::string& path = arguments.samples;
+  BlobSeries series =
+      blobs_from_text(read_text(path), path, cell_or_default(arguments.config).camera);
+  if (arguments.tool.empty()) {
+    throw InputError(path + ": a table of blobs names no tool; expected --tool");
+  }
+  series.tool = named_tool(arguments.tool);
+  return series;
+}
+
 int run_depth(const DepthArguments& arguments) {
   if (arguments.recording.empty() == arguments.samples.empty()) {
     throw InputError("calibrate depth: expected either --recording FILE or --blobs FILE");
   }
-  const BlobSeries series = load_blobs(
-      arguments.recording.empty() ? arguments.samples : arguments.recording, arguments.config);
-  const Tool tool = tool_of(series, arguments.tool);
+  const BlobSeries series =
+      arguments.recording.empty()
+          ? tabled_blobs(arguments)
+          : recorded_blobs(arguments.recording, arguments.config, arguments.tool);
+  const Tool& tool = *series.tool;
   DepthCalibrationSettings settings;
   if (arguments.no_brightness) settings.brightness = Brightness::left_out;
   if (!series.brightness && !arguments.no_brightness) {
@@ -73,7 +89,7 @@ int run_depth(const DepthArguments& arguments) {
                      "\"depth.toml\"\nof markers of this kind alone")},
        {"depth.svg", residual_plot({"Depth: what is left of each marker's range, bias taken off",
                                     "distance [mm]", misses_mm, &found.kept})}});
-  return 0;
+  return report_losses(series.failures);
 }
 
 }  // namespace
@@ -85,16 +101,16 @@ void add_calibrate_depth(CLI::App& calibrate, int& exit_code) {
   command->footer(
       "Examples:\n"
       "  glint calibrate depth --recording out/run.mcap --tool pen --json depth.json\n"
+      "  glint calibrate depth --recording frames --tool probe.toml --config cell.toml\n"
       "  glint calibrate depth --blobs blobs.csv --tool probe.toml --config cell.toml\n"
       "blobs.csv: time_s,x_px,y_px,range_m,peak, one unlabelled blob a row; pixel centres at +\n"
       "0.5, ranges along the ray to the marker's surface. Move the tool through all ranges of its\n"
-      "use and tilt it to and fro. A cell takes the bias by [camera] depth_bias = \"depth.toml\".");
-  command->add_option("--recording", arguments->recording,
-                      "a run of level roi or full, or blobs with --no-brightness (.mcap)");
+      "use and tilt it to and fro. A recording of level blobs needs --no-brightness.\n"
+      "A cell takes the bias by [camera] depth_bias = \"depth.toml\".");
+  add_recording_options(*command, arguments->recording, arguments->config);
   command->add_option("--blobs", arguments->samples, "blobs instead (CSV)");
   command->add_option("--tool", arguments->tool,
                       "the tool (.toml, .rom, .ini, or a recorded tool's name), or pen (built in)");
-  add_cell_option(*command, arguments->config, "cell file of the camera that saw the blobs");
   command->add_flag("--no-brightness", arguments->no_brightness,
                     "leave dim_mm at 0: the bias by range alone");
   add_output_options(*command, arguments->output);

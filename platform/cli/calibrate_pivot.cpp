@@ -1,11 +1,14 @@
 // glint calibrate pivot: the tip of a tool that stands in a dent and is turned about it.
+#include <algorithm>
 #include <memory>
 
 #include "platform/calibrate/pivot.hpp"
 #include "platform/calibrate/say.hpp"
 #include "platform/cells/tool_writer.hpp"
 #include "platform/cli/calibrate_commands.hpp"
+#include "platform/cli/output_file.hpp"
 #include "platform/in_range.hpp"
+#include "platform/input_error.hpp"
 
 namespace glint {
 namespace {
@@ -24,6 +27,7 @@ Vector3 middle_of(const Tool& tool) {
 
 Figures figures_for(const PoseSeries& series, const PivotResult& result) {
   return {{"source", series.what},
+          {"frame", series.frame},
           {"tip_mm", figures_of(result.tip_m, 1e3)},
           {"tip_sigma_mm", 1e3 * result.tip_sigma_m},
           {"tip_covariance_mm2", figures_of(result.tip_covariance_m2, 1e6)},
@@ -41,7 +45,12 @@ Figures figures_for(const PoseSeries& series, const PivotResult& result) {
 }
 
 int run_pivot(const PivotArguments& arguments) {
-  const PoseSeries series = load_pose_series(arguments.source);
+  const PoseSource& source = arguments.source;
+  if (source.poses.empty() && source.points.empty() && source.recording.empty()) {
+    throw InputError(
+        "calibrate pivot: expected one of --poses FILE, --points FILE and --recording SOURCE");
+  }
+  const PoseSeries series = load_pose_series(source);
   PivotSettings settings;
   settings.stop_sigma_m = 1e-3 * arguments.sigma_mm;
   if (series.tool) settings.centre_m = middle_of(*series.tool);
@@ -62,7 +71,7 @@ int run_pivot(const PivotArguments& arguments) {
     files.push_back({file_name_of(tool) + ".toml", tool_toml_text(tool, from)});
   }
   finish_calibration(arguments.output, figures, files);
-  return result.sigma_reached ? 0 : 1;
+  return std::max(report_losses(series.failures), result.sigma_reached ? 0 : 1);
 }
 
 }  // namespace
@@ -75,9 +84,13 @@ void add_calibrate_pivot(CLI::App& calibrate, int& exit_code) {
       "Examples:\n"
       "  glint calibrate pivot --poses out/tip.tum --of-tip --tool pen.toml --sigma-mm 0.1\n"
       "  glint calibrate pivot --points markers.csv --tool probe.toml --json pivot.json\n"
+      "  glint calibrate pivot --recording frames --config cell.toml --tool probe.toml\n"
+      "--recording: the poses are in the world where most frames have a head pose, else in the\n"
+      "camera's frame, which then must not move; `frame` in the table.\n"
       "With --tool the folder also gets NAME.toml, the tool with its new tip, for a cell's tools.\n"
       "Ends with 1 where --sigma-mm is not reached.");
   add_pose_options(*command, arguments->source);
+  add_recording_options(*command, arguments->source.recording, arguments->source.cell_file);
   command
       ->add_option("--sigma-mm", arguments->sigma_mm,
                    "stop as soon as the tip is known this well; 0: use every pose")

@@ -1,13 +1,10 @@
 #include "platform/cli/cell_option.hpp"
 
 #include <cstdio>
-#include <filesystem>
 #include <string>
 
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
-#include "platform/session/recorded_cell.hpp"
-#include "platform/sources/open_source.hpp"
 
 namespace glint {
 namespace {
@@ -36,44 +33,6 @@ void add_cell_check(CLI::App& app) {
 
 Cell cell_or_default(const std::string& file) {
   return file.empty() ? default_cell() : load_cell(file);
-}
-
-namespace {
-
-std::string kind_of(const std::string& source, const std::string& stated) {
-  if (source.empty() || !stated.empty()) return stated;
-  const std::string kind = kind_at(source);
-  if (!kind.empty()) return kind;
-  if (!std::filesystem::is_directory(source)) return "recording";  // whose reader names the fault
-  throw InputError(source +
-                   ": no recorded frames in this folder; expected frames.csv, .mcap files, or "
-                   "\"Depth AHaT.tar\" of StreamRecorder");
-}
-
-}  // namespace
-
-Cell recorded_source_cell(const std::string& source, const std::string& config,
-                          const std::string& stated, ReadTolerance tolerance) {
-  const std::string kind = kind_of(source, stated);
-  Cell cell;
-  if (kind == "recording" && config.empty() && !source.empty()) {
-    RecordingReader reader(source, tolerance);
-    cell = recorded_cell(reader, source);
-    cell.source = {};
-  } else {
-    cell = cell_or_default(config);
-  }
-  if (!source.empty()) {
-    cell.source.kind = kind;
-    cell.source.path = source;
-    cell.source.place = (config.empty() ? source : config) + ": source";
-  }
-  if (cell.source.kind == "simulator") {
-    throw InputError(
-        "neither a source nor a [source] in the cell; expected recorded frames: a recording, a "
-        "bag, a folder with frames.csv or a headset's capture");
-  }
-  return cell;
 }
 
 }  // namespace glint

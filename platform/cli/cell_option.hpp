@@ -5,7 +5,6 @@
 #include <string>
 
 #include "platform/cells/cell.hpp"
-#include "platform/record/recording_reader.hpp"
 
 namespace glint {
 
@@ -18,11 +17,5 @@ void add_cell_check(CLI::App& app);
 
 // The built-in cell for an empty name. Throws InputError as load_cell.
 [[nodiscard]] Cell cell_or_default(const std::string& file);
-
-// A cell whose [source] is recorded frames: `source` where it is given, of this kind or else by
-// what is there. Without a cell file a recording's own cell holds. Throws InputError: nothing
-// recorded.
-[[nodiscard]] Cell recorded_source_cell(const std::string& source, const std::string& config,
-                                        const std::string& kind, ReadTolerance tolerance = {});
 
 }  // namespace glint

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "platform/cli/calibrate_commands.hpp"
+#include "platform/cli/cell_option.hpp"
 #include "platform/cli/commands.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/printable.hpp"
@@ -24,6 +25,14 @@ void add_pose_options(CLI::App& command, PoseSource& source) {
   command.add_option("--tool", source.tool, "the tool (.toml, .rom, .ini), or pen (built in)");
   command.add_flag("--of-tip", source.of_tip,
                    "the poses are of the tool's tip, as in a run's tip.tum");
+}
+
+void add_recording_options(CLI::App& command, std::string& recording, std::string& cell_file) {
+  command.add_option("--recording", recording,
+                     "recorded frames instead: a recording, a bag, a folder or a headset's "
+                     "capture, as `glint track` reads them");
+  add_cell_option(command, cell_file,
+                  "cell file of the camera; default: the recording's own, else the built-in cell");
 }
 
 void finish_calibration(const CalibrationOutput& output, const Figures& figures,

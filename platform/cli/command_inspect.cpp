@@ -25,6 +25,7 @@
 #include "platform/sensors/frame_files.hpp"
 #include "platform/session/diagnosis.hpp"
 #include "platform/session/pipeline.hpp"
+#include "platform/session/recorded_frames.hpp"
 #include "platform/sources/open_source.hpp"
 
 namespace glint {
@@ -128,9 +129,7 @@ void put_overrides(const InspectArguments& arguments, Cell& cell) {
     if (cell.tools.count == k_tools_max) {
       throw InputError("--tool " + file + ": expected at most " + std::to_string(k_tools_max));
     }
-    const std::optional<Tool> built_in = built_in_tool(file);
-    cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] =
-        built_in ? *built_in : load_tool(file);
+    cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] = named_tool(file);
   }
 }
 

@@ -28,6 +28,7 @@
 #include "platform/programming/key_buttons.hpp"
 #include "platform/programming/key_terminal.hpp"
 #include "platform/session/node_probe.hpp"
+#include "platform/session/recorded_frames.hpp"
 #include "platform/session/simulated_run.hpp"
 #include "platform/sources/open_source.hpp"
 #include "platform/stop_signals.hpp"

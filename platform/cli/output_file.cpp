@@ -3,11 +3,15 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstddef>
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
 
 #include "platform/input_error.hpp"
-#include "platform/part_file.hpp"
 
 namespace glint {
 
@@ -26,6 +30,57 @@ void write_text(const std::string& path, const std::string& text) {
   make_folder_of(path);
   if (const std::string reason = write_whole_file(path, text); !reason.empty()) {
     throw InputError(path + ": cannot be written: " + reason + "; expected a place for a file");
+  }
+}
+
+int report_losses(const std::vector<std::string>& failures) {
+  std::fflush(stdout);
+  for (const std::string& line : failures) {
+    std::fprintf(stderr, "glint: %s\n", one_line(line).c_str());
+  }
+  return failures.empty() ? 0 : 1;
+}
+
+GrowingText::GrowingText(const std::string& path)
+    : path_(path), in_place_(is_written_in_place(path)) {
+  make_folder_of(path);
+  part_ =
+      in_place_ ? PartFile{path, ::open(path.c_str(), O_WRONLY | O_CLOEXEC)} : open_part_file(path);
+  if (part_.descriptor < 0) fail();
+}
+
+GrowingText::~GrowingText() {
+  if (part_.descriptor < 0) return;
+  ::close(part_.descriptor);
+  if (!in_place_) ::unlink(part_.path.c_str());
+}
+
+void GrowingText::fail() const {
+  throw InputError(path_ + ": cannot be written: " + std::generic_category().message(errno) +
+                   "; expected a place for a file");
+}
+
+void GrowingText::write_out() {
+  if (!write_all(part_.descriptor, waiting_)) fail();
+  waiting_.clear();
+}
+
+void GrowingText::add(std::string_view line) {
+  constexpr std::size_t k_waiting_max = std::size_t{64} << 10;
+  waiting_.append(line) += '\n';
+  if (waiting_.size() >= k_waiting_max) write_out();
+}
+
+void GrowingText::finish() {
+  write_out();
+  const bool closed = ::close(std::exchange(part_.descriptor, -1)) == 0;
+  if (in_place_) {
+    if (!closed) fail();
+  } else if (!closed || std::rename(part_.path.c_str(), path_.c_str()) != 0) {
+    const int error = errno;
+    ::unlink(part_.path.c_str());
+    errno = error;
+    fail();
   }
 }
 

@@ -1,7 +1,9 @@
 #include "platform/record/trajectory_files.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 
 #include "platform/record/bytes.hpp"
 
@@ -81,6 +83,43 @@ void put_pose_fields(Row& row, const PoseSample& sample) {
 
 }  // namespace
 
+std::string tum_line(Time time, const Pose& pose) {
+  std::string line;
+  put(line, time);
+  for (int i = 0; i < 3; ++i) put(line += ' ', pose.translation[i]);
+  for (int i = 0; i < 4; ++i) put(line += ' ', pose.rotation.coeffs()[i]);  // x,y,z,w
+  return line;
+}
+
+std::string points_line(Time time, const Vector3& point_m) {
+  std::string line;
+  Row row(line);
+  row << time;
+  for (int i = 0; i < 3; ++i) row << point_m[i];
+  return line;
+}
+
+std::string frame_pose_heading() {
+  return "time_s,sequence,tool,state,reason,frame,marker_mask,rms_m,x_m,y_m,z_m,qx,qy,qz,qw,"
+         "sigma_x_m,sigma_y_m,sigma_z_m,sigma_rx_rad,sigma_ry_rad,sigma_rz_rad";
+}
+
+std::string frame_pose_line(const FramePose& pose) {
+  std::string line;
+  Row row(line);
+  row << pose.time << pose.sequence << pose.tool << name_in(k_state_names, pose.state)
+      << name_of(pose.reason);
+  if (pose.state != TrackState::measured) {
+    constexpr std::size_t k_fields = 1 + 1 + 1 + 3 + 4 + 6;
+    return line.append(k_fields, ',');
+  }
+  row << name_in(k_frame_names, pose.frame) << std::uint64_t{pose.marker_mask} << pose.rms_m;
+  for (int i = 0; i < 3; ++i) row << pose.pose.translation[i];
+  for (int i = 0; i < 4; ++i) row << pose.pose.rotation.coeffs()[i];  // x,y,z,w
+  for (int i = 0; i < 6; ++i) row << std::sqrt(std::max(0.0, pose.covariance(i, i)));
+  return line;
+}
+
 void TrajectoryLines::flush() {
   failed_ = failed_ || !file_.append({bytes_of(waiting_)});
   if (failed_) lines_lost_ += lines_waiting_;
@@ -109,11 +148,7 @@ TumFile::TumFile(const std::string& path, std::uint8_t tool) : file_(path), tool
 
 void TumFile::write(const PoseSample& sample) {
   if (sample.tool != tool_ || !sample.has_pose()) return;
-  std::string line;
-  put(line, sample.tick);
-  for (int i = 0; i < 3; ++i) put(line += ' ', sample.pose.translation[i]);
-  for (int i = 0; i < 4; ++i) put(line += ' ', sample.pose.rotation.coeffs()[i]);  // x,y,z,w
-  file_.add(line);
+  file_.add(tum_line(sample.tick, sample.pose));
 }
 
 CsvFile::CsvFile(const std::string& path) : file_(path) { file_.add(csv_heading()); }

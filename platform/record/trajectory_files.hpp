@@ -14,6 +14,30 @@
 
 namespace glint {
 
+// `t x y z qx qy qz qw` as TUM text has it, without a newline; seconds and metres.
+[[nodiscard]] std::string tum_line(Time time, const Pose& pose);
+
+// A marker's place as points_csv.hpp reads it.
+inline constexpr std::string_view k_points_heading = "time_s,x_m,y_m,z_m";
+[[nodiscard]] std::string points_line(Time time, const Vector3& point_m);
+
+// What the frame graph made of one tool in one frame.
+struct FramePose {
+  Time time;  // mid-exposure
+  std::uint64_t sequence = 0;
+  std::string_view tool;
+  TrackState state = TrackState::none;
+  Reason reason = Reason::none;  // why there is no pose
+  // Of a measured tool; otherwise their fields are empty.
+  ReferenceFrame frame = ReferenceFrame::camera;
+  std::uint8_t marker_mask = 0;
+  double rms_m = 0;  // of the fit
+  Pose pose;
+  Matrix6 covariance = Matrix6::Zero();  // of the pose's origin and rotation, about frame's axes
+};
+[[nodiscard]] std::string frame_pose_heading();
+[[nodiscard]] std::string frame_pose_line(const FramePose& pose);
+
 // Lines of text on their way to a file.
 class TrajectoryLines {
  public:

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
-#include <optional>
 
 #include "kernels/pose/correspond.hpp"
 #include "platform/cells/tool_file.hpp"
@@ -39,8 +38,7 @@ PointPose pose_of(const LabeledFrame& frame, const PathChoice& choice, const Too
 
 PointsResult replay_points(const std::string& points_file, const std::string& tool_file) {
   const std::vector<PointFrame> frames = load_points(points_file);
-  const std::optional<Tool> built_in = built_in_tool(tool_file);
-  const Tool tool = as_points(built_in ? *built_in : load_tool(tool_file));
+  const Tool tool = as_points(named_tool(tool_file));
   const CorrespondSettings settings = settings_for_points();
   const auto scratch = std::make_unique<CorrespondScratch>();
   const auto found = std::make_unique<Labelings>();

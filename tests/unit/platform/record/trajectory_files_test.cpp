@@ -42,6 +42,30 @@ TEST(TumFile, HoldsTheTicksOfItsToolThatHaveAPose) {
             "-0.000000001 0 -0.25 1.5 0.5 -0.5 0.5 0.5\n");
 }
 
+TEST(FramePoseLine, HasAValueUnderEveryHeadingOfAMeasuredTool) {
+  const auto commas = [](const std::string& line) {
+    return std::count(line.begin(), line.end(), ',');
+  };
+  FramePose pose;
+  pose.time = {1'700'000'000'123'456'789};
+  pose.sequence = 7;
+  pose.tool = "pen";
+  pose.state = TrackState::measured;
+  pose.frame = ReferenceFrame::world;
+  pose.marker_mask = 31;
+  pose.rms_m = 0.0005;
+  pose.pose.translation = {0.1, -0.25, 1e-7};
+  pose.covariance.diagonal() << 4, 9, 16, 0.25, 1, 0;
+  EXPECT_EQ(frame_pose_line(pose),
+            "1700000000.123456789,7,pen,measured,none,world,31,5e-04,0.1,-0.25,1e-07,0,0,0,1,"
+            "2,3,4,0.5,1,0");
+  EXPECT_EQ(commas(frame_pose_line(pose)), commas(frame_pose_heading()));
+  pose.state = TrackState::lost;
+  pose.reason = Reason::bad_fit;
+  EXPECT_TRUE(frame_pose_line(pose).starts_with("1700000000.123456789,7,pen,lost,bad_fit,,"));
+  EXPECT_EQ(commas(frame_pose_line(pose)), commas(frame_pose_heading()));
+}
+
 TEST(CsvFile, HasAValueUnderEveryHeading) {
   const TemporaryFolder folder;
   const std::string path = folder.file("out.csv");
