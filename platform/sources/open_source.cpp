@@ -15,6 +15,7 @@
 #include "platform/sources/file_source.hpp"
 #include "platform/sources/folder_frames.hpp"
 #include "platform/sources/hl2ss_frames.hpp"
+#include "platform/sources/open_live_source.hpp"
 #include "platform/sources/recording_frames.hpp"
 #include "platform/sources/rosbag_frames.hpp"
 #include "platform/sources/stream_recorder_frames.hpp"
@@ -123,22 +124,16 @@ std::unique_ptr<FrameSource> open_source(Cell& cell, ReadTolerance tolerance, Li
     require_lens(cell);
     return nullptr;
   }
+  if (auto opened = open_live_source(cell, live)) return opened;
   if (source.path.empty()) {
-    throw InputError(source.place + ".path: none; expected the file, folder or socket of the " +
+    throw InputError(source.place + ".path: none; expected the file or folder of the " +
                      printable(source.kind));
-  }
-  if (source.kind == "shm") {
-    if (!cell.realtime) {
-      throw InputError(source.place + ".kind: shm is live; expected a run in real time");
-    }
-    require_lens(cell);
-    return std::make_unique<ShmSource>(source.path, cell.camera, live);
   }
   const auto kind = std::find_if(k_kinds.begin(), k_kinds.end(),
                                  [&](const SourceKind& one) { return one.name == source.kind; });
   if (kind == k_kinds.end()) {
     throw InputError(source.place + ".kind: \"" + printable(source.kind) +
-                     "\"; expected simulator, shm, " + recorded_kinds());
+                     "\"; expected simulator, " + live_kinds() + ", " + recorded_kinds());
   }
   Opened reader = kind->open(cell, tolerance);
   if (!names_lens(cell)) {

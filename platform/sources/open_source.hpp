@@ -7,7 +7,7 @@
 #include "platform/cells/cell.hpp"
 #include "platform/record/recording_reader.hpp"
 #include "platform/session/frame_source.hpp"
-#include "platform/sources/shm_source.hpp"
+#include "platform/sources/live_source.hpp"
 
 namespace glint {
 

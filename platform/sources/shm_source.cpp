@@ -18,14 +18,11 @@
 #include "platform/input_error.hpp"
 #include "platform/rt/clock.hpp"
 #include "platform/sources/glint_frames.h"
-#include "platform/sources/head_pose_check.hpp"
 
 namespace glint {
 namespace {
 
-constexpr std::size_t k_waiting_frames = 8;  // frames that wait for the tracker
-constexpr int k_poll_ms = 50;                // until the end of a run is noticed
-constexpr std::uint32_t k_slots_max = 64;    // of a producer
+constexpr std::uint32_t k_slots_max = 64;  // of a producer
 
 constexpr std::int64_t k_stamp_max_ns = 4'000'000'000'000'000'000;  // differences of two fit
 
@@ -122,19 +119,7 @@ struct ShmSource::Producer {
 };
 
 ShmSource::ShmSource(const std::string& path, const Camera& camera, LiveSettings settings)
-    : path_(path), camera_(camera), settings_(settings), slots_(k_waiting_frames) {
-  const auto pixels = static_cast<std::size_t>(camera_.model.width) *
-                      static_cast<std::size_t>(camera_.model.height);
-  for (Slot& slot : slots_) {
-    slot.pixels.width = camera_.model.width;
-    slot.pixels.height = camera_.model.height;
-    slot.pixels.depth.resize(pixels);
-    if (camera_.reflectivity_bits == 8) {
-      slot.pixels.reflectivity_8.resize(pixels);
-    } else {
-      slot.pixels.reflectivity_16.resize(pixels);
-    }
-  }
+    : LiveSource(camera, settings), path_(path) {
   const sockaddr_un address = address_of(path_);
   remove_stale(path_, address);
   Descriptor listener = seqpacket();
@@ -157,20 +142,12 @@ void ShmSource::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-void ShmSource::start(const SourceClock& clock) {
-  if (!clock.live) {
-    throw InputError(path_ + ": a live source; expected a run in real time");
-  }
-  clock_ = clock;
-  started_ = true;
-}
-
 void ShmSource::run() noexcept {
   std::optional<Producer> producer;
   while (!stop_) {
     pollfd waited[2] = {{listener_, POLLIN, 0},
                         {producer ? producer->socket.get() : -1, POLLIN, 0}};
-    if (::poll(waited, 2, k_poll_ms) <= 0) continue;
+    if (::poll(waited, 2, static_cast<int>(k_live_poll.nanoseconds / 1'000'000)) <= 0) continue;
     if (waited[1].revents != 0) read_message(producer);
     if (waited[0].revents != 0) accept_producer(producer);
   }
@@ -221,9 +198,9 @@ void ShmSource::read_message(std::optional<Producer>& producer) {
   const auto refuse = [&](const std::string& why) {
     std::snprintf(reply.refused, sizeof reply.refused, "%s", why.c_str());
   };
-  const auto width = static_cast<std::uint32_t>(camera_.model.width);
-  const auto height = static_cast<std::uint32_t>(camera_.model.height);
-  const auto bits = static_cast<std::uint32_t>(camera_.reflectivity_bits);
+  const auto width = static_cast<std::uint32_t>(camera().model.width);
+  const auto height = static_cast<std::uint32_t>(camera().model.height);
+  const auto bits = static_cast<std::uint32_t>(camera().reflectivity_bits);
   const std::uint64_t planes = std::uint64_t{width} * height * (bits == 8 ? 3 : 4);
   struct stat state {};
   if (got != static_cast<ssize_t>(sizeof hello) ||
@@ -232,7 +209,7 @@ void ShmSource::read_message(std::optional<Producer>& producer) {
   } else if (hello.width != width || hello.height != height || hello.reflectivity_bits != bits) {
     refuse(std::to_string(hello.width) + " x " + std::to_string(hello.height) + " pixels of " +
            std::to_string(hello.reflectivity_bits) + " bits; expected " + std::to_string(width) +
-           " x " + std::to_string(height) + " of " + std::to_string(bits) + " (" + camera_.name +
+           " x " + std::to_string(height) + " of " + std::to_string(bits) + " (" + camera().name +
            ")");
   } else if (hello.slots == 0 || hello.slots > k_slots_max || hello.slot_bytes % 8 != 0 ||
              hello.slot_bytes < GLINT_FRAMES_HEAD + planes ||
@@ -259,11 +236,7 @@ void ShmSource::read_message(std::optional<Producer>& producer) {
     return;
   }
   ++connected_;
-  if (map_) {  // another process may have another clock
-    clock_refused_ += map_->refused();
-    clock_restarts_ += map_->restarts();
-  }
-  map_.emplace(camera_.transport + Duration{camera_.exposure.nanoseconds / 2});
+  restart_clock();
   newest_stamp_ = {INT64_MIN};
 }
 
@@ -292,100 +265,42 @@ void ShmSource::take_frame(Producer& producer, const void* message) {
     ++malformed_;
     return;
   }
-  const bool room = written_ - given_back_ < k_waiting_frames;
-  Slot& slot = slots_[written_ % k_waiting_frames];
-  const bool whole = room && copy_pixels(producer, frame.slot, slot);
+  Slot* const slot = room();
+  const bool whole = slot != nullptr && copy_pixels(producer, frame.slot, *slot);
   (void)::send(producer.socket.get(), &frame.slot, sizeof frame.slot, MSG_NOSIGNAL);
   if (producer.sequence && frame.sequence > *producer.sequence) {
     skipped_ += frame.sequence - *producer.sequence - 1;
   }
   producer.sequence = frame.sequence;
   const Time stamp{frame.stamp_ns};
-  if (stamp <= newest_stamp_ && newest_stamp_ - stamp < ClockMap::k_step) {
-    ++backward_;
-    return;
-  }
-  newest_stamp_ = stamp;
-  const std::optional<Time> mapped = map_->map(stamp, arrival);
-  if (!started_ || !mapped) return;
-  if (!room) {
-    ++dropped_;
-    return;
-  }
+  if (!ascends(stamp, newest_stamp_)) return;
+  const std::optional<Time> exposure = exposure_of(stamp, arrival);
+  if (!exposure) return;
+  if (slot == nullptr) return drop();
   if (!whole) {
     ++torn_;
     return;
   }
-  slot.arrival = session_time(arrival);
-  slot.mid_exposure = session_time(*mapped);
-  if (slot.mid_exposure < Time{}) return;  // exposed before the session began
-  if (slot.mid_exposure <= newest_exposure_) {
-    ++backward_;
-    return;
-  }
-  newest_exposure_ = slot.mid_exposure;
-  slot.head = HeadPose{};
-  slot.head.valid = frame.has_pose != 0;
+  HeadPose head;
+  head.valid = frame.has_pose != 0;
   const double* const p = frame.pose;
-  slot.head.T_world_camera = {Quaternion(p[6], p[3], p[4], p[5]), Vector3(p[0], p[1], p[2])};
-  if (!slot.head.valid) slot.head = HeadPose{};
-  const bool stated = slot.head.valid;
-  check_head_pose(slot.head);
-  without_pose_ += stated ? 0 : 1;
-  poses_refused_ += stated && !slot.head.valid ? 1 : 0;
-  slot.head.time = slot.mid_exposure;
-  ++written_;
-  is_read_.post();
-}
-
-bool ShmSource::wait(ArrivedFrame& arrived) {
-  for (;;) {
-    if (settings_.stop != nullptr && *settings_.stop) return false;
-    const Time now = monotonic_now();
-    if (settings_.duration > Duration{} && session_time(now) >= Time{} + settings_.duration) {
-      return false;
-    }
-    if (is_read_.wait_until(now + milliseconds(k_poll_ms))) break;
-  }
-  const std::uint64_t number = delivered_++;
-  const Slot& slot = slots_[number % k_waiting_frames];
-  arrived.frame = slot.pixels.view(slot.mid_exposure, slot.arrival, number);
-  arrived.head = slot.head;
-  arrived.slot = static_cast<int>(number % k_waiting_frames);
-  return true;
-}
-
-void ShmSource::give_back(const ArrivedFrame& /*arrived*/) noexcept { ++given_back_; }
-
-double ShmSource::delivered_part() const noexcept {
-  if (settings_.duration <= Duration{} || !started_) return 0;
-  return std::min(
-      1.0, (session_time(monotonic_now()) - Time{}).seconds() / settings_.duration.seconds());
+  head.T_world_camera = {Quaternion(p[6], p[3], p[4], p[5]), Vector3(p[0], p[1], p[2])};
+  publish(*exposure, arrival, head);
 }
 
 SourceReport ShmSource::report() {
   stop();
   SourceReport report;
   report.text = "shm " + path_ + (connected_ == 0 ? ": no producer connected" : "");
-  const std::uint64_t clock_refused = clock_refused_ + (map_ ? map_->refused() : 0);
-  const std::uint64_t clock_restarts = clock_restarts_ + (map_ ? map_->restarts() : 0);
-  const auto clock_us = map_ ? map_->uncertainty().nanoseconds / 1000 : 0;
   report.counts = {{"producers_connected", connected_},
                    {"producers_refused", refused_},
                    {"messages_malformed", malformed_},
                    {"frames_torn", torn_},
-                   {"frames_dropped", dropped_},
-                   {"frames_skipped_by_producer", skipped_},
-                   {"stamps_doubled_or_backward", backward_},
-                   {"stamps_refused", clock_refused},
-                   {"clock_restarts", clock_restarts},
-                   {"clock_uncertainty_us", static_cast<std::uint64_t>(clock_us)},
-                   {"frames_without_head_pose", without_pose_},
-                   {"head_poses_refused", poses_refused_}};
+                   {"frames_skipped_by_producer", skipped_}};
+  add_to(report);
   const auto add = [&](std::uint64_t count, const std::string& text) {
     if (count > 0) report.failures.push_back(std::to_string(count) + text);
   };
-  add(dropped_, " frames dropped: the tracker was slower than the producer");
   add(torn_, " frames were written while they were read");
   add(malformed_, " messages of no known kind");
   add(refused_, " producers refused, the first: " + first_refusal_);

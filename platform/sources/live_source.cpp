@@ -1,0 +1,123 @@
+#include "platform/sources/live_source.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "platform/input_error.hpp"
+#include "platform/rt/clock.hpp"
+#include "platform/sources/head_pose_check.hpp"
+
+namespace glint {
+
+LiveSource::LiveSource(const Camera& camera, LiveSettings settings)
+    : camera_(camera), settings_(settings), slots_(k_live_frames) {
+  const auto pixels = static_cast<std::size_t>(camera_.model.width) *
+                      static_cast<std::size_t>(camera_.model.height);
+  for (Slot& slot : slots_) {
+    slot.pixels.width = camera_.model.width;
+    slot.pixels.height = camera_.model.height;
+    slot.pixels.depth.resize(pixels);
+    if (camera_.reflectivity_bits == 8) {
+      slot.pixels.reflectivity_8.resize(pixels);
+    } else {
+      slot.pixels.reflectivity_16.resize(pixels);
+    }
+  }
+  restart_clock();
+}
+
+void LiveSource::start(const SourceClock& clock) {
+  if (!clock.live) throw InputError("source: live frames; expected a run in real time");
+  clock_ = clock;
+  started_ = true;
+}
+
+bool LiveSource::wait(ArrivedFrame& arrived) {
+  if (settings_.frames > 0 && delivered_ == static_cast<std::uint64_t>(settings_.frames)) {
+    return false;
+  }
+  for (;;) {
+    if (stopped()) return false;
+    const Time now = monotonic_now();
+    if (settings_.duration > Duration{} && session_time(now) >= Time{} + settings_.duration) {
+      return false;
+    }
+    if (is_read_.wait_until(now + k_live_poll)) break;
+  }
+  const std::uint64_t number = delivered_++;
+  const Slot& slot = slots_[number % k_live_frames];
+  arrived.frame = slot.pixels.view(slot.mid_exposure, slot.arrival, number);
+  arrived.head = slot.head;
+  arrived.slot = static_cast<int>(number % k_live_frames);
+  return true;
+}
+
+double LiveSource::delivered_part() const noexcept {
+  if (settings_.duration <= Duration{} || !started_) return 0;
+  return std::min(
+      1.0, (session_time(monotonic_now()) - Time{}).seconds() / settings_.duration.seconds());
+}
+
+void LiveSource::restart_clock() {
+  if (map_) {
+    clock_refused_ += map_->refused();
+    clock_restarts_ += map_->restarts();
+  }
+  map_.emplace(camera_.transport + Duration{camera_.exposure.nanoseconds / 2});
+}
+
+bool LiveSource::ascends(Time stamp, Time& newest) {
+  if (stamp <= newest && newest - stamp < ClockMap::k_step) {
+    ++backward_;
+    return false;
+  }
+  newest = stamp;
+  return true;
+}
+
+std::optional<Time> LiveSource::exposure_of(Time stamp, Time arrival) {
+  const std::optional<Time> mapped = map_->map(stamp, arrival);
+  if (!started_ || !mapped || *mapped < clock_.epoch) return std::nullopt;
+  const Time exposure = session_time(*mapped);
+  if (exposure <= newest_exposure_) {
+    ++backward_;
+    return std::nullopt;
+  }
+  newest_exposure_ = exposure;
+  return exposure;
+}
+
+LiveSource::Slot* LiveSource::room() {
+  return written_ - given_back_ < k_live_frames ? &slots_[written_ % k_live_frames] : nullptr;
+}
+
+void LiveSource::publish(Time mid_exposure, Time arrival, const HeadPose& head) {
+  Slot& slot = slots_[written_ % k_live_frames];
+  slot.mid_exposure = mid_exposure;
+  slot.arrival = session_time(arrival);
+  slot.head = head.valid ? head : HeadPose{};
+  check_head_pose(slot.head);
+  without_pose_ += head.valid ? 0 : 1;
+  poses_refused_ += head.valid && !slot.head.valid ? 1 : 0;
+  slot.head.time = mid_exposure;
+  ++written_;
+  is_read_.post();
+}
+
+void LiveSource::add_to(SourceReport& report) const {
+  report.counts.insert(
+      report.counts.end(),
+      {{"frames_dropped", dropped_},
+       {"stamps_doubled_or_backward", backward_},
+       {"stamps_refused", clock_refused_ + map_->refused()},
+       {"clock_restarts", clock_restarts_ + map_->restarts()},
+       {"clock_uncertainty_us", static_cast<std::uint64_t>(map_->uncertainty().nanoseconds / 1000)},
+       {"frames_without_head_pose", without_pose_},
+       {"head_poses_refused", poses_refused_}});
+  if (dropped_ > 0) {
+    report.failures.push_back(std::to_string(dropped_) +
+                              " frames dropped: the tracker was slower than the producer");
+  }
+}
+
+}  // namespace glint
