@@ -1,6 +1,8 @@
 #include "platform/dds/participant.hpp"
 
+#include <map>
 #include <memory>
+#include <mutex>
 
 #include "platform/dds/network.hpp"
 #include "platform/input_error.hpp"
@@ -53,6 +55,41 @@ dds_entity_t topic_of(dds_entity_t participant, const TopicType& type, const std
 
 }  // namespace
 
+// A domain as this process has it, until its last participant leaves.
+struct Participant::Domain {
+  Domain(dds_domainid_t id, const std::string& text)
+      : configuration(text), entity(dds_create_domain(id, text.c_str())) {}
+  ~Domain() {
+    if (entity > 0) dds_delete(entity);
+  }
+  Domain(const Domain&) = delete;
+  Domain& operator=(const Domain&) = delete;
+  std::string configuration;
+  dds_entity_t entity;
+};
+
+// Cyclone has one configuration for a domain.
+std::shared_ptr<Participant::Domain> Participant::domain_of(const DdsSettings& settings) {
+  static std::mutex one_opens;
+  static std::map<int, std::weak_ptr<Domain>> open;
+  const std::lock_guard lock(one_opens);
+  const std::string configuration = cyclone_configuration(settings);
+  const std::string where = "dds.domain: domain " + std::to_string(settings.domain) +
+                            " on interface " + settings.interface;
+  std::shared_ptr<Domain> domain = open[settings.domain].lock();
+  if (domain != nullptr && domain->configuration != configuration) {
+    throw InputError(where + ": this process is in it by another; expected the same for both");
+  }
+  if (domain != nullptr) return domain;
+  domain = std::make_shared<Domain>(static_cast<dds_domainid_t>(settings.domain), configuration);
+  if (domain->entity < 0) {
+    throw InputError(where + ": " + dds_strretcode(-domain->entity) +
+                     "; expected one that this process has not yet opened");
+  }
+  open[settings.domain] = domain;
+  return domain;
+}
+
 Participant::Participant(const DdsSettings& settings) {
   if (settings.domain < 0 || settings.domain > k_domain_max) {
     throw InputError("dds.domain: found " + std::to_string(settings.domain) +
@@ -60,12 +97,7 @@ Participant::Participant(const DdsSettings& settings) {
   }
   require_network_interface(settings.interface);
   const auto id = static_cast<dds_domainid_t>(settings.domain);
-  domain_ = dds_create_domain(id, cyclone_configuration(settings).c_str());
-  if (domain_ < 0) {
-    throw InputError("dds.domain: domain " + std::to_string(settings.domain) + " on interface " +
-                     settings.interface + ": " + dds_strretcode(-domain_) +
-                     "; expected one that this process has not yet opened");
-  }
+  domain_ = domain_of(settings);
   // rmw_cyclonedds shows only participants that say where their security enclave is.
   constexpr std::string_view enclave = "enclave=/;";
   Qos qos(dds_create_qos());
@@ -73,14 +105,13 @@ Participant::Participant(const DdsSettings& settings) {
   participant_ = dds_create_participant(id, qos.get(), nullptr);
   if (participant_ < 0) {
     const int code = -participant_;
-    dds_delete(domain_);
     throw InputError("dds: cannot join domain " + std::to_string(settings.domain) +
                      " on interface " + settings.interface + ": " + dds_strretcode(code) +
                      "; expected free UDP ports and an interface that can send");
   }
 }
 
-Participant::~Participant() { dds_delete(domain_); }
+Participant::~Participant() { dds_delete(participant_); }
 
 dds_entity_t Participant::writer(const TopicType& type, const std::string& topic,
                                  const Quality& quality) {
@@ -94,6 +125,7 @@ dds_entity_t Participant::writer(const TopicType& type, const std::string& topic
 dds_entity_t Participant::reader(const TopicType& type, const std::string& topic,
                                  const Quality& quality) {
   const Qos qos = qos_of(type, quality);
+  dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PROCESS);
   return checked(
       dds_create_reader(participant_, topic_of(participant_, type, topic), qos.get(), nullptr),
       "reader of " + topic);

@@ -3,6 +3,7 @@
 
 #include <dds/dds.h>
 
+#include <memory>
 #include <string>
 
 #include "platform/dds/dds_settings.hpp"
@@ -28,21 +29,25 @@ struct Quality {
 
 class Participant {
  public:
-  // Throws MissingDevice (network interface) or InputError (settings; the domain is already open in
-  // this process; the network refuses).
+  // Several of one process may join the same domain. Throws MissingDevice (network interface) or
+  // InputError (settings; this process is in the domain by another interface; the network refuses).
   explicit Participant(const DdsSettings& settings);
-  ~Participant();  // leaves the domain, and every endpoint with it
+  ~Participant();  // leaves the domain with every endpoint of its own
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
   // Both throw std::runtime_error, which no setting should be able to cause. XCDR1 alone is offered
-  // and asked for; endpoints carry their type hash as ROS 2's do.
+  // and asked for; endpoints carry their type hash as ROS 2's do. A reader reads no writer of this
+  // process.
   dds_entity_t writer(const TopicType& type, const std::string& topic, const Quality& quality);
   dds_entity_t reader(const TopicType& type, const std::string& topic, const Quality& quality);
   dds_entity_t waitset();
 
  private:
-  dds_entity_t domain_ = 0;
+  struct Domain;
+  [[nodiscard]] static std::shared_ptr<Domain> domain_of(const DdsSettings& settings);
+
+  std::shared_ptr<Domain> domain_;
   dds_entity_t participant_ = 0;
 };
 

@@ -1,5 +1,7 @@
 #include "platform/dds/topic_names.hpp"
 
+#include <algorithm>
+
 namespace glint {
 namespace {
 
@@ -15,6 +17,15 @@ std::string ros_name(std::string_view text) {
   std::string name;
   for (const char c : text) name += is_word(c) ? c : '_';
   return name.empty() || is_digit(name.front()) ? "tool_" + name : name;
+}
+
+std::string dds_topic(std::string_view ros_topic) {
+  std::string name = "rt";
+  if (!ros_topic.starts_with('/')) name += '/';
+  name += ros_topic;
+  const bool valid =
+      std::all_of(name.begin(), name.end(), [](char c) { return is_word(c) || c == '/'; });
+  return valid && !name.ends_with('/') ? name : "";
 }
 
 std::string topic_under(std::string_view prefix, std::string_view name) {

@@ -24,6 +24,9 @@ inline constexpr const char* k_tf_topic = "rt/tf";
 inline constexpr const char* k_tf_static_topic = "rt/tf_static";
 inline constexpr const char* k_diagnostics_topic = "rt/diagnostics";
 
+// A ROS topic's name in DDS: "/ir/image" is "rt/ir/image". Empty: no name of a topic.
+[[nodiscard]] std::string dds_topic(std::string_view ros_topic);
+
 // Under a prefix as tools' topics are: rt/PREFIX/NAME.
 [[nodiscard]] std::string topic_under(std::string_view prefix, std::string_view name);
 inline constexpr const char* k_map_points_name = "map_points";

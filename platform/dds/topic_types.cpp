@@ -15,6 +15,14 @@ TopicType path_type() {
   return {&nav_msgs_msg_dds__Path__desc,
           "1957a5bb3cee5da65c4e52e52b65a93df227efce4c20f8458b36e73066ca334b"};
 }
+TopicType image_type() {
+  return {&sensor_msgs_msg_dds__Image__desc,
+          "d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47"};
+}
+TopicType camera_info_type() {
+  return {&sensor_msgs_msg_dds__CameraInfo__desc,
+          "b3dfd68ff46c9d56c80fd3bd4ed22c7a4ddce8c8348f2f59c299e73118e7e275"};
+}
 TopicType joint_state_type() {
   return {&sensor_msgs_msg_dds__JointState__desc,
           "a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e"};

@@ -19,6 +19,8 @@ using BoolMessage = std_msgs_msg_dds__Bool_;
 [[nodiscard]] TopicType cloud_type();
 [[nodiscard]] TopicType octomap_type();
 [[nodiscard]] TopicType path_type();
+[[nodiscard]] TopicType image_type();
+[[nodiscard]] TopicType camera_info_type();
 [[nodiscard]] TopicType joint_state_type();
 [[nodiscard]] TopicType text_type();
 [[nodiscard]] TopicType bool_type();

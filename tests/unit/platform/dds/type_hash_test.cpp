@@ -50,6 +50,15 @@ Definitions ros_definitions() {
       {"sensor_msgs/PointCloud2",
        "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\n"
        "bool is_bigendian\nuint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense"},
+      {"sensor_msgs/Image",
+       "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\n"
+       "uint8 is_bigendian\nuint32 step\nuint8[] data"},
+      {"sensor_msgs/RegionOfInterest",
+       "uint32 x_offset\nuint32 y_offset\nuint32 height\nuint32 width\nbool do_rectify"},
+      {"sensor_msgs/CameraInfo",
+       "std_msgs/Header header\nuint32 height\nuint32 width\nstring distortion_model\n"
+       "double[] d\ndouble[9] k\ndouble[9] r\ndouble[12] p\nuint32 binning_x\n"
+       "uint32 binning_y\nsensor_msgs/RegionOfInterest roi"},
       {"sensor_msgs/JointState",
        "std_msgs/Header header\nstring[] name\ndouble[] position\ndouble[] velocity\n"
        "double[] effort"},
@@ -125,6 +134,8 @@ TEST(TypeHashes, AreThoseOfTheMessageDefinitions) {
   EXPECT_EQ(cloud_type().type_hash, rihs01("sensor_msgs/PointCloud2"));
   EXPECT_EQ(octomap_type().type_hash, rihs01("octomap_msgs/Octomap"));
   EXPECT_EQ(path_type().type_hash, rihs01("nav_msgs/Path"));
+  EXPECT_EQ(image_type().type_hash, rihs01("sensor_msgs/Image"));
+  EXPECT_EQ(camera_info_type().type_hash, rihs01("sensor_msgs/CameraInfo"));
   EXPECT_EQ(joint_state_type().type_hash, rihs01("sensor_msgs/JointState"));
   EXPECT_EQ(text_type().type_hash, rihs01("std_msgs/String"));
   EXPECT_EQ(bool_type().type_hash, rihs01("std_msgs/Bool"));
