@@ -61,19 +61,34 @@ void CellParser::read_source(const toml::table* table) {
   cell.source.camera_info_topic = reader.text("camera_info_topic", "");
   cell.source.pose_topic = reader.text("pose_topic", "");
   cell.source.world_frame = reader.text("world_frame", "");
+  if (table->contains("domain")) {
+    cell.source.domain = static_cast<int>(reader.integer("domain", 0, 0, 232));
+  }
+  cell.source.reliable = reader.boolean("reliable", false);
   cell.source.place = cell.file + ":" + std::to_string(reader.line_of("kind")) + ": source";
   reader.done();
-  const auto of_kind = [&](const char* kind, std::initializer_list<const char*> keys) {
+  const auto of_kinds = [&](std::initializer_list<const char*> kinds,
+                            std::initializer_list<const char*> keys) {
+    std::string names;
+    for (const char* kind : kinds) {
+      if (cell.source.kind == kind) return;
+      names += (names.empty() ? "" : " or ") + std::string(kind);
+    }
     for (const char* key : keys) {
-      if (cell.source.kind == kind || !table->contains(key)) continue;
+      if (!table->contains(key)) continue;
       throw InputError(cell.file + ":" + std::to_string(reader.line_of(key)) + ": source." + key +
-                       ": of a source of kind " + kind + "; expected no such key for " +
+                       ": of a source of kind " + names + "; expected no such key for " +
                        printable(cell.source.kind));
     }
   };
-  of_kind("hl2ss_file", {"calibration"});
-  of_kind("rosbag",
-          {"reflectivity_topic", "depth_topic", "camera_info_topic", "pose_topic", "world_frame"});
+  of_kinds({"hl2ss_file"}, {"calibration"});
+  of_kinds({"dds", "rosbag"},
+           {"reflectivity_topic", "depth_topic", "camera_info_topic", "pose_topic", "world_frame"});
+  of_kinds({"dds"}, {"domain", "reliable"});
+  if (cell.source.kind == "dds" && table->contains("path")) {
+    throw InputError(cell.file + ":" + std::to_string(reader.line_of("path")) +
+                     ": source.path: dds has none; expected its topics");
+  }
 }
 
 void CellParser::read_simulator(const toml::table* table) {

@@ -63,8 +63,10 @@ struct SourceSettings {
   std::string path;                // its file or folder
   std::string place;               // where the file names it, for messages
   std::string calibration;         // hl2ss_file: its calibration; empty: no head pose
-  // rosbag; empty: chosen by what the bag has, and no pose topic.
+  // dds and rosbag; empty: chosen by what the bag has, and no pose topic.
   std::string reflectivity_topic, depth_topic, camera_info_topic, pose_topic, world_frame;
+  std::optional<int> domain;  // dds; nothing: the one of [dds]
+  bool reliable = false;      // dds: asks publishers to repeat what is lost
 };
 
 // Where simulated frames come from; everything else about the simulator has one declared default.

@@ -30,6 +30,7 @@
 #include "platform/session/node_probe.hpp"
 #include "platform/session/recorded_frames.hpp"
 #include "platform/session/simulated_run.hpp"
+#include "platform/sources/open_live_source.hpp"
 #include "platform/sources/open_source.hpp"
 #include "platform/stop_signals.hpp"
 
@@ -169,6 +170,9 @@ void add_run(CLI::App& app, int& exit_code) {
       "Examples:\n  glint run --out out --json out/summary.json\n"
       "  glint run --config my_cell.toml --can socketcan:can0\n"
       "  glint run --keys && glint path out/run.mcap --csv path.csv\n"
+      "Frames are those of the cell's [source]: the simulator's, live ones (" +
+      live_kinds() +
+      ")\nor recorded ones (platform/sources/README.md).\n"
       "Tools that this sensor cannot tell apart are refused; of those that it may confuse, and of\n"
       "a tool's markers that may pass for others of its own, the table warns: `this cell`.");
   add_common(*command, *arguments);

@@ -89,9 +89,11 @@ class CdrReader {
       return std::bit_cast<Number>(reader_.number<typename UnsignedOfSize<sizeof(Number)>::Type>());
     }
   }
-  std::string get_text() {
+  std::string get_text() { return std::string(get_text_view()); }
+  // Borrowed from the message.
+  std::string_view get_text_view() {
     const auto taken = reader_.take(get<std::uint32_t>());
-    return {taken.begin(), taken.empty() ? taken.end() : taken.end() - 1};
+    return {reinterpret_cast<const char*>(taken.data()), taken.empty() ? 0 : taken.size() - 1};
   }
   std::span<const std::uint8_t> get_bytes() { return reader_.take(get<std::uint32_t>()); }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "kernels/geometry.hpp"
+#include "kernels/units.hpp"
 #include "platform/record/cdr.hpp"
 
 namespace glint {
@@ -13,6 +14,12 @@ inline void skip_header(CdrReader& from) {
   (void)from.get<std::int32_t>();
   (void)from.get<std::uint32_t>();
   (void)from.get_text();
+}
+
+// builtin_interfaces/Time.
+[[nodiscard]] inline Time stamp_of(CdrReader& from) {
+  const std::int64_t seconds = from.get<std::int32_t>();
+  return {seconds * 1'000'000'000 + from.get<std::uint32_t>()};
 }
 
 template <class Stamped>

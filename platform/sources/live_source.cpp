@@ -32,14 +32,17 @@ void LiveSource::start(const SourceClock& clock) {
   started_ = true;
 }
 
+bool LiveSource::is_over(Time now) const noexcept {
+  return (settings_.stop != nullptr && *settings_.stop) ||
+         (settings_.frames > 0 && delivered_ == static_cast<std::uint64_t>(settings_.frames)) ||
+         (settings_.duration > Duration{} && session_time(now) >= Time{} + settings_.duration);
+}
+
 bool LiveSource::wait(ArrivedFrame& arrived) {
-  if (settings_.frames > 0 && delivered_ == static_cast<std::uint64_t>(settings_.frames)) {
-    return false;
-  }
   for (;;) {
-    if (stopped()) return false;
     const Time now = monotonic_now();
-    if (settings_.duration > Duration{} && session_time(now) >= Time{} + settings_.duration) {
+    if (is_over(now)) {
+      ended_ = true;  // what comes from now on is not missed
       return false;
     }
     if (is_read_.wait_until(now + k_live_poll)) break;

@@ -46,9 +46,6 @@ class LiveSource : public FrameSource {
     HeadPose head;
   };
   [[nodiscard]] const Camera& camera() const { return camera_; }
-  [[nodiscard]] bool stopped() const noexcept {
-    return settings_.stop != nullptr && *settings_.stop;
-  }
   // Another producer may have another clock.
   void restart_clock();
   // Whether a stamp comes after `newest`, which it then is; counted where not. One that lies far
@@ -59,14 +56,16 @@ class LiveSource : public FrameSource {
   [[nodiscard]] std::optional<Time> exposure_of(Time stamp, Time arrival);
   // For the next frame; null: all are with the tracker, and drop() counts the frame.
   [[nodiscard]] Slot* room();
-  void drop() { ++dropped_; }
+  void drop() { dropped_ += ended_ ? 0 : 1; }
   // Hands over the slot of room(). `arrival`: monotonic. A head pose that no headset has is cleared
   // and counted.
   void publish(Time mid_exposure, Time arrival, const HeadPose& head);
+  [[nodiscard]] std::uint64_t published() const { return written_; }
   // What was counted here, and what was lost.
   void add_to(SourceReport& report) const;
 
  private:
+  [[nodiscard]] bool is_over(Time now) const noexcept;
   [[nodiscard]] Time session_time(Time monotonic) const {
     return Time{} + (monotonic - clock_.epoch);
   }
@@ -78,7 +77,7 @@ class LiveSource : public FrameSource {
   Release is_read_;
   std::atomic<std::uint64_t> written_{0}, given_back_{0};
   std::uint64_t delivered_ = 0;
-  std::atomic<bool> started_{false};
+  std::atomic<bool> started_{false}, ended_{false};
   std::optional<ClockMap> map_;
   Time newest_exposure_;
   std::uint64_t dropped_ = 0, backward_ = 0, clock_refused_ = 0, clock_restarts_ = 0,

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "platform/input_error.hpp"
+#include "platform/sources/dds_source.hpp"
 #include "platform/sources/shm_source.hpp"
 
 namespace glint {
@@ -15,6 +16,10 @@ struct LiveKind {
 };
 
 constexpr std::array k_live_kind_list = {
+    LiveKind{"dds",
+             [](Cell& cell, LiveSettings live) -> std::unique_ptr<LiveSource> {
+               return DdsSource::open(cell, live);
+             }},
     LiveKind{"shm", [](Cell& cell, LiveSettings live) -> std::unique_ptr<LiveSource> {
                if (cell.source.path.empty()) {
                  throw InputError(cell.source.place +

@@ -5,11 +5,13 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <vector>
 
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
 #include "platform/record/cdr.hpp"
+#include "platform/record/message_parts.hpp"
 #include "platform/sensors/picture_file.hpp"
 
 namespace glint {
@@ -24,14 +26,13 @@ constexpr std::size_t k_distortion_max = 64;  // numbers in a CameraInfo
 
 RosHeader header_of(CdrReader& from) {
   RosHeader header;
-  const std::int64_t seconds = from.get<std::int32_t>();
-  header.stamp.nanoseconds = seconds * 1'000'000'000 + from.get<std::uint32_t>();
+  header.stamp = stamp_of(from);
   header.frame = printable(from.get_text());
   return header;
 }
 
 struct Encoding {
-  const char* name;
+  std::string_view name;
   std::size_t bytes;  // of a pixel
   bool metres;
 };
@@ -78,42 +79,73 @@ RosHeader ros_header_of(std::span<const std::uint8_t> message, const std::string
   return header;
 }
 
-RosImage ros_image_of(std::span<const std::uint8_t> message, double unit_m,
-                      const std::string& topic) {
+RosImageView ros_image_view(std::span<const std::uint8_t> message, const std::string& topic) {
   CdrReader from(message);
-  RosImage image;
-  image.header = header_of(from);
+  RosImageView image;
+  image.stamp = stamp_of(from);
+  image.frame = from.get_text_view();
   const auto height = from.get<std::uint32_t>(), width = from.get<std::uint32_t>();
-  const std::string name = from.get_text();
-  const bool big_endian = from.get<std::uint8_t>() != 0;
-  const auto step = from.get<std::uint32_t>();
-  const auto rows = from.get_bytes();
+  image.encoding = from.get_text_view();
+  image.big_endian = from.get<std::uint8_t>() != 0;
+  image.row_bytes = from.get<std::uint32_t>();
+  image.rows = from.get_bytes();
   if (from.failed()) fail(topic, "an image that is not whole", "the fields of sensor_msgs/Image");
-  const auto encoding = std::find_if(std::begin(k_encodings), std::end(k_encodings),
-                                     [&](const Encoding& known) { return known.name == name; });
+  const auto encoding =
+      std::find_if(std::begin(k_encodings), std::end(k_encodings),
+                   [&](const Encoding& known) { return known.name == image.encoding; });
   if (encoding == std::end(k_encodings)) {
-    fail(topic, "encoding \"" + printable(name.substr(0, 32)) + "\"",
+    fail(topic, "encoding \"" + printable(std::string(image.encoding.substr(0, 32))) + "\"",
          "mono8, 8UC1, mono16, 16UC1 or 32FC1");
   }
-  if (width > k_picture_side_max || height > k_picture_side_max || step < width * encoding->bytes ||
-      rows.size() != std::uint64_t{step} * height) {
+  image.pixel_bytes = encoding->bytes;
+  image.metres = encoding->metres;
+  if (width > k_picture_side_max || height > k_picture_side_max ||
+      image.row_bytes < width * image.pixel_bytes ||
+      image.rows.size() != std::uint64_t{image.row_bytes} * height) {
     fail(topic,
-         std::to_string(width) + " x " + std::to_string(height) + " pixels of " + name + ", " +
-             std::to_string(step) + " bytes a row and " + std::to_string(rows.size()) + " in all",
+         std::to_string(width) + " x " + std::to_string(height) + " pixels of " +
+             std::string(encoding->name) + ", " + std::to_string(image.row_bytes) +
+             " bytes a row and " + std::to_string(image.rows.size()) + " in all",
          "rows that hold their pixels, and nothing else");
   }
-  image.plane = {static_cast<int>(width), static_cast<int>(height), {}, topic};
-  image.plane.values.reserve(std::size_t{width} * height);
-  for (std::size_t y = 0; y < height; ++y) {
-    const std::uint8_t* at = rows.data() + y * step;
-    for (std::size_t x = 0; x < width; ++x, at += encoding->bytes) {
-      const std::uint32_t value = number_at(at, encoding->bytes, big_endian);
-      image.plane.values.push_back(encoding->metres
-                                       ? raw_depth(double{std::bit_cast<float>(value)}, unit_m)
-                                       : static_cast<std::uint16_t>(value));
+  image.width = static_cast<int>(width);
+  image.height = static_cast<int>(height);
+  return image;
+}
+
+void read_values(const RosImageView& image, double unit_m, std::span<std::uint16_t> values) {
+  const auto width = static_cast<std::size_t>(image.width);
+  const bool as_in_memory =
+      image.pixel_bytes == 2 && image.big_endian == (std::endian::native == std::endian::big);
+  for (std::size_t y = 0; y < static_cast<std::size_t>(image.height); ++y) {
+    const std::uint8_t* at = image.rows.data() + y * image.row_bytes;
+    std::uint16_t* to = values.data() + y * width;
+    if (as_in_memory) {
+      std::memcpy(to, at, 2 * width);
+      continue;
+    }
+    for (std::size_t x = 0; x < width; ++x, at += image.pixel_bytes) {
+      const std::uint32_t value = number_at(at, image.pixel_bytes, image.big_endian);
+      to[x] = image.metres ? raw_depth(double{std::bit_cast<float>(value)}, unit_m)
+                           : static_cast<std::uint16_t>(value);
     }
   }
+}
+
+RosImage ros_image_of(std::span<const std::uint8_t> message, double unit_m,
+                      const std::string& topic) {
+  const RosImageView view = ros_image_view(message, topic);
+  RosImage image;
+  image.header = {view.stamp, printable(std::string(view.frame))};
+  image.plane = {view.width, view.height, {}, topic};
+  image.plane.values.resize(static_cast<std::size_t>(view.width) *
+                            static_cast<std::size_t>(view.height));
+  read_values(view, unit_m, image.plane.values);
   return image;
+}
+
+std::string camera_info_beside(const std::string& topic) {
+  return topic.substr(0, topic.rfind('/') + 1) + "camera_info";
 }
 
 std::string lens_text_of_camera_info(std::span<const std::uint8_t> message,

@@ -7,14 +7,13 @@
 
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
-#include "platform/record/message_parts.hpp"
 #include "platform/sources/chunk_decoder.hpp"
+#include "platform/sources/ros_transforms.hpp"
 
 namespace glint {
 namespace {
 
 constexpr std::size_t k_waiting_max = 16;  // images without a partner, a topic
-constexpr std::uint32_t k_transforms_a_message_max = 4096;
 constexpr std::int64_t k_unix_from_ns = 1'000'000'000'000'000'000;  // 2001: smaller is no Unix time
 
 constexpr const char* k_image_type = "sensor_msgs/msg/Image";
@@ -44,10 +43,6 @@ Time logged(const McapMessage& message) {
       std::min<std::uint64_t>(message.heading.log_time, 4'000'000'000'000'000'000))};
 }
 
-std::string sibling(const std::string& topic) {
-  return topic.substr(0, topic.rfind('/') + 1) + "camera_info";
-}
-
 template <class Map>
 std::string names_of(const Map& map) {
   std::string names;
@@ -59,7 +54,11 @@ std::string names_of(const Map& map) {
 
 RosbagFrames::RosbagFrames(const SourceSettings& source, const Camera& camera,
                            ReadTolerance tolerance)
-    : source_(source), camera_(camera), tolerance_(tolerance), files_(files_of(source.path)) {
+    : source_(source),
+      camera_(camera),
+      tolerance_(tolerance),
+      files_(files_of(source.path)),
+      pairs_({camera.period.nanoseconds / 4}, k_waiting_max) {
   scan();
   choose_topics();
   choose_poses();
@@ -117,23 +116,10 @@ void RosbagFrames::scan(const McapMessage& message) {
   } else if (type == k_camera_info_type) {
     infos_.try_emplace(topic, message.payload.begin(), message.payload.end());
   } else if (type == k_tf_type) {
-    CdrReader from(message.payload);
-    const auto count = from.get<std::uint32_t>();
-    for (std::uint32_t i = 0; i < std::min(count, k_transforms_a_message_max); ++i) {
-      const std::int64_t seconds = from.get<std::int32_t>();
-      const Time time{seconds * 1'000'000'000 + from.get<std::uint32_t>()};
-      const std::string parent = from.get_text(), child = from.get_text();
-      const Pose pose = get_pose(from);
-      if (from.failed()) break;
-      transforms_.add(parent, child, time, pose, topic.ends_with("tf_static"));
-    }
+    add_ros_transforms(message.payload, topic.ends_with("tf_static"), transforms_);
   } else if (type == k_pose_type && topic == source_.pose_topic) {
-    const RosHeader header = ros_header_of(message.payload, topic);
-    CdrReader from(message.payload);
-    skip_header(from);
-    const Pose pose = get_pose(from);
-    const std::string& frame = pose_frames_.try_emplace(topic, header.frame).first->second;
-    if (!from.failed()) transforms_.add(frame, camera_of(topic), header.stamp, pose, false);
+    pose_frames_.try_emplace(topic, ros_header_of(message.payload, topic).frame);
+    add_ros_pose(message.payload, camera_of(topic), transforms_);
   }
 }
 
@@ -166,7 +152,7 @@ void RosbagFrames::choose_topics() {
     throw InputError(place("camera_info_topic") + ": no CameraInfo on " + printable(info) +
                      "; expected one of: " + names_of(infos_));
   }
-  for (const std::string& beside : {sibling(bright), sibling(depth)}) {
+  for (const std::string& beside : {camera_info_beside(bright), camera_info_beside(depth)}) {
     if (info.empty() && infos_.contains(beside)) info = beside;
   }
   if (info.empty() && infos_.size() == 1) info = infos_.begin()->first;
@@ -208,52 +194,37 @@ std::optional<SourceLens> RosbagFrames::lens() const {
 bool RosbagFrames::next(ReadFrame& frame) {
   while (const auto message = next_message()) {
     const std::string& topic = message->channel->topic;
-    const bool is_depth = topic == source_.depth_topic;
+    const ImageKind kind =
+        topic == source_.depth_topic ? ImageKind::depth : ImageKind::reflectivity;
     if (message->schema == nullptr || message->schema->name != k_image_type ||
-        message->channel->encoding != "cdr" || !(is_depth || topic == source_.reflectivity_topic)) {
+        message->channel->encoding != "cdr" ||
+        (kind == ImageKind::reflectivity && topic != source_.reflectivity_topic)) {
       continue;
     }
     try {
       Image image{ros_image_of(message->payload, camera_.depth.unit_m, source_.path + ":" + topic),
                   logged(*message)};
-      if (pair_up(std::move(image), is_depth, frame)) return true;
+      if (pair_up(std::move(image), kind, frame)) return true;
     } catch (const InputError& error) {
       if (unreadable_++ == 0) first_unreadable_ = error.what();
     }
   }
-  unpaired_ += reflectivity_.size() + depth_.size();
-  reflectivity_.clear();
-  depth_.clear();
+  for (const ImageKind kind : {ImageKind::reflectivity, ImageKind::depth}) {
+    while (pairs_.pop(kind)) ++unpaired_;
+  }
   return false;
 }
 
-// Whether the image has a partner: the waiting one nearest in time, within a quarter of a gap.
-bool RosbagFrames::pair_up(Image arrived, bool is_depth, ReadFrame& frame) {
-  std::deque<Image>& waiting = is_depth ? reflectivity_ : depth_;
+// Whether the image has a partner.
+bool RosbagFrames::pair_up(Image arrived, ImageKind kind, ReadFrame& frame) {
   const Time stamp = arrived.image.header.stamp;
-  const auto distance = [&](const Image& other) {
-    const std::int64_t ns = (other.image.header.stamp - stamp).nanoseconds;
-    return ns < 0 ? -ns : ns;
-  };
-  const auto nearest =
-      std::min_element(waiting.begin(), waiting.end(),
-                       [&](const Image& a, const Image& b) { return distance(a) < distance(b); });
-  if (nearest == waiting.end() || distance(*nearest) > camera_.period.nanoseconds / 4) {
-    std::deque<Image>& own = is_depth ? depth_ : reflectivity_;
-    own.push_back(std::move(arrived));
-    if (own.size() > k_waiting_max) {
-      own.pop_front();
-      ++unpaired_;
-    }
+  std::optional<Image> partner = pairs_.partner_of(kind, stamp);
+  if (!partner) {
+    unpaired_ += pairs_.wait(kind, stamp, std::move(arrived)) ? 1 : 0;
     return false;
   }
-  Image partner = std::move(*nearest);
-  waiting.erase(nearest);
-  if (is_depth) {
-    fill(std::move(partner), std::move(arrived), frame);
-  } else {
-    fill(std::move(arrived), std::move(partner), frame);
-  }
+  if (kind == ImageKind::depth) std::swap(arrived, *partner);
+  fill(std::move(arrived), std::move(*partner), frame);
   return true;
 }
 

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -16,6 +15,7 @@
 #include "platform/record/recording_reader.hpp"
 #include "platform/sources/frame_reader.hpp"
 #include "platform/sources/ros_images.hpp"
+#include "platform/sources/stamp_pairs.hpp"
 #include "platform/sources/transform_tree.hpp"
 
 namespace glint {
@@ -58,7 +58,7 @@ class RosbagFrames final : public FrameReader {
     return camera_.transport + Duration{camera_.exposure.nanoseconds / 2};
   }
   [[nodiscard]] bool clocks_differ() const;
-  [[nodiscard]] bool pair_up(Image arrived, bool is_depth, ReadFrame& frame);
+  [[nodiscard]] bool pair_up(Image arrived, ImageKind kind, ReadFrame& frame);
   void fill(Image reflectivity, Image depth, ReadFrame& frame) const;
   [[nodiscard]] std::string place(const char* key) const { return source_.place + "." + key; }
 
@@ -72,8 +72,8 @@ class RosbagFrames final : public FrameReader {
   std::map<std::string, Bytes> infos_;              // the first CameraInfo of each topic
   std::map<std::string, std::string> pose_frames_;  // of PoseStamped topics: their frame
   TransformTree transforms_;
-  std::string world_, camera_frame_;        // empty: no head pose
-  std::deque<Image> reflectivity_, depth_;  // without a partner yet, oldest first
+  std::string world_, camera_frame_;  // empty: no head pose
+  StampPairs<Image> pairs_;
   std::uint64_t unpaired_ = 0, unreadable_ = 0;
   std::string first_unreadable_, missing_;
 };

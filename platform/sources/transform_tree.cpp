@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "platform/input_error.hpp"
 
@@ -16,22 +17,32 @@ bool is_rigid(const Pose& pose) {
 
 }  // namespace
 
-void TransformTree::add(const std::string& parent, const std::string& child, Time time,
+void TransformTree::add(std::string_view parent, std::string_view child, Time time,
                         const Pose& pose, bool fixed) {
-  if (!is_rigid(pose) || parent == child) {
+  auto found = links_.find(child);
+  const bool is_new = found == links_.end();
+  const bool newest = history_ == TransformHistory::newest;
+  if (!is_rigid(pose) || parent == child || (is_new && newest && links_.size() == k_live_links) ||
+      (!is_new && found->second.parent != parent)) {
     ++refused_;
     return;
   }
-  Link& link = links_[child];
-  if (link.parent.empty()) {
-    link.parent = parent;
-    link.fixed = fixed;
+  if (is_new) {
+    found = links_.emplace(std::string(child), Link{}).first;
+    found->second.parent = parent;
+    found->second.fixed = fixed;
+    if (newest && !fixed) found->second.poses.reserve(k_live_transforms);
   }
-  if (link.parent != parent) {
-    ++refused_;
-    return;
-  }
-  if (++kept_ > k_transforms_max) {
+  Link& link = found->second;
+  if (newest) {
+    const bool was_set_back =
+        !link.poses.empty() && time + k_transform_gap_max < link.poses.back().time;
+    if (link.fixed || was_set_back) link.poses.clear();
+    if (link.poses.size() == k_live_transforms) {
+      sort(link);
+      link.poses.erase(link.poses.begin(), link.poses.begin() + k_live_transforms / 2);
+    }
+  } else if (++kept_ > k_transforms_max) {
     throw InputError("more than " + std::to_string(k_transforms_max) +
                      " transforms; expected a shorter recording");
   }
@@ -39,28 +50,35 @@ void TransformTree::add(const std::string& parent, const std::string& child, Tim
   link.poses.push_back({time, {pose.rotation.normalized(), pose.translation}});
 }
 
-bool TransformTree::has(const std::string& frame) const {
+bool TransformTree::has(std::string_view frame) const {
   return links_.contains(frame) || std::any_of(links_.begin(), links_.end(), [&](const auto& link) {
            return link.second.parent == frame;
          });
 }
 
-std::string TransformTree::root_of(const std::string& frame) const {
-  std::string root = frame;
+std::string_view TransformTree::root(std::string_view frame) const {
   for (int i = 0; i < k_depth_max; ++i) {
-    const auto link = links_.find(root);
+    const auto link = links_.find(frame);
     if (link == links_.end()) break;
-    root = link->second.parent;
+    frame = link->second.parent;
   }
-  return root;
+  return frame;
+}
+
+std::string TransformTree::root_of(std::string_view frame) const {
+  return std::string(root(frame));
+}
+
+void TransformTree::sort(const Link& link) {
+  if (link.sorted) return;
+  std::stable_sort(link.poses.begin(), link.poses.end(),
+                   [](const Stamped& a, const Stamped& b) { return a.time < b.time; });
+  link.sorted = true;
 }
 
 std::optional<Pose> TransformTree::pose_of(const Link& link, Time time) {
   const auto earlier = [](const Stamped& a, const Stamped& b) { return a.time < b.time; };
-  if (!link.sorted) {
-    std::stable_sort(link.poses.begin(), link.poses.end(), earlier);
-    link.sorted = true;
-  }
+  sort(link);
   if (link.fixed) return link.poses.back().pose;
   const auto after =
       std::lower_bound(link.poses.begin(), link.poses.end(), Stamped{time, {}}, earlier);
@@ -84,9 +102,9 @@ std::optional<Pose> TransformTree::pose_of(const Link& link, Time time) {
   return pose;
 }
 
-std::optional<Pose> TransformTree::in_root(const std::string& frame, Time time) const {
+std::optional<Pose> TransformTree::in_root(std::string_view frame, Time time) const {
   Pose pose;
-  std::string at = frame;
+  std::string_view at = frame;
   for (int i = 0; i < k_depth_max; ++i) {
     const auto link = links_.find(at);
     if (link == links_.end()) return pose;
@@ -98,11 +116,10 @@ std::optional<Pose> TransformTree::in_root(const std::string& frame, Time time) 
   return std::nullopt;
 }
 
-std::optional<Pose> TransformTree::at(const std::string& to, const std::string& from,
-                                      Time time) const {
-  if (root_of(to) != root_of(from)) return std::nullopt;
+std::optional<Pose> TransformTree::at(std::string_view to, std::string_view from, Time time) const {
+  if (root(to) != root(from)) return std::nullopt;
   // A link above `to` cancels: where it has no pose at this time, its absence must not matter.
-  std::string meets = from;
+  std::string_view meets = from;
   Pose T_meets_from;
   for (int i = 0; i < k_depth_max && meets != to; ++i) {
     const auto link = links_.find(meets);
@@ -116,6 +133,23 @@ std::optional<Pose> TransformTree::at(const std::string& to, const std::string& 
   const std::optional<Pose> T_root_to = in_root(to, time);
   if (!T_root_to) return std::nullopt;
   return T_root_to->inverse() * T_meets_from;
+}
+
+std::optional<Time> TransformTree::known_until(std::string_view to, std::string_view from) const {
+  if (root(to) != root(from)) return std::nullopt;
+  Time until{INT64_MAX};
+  const auto climb = [&](std::string_view frame, std::string_view end) {
+    for (int i = 0; i < k_depth_max && frame != end; ++i) {
+      const auto link = links_.find(frame);
+      if (link == links_.end()) return false;
+      sort(link->second);
+      if (!link->second.fixed) until = std::min(until, link->second.poses.back().time);
+      frame = link->second.parent;
+    }
+    return frame == end;
+  };
+  if (!climb(from, to)) (void)climb(to, root(to));
+  return until;
 }
 
 }  // namespace glint

@@ -141,7 +141,7 @@ TEST(CellSource, ReadsItsKeysAndRefusesThoseOfAnotherKind) {
   EXPECT_EQ(cell.source.pose_topic, "/p");
   EXPECT_EQ(cell.source.world_frame, "map");
   const std::string why = complaint_about("[source]\nkind = \"folder\"\npose_topic = \"/p\"\n");
-  EXPECT_NE(why.find("cell.toml:3: source.pose_topic: of a source of kind rosbag"),
+  EXPECT_NE(why.find("cell.toml:3: source.pose_topic: of a source of kind dds or rosbag"),
             std::string::npos)
       << why;
   EXPECT_NE(complaint_about("[source]\nkind = \"rosbag\"\ncalibration = \"c\"\n")

@@ -242,7 +242,7 @@ TEST(OpenSource, NamesTheKindsThereAre) {
   } catch (const InputError& error) {
     EXPECT_STREQ(
         error.what(),
-        "cell.toml:3: source.kind: \"kinect\"; expected simulator, shm, folder, hl2ss_file, "
+        "cell.toml:3: source.kind: \"kinect\"; expected simulator, dds, shm, folder, hl2ss_file, "
         "recording, rosbag, stream_recorder");
   }
   cell.source.kind = "folder";

@@ -208,6 +208,32 @@ TEST(TransformTree, GoesDownAnotherBranch) {
   EXPECT_EQ(tree.at("odom", "table", Time{100})->translation, Vector3(0, 2, 0));
 }
 
+TEST(TransformTree, StatesUpToWhenItHasAllTransforms) {
+  TransformTree tree;
+  tree.add("rig", "camera", {}, {}, true);
+  tree.add("map", "rig", Time{7}, {}, false);
+  tree.add("world", "map", Time{5}, {}, false);
+  EXPECT_EQ(tree.known_until("map", "camera"), Time{7}) << "what stands above has no part";
+  EXPECT_EQ(tree.known_until("world", "camera"), Time{5});
+  EXPECT_FALSE(tree.known_until("elsewhere", "camera"));
+}
+
+TEST(TransformTree, KeepsTheNewestOfATreeWithoutEnd) {
+  TransformTree tree(TransformHistory::newest);
+  const auto at_ms = [](std::int64_t ms) { return Time{} + milliseconds(ms); };
+  for (int i = 0; i < 10'000; ++i) tree.add("map", "rig", at_ms(i), turned_about_z(0, i), false);
+  EXPECT_NEAR(tree.at("map", "rig", at_ms(9'700))->translation.x(), 9'700, 1e-9);
+  EXPECT_FALSE(tree.at("map", "rig", at_ms(100)));
+  tree.add("map", "rig", at_ms(0), turned_about_z(0, 1), false);  // another clock
+  tree.add("map", "rig", at_ms(2), turned_about_z(0, 3), false);
+  EXPECT_NEAR(tree.at("map", "rig", at_ms(1))->translation.x(), 2, 1e-9);
+  EXPECT_EQ(tree.known_until("map", "rig"), at_ms(2));
+  for (std::size_t i = 0; i < 2 * k_live_links; ++i) {
+    tree.add("map", std::to_string(i), {}, {}, true);
+  }
+  EXPECT_EQ(tree.refused(), k_live_links + 1);
+}
+
 TEST(TransformTree, RefusesWhatIsNoTree) {
   TransformTree tree;
   tree.add("a", "b", {}, {}, true);
