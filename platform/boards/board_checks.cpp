@@ -5,9 +5,7 @@
 #include "platform/input_error.hpp"
 
 namespace glint {
-namespace {
-
-void require_same_camera(const Cell& cell, const FrameLoop& loop) {
+void check_camera(const Cell& cell, const FrameLoop& loop) {
   const FrameLoopHeader& header = loop.header();
   const CameraModel& model = cell.camera.model;
   const auto text = [](auto width, auto height, auto bits) {
@@ -22,18 +20,11 @@ void require_same_camera(const Cell& cell, const FrameLoop& loop) {
   }
 }
 
-void require_no_tool_changes(const Cell& cell) {
+void check_for_board(const Cell& cell) {
   if (cell.tool_changes.empty()) return;
   throw InputError(cell.file +
                    ": has a [[tool_change]]; expected none, for a board keeps the tools that it "
                    "starts with (absent = [..] leaves some out)");
-}
-
-}  // namespace
-
-void check_for_board(const Cell& cell, const FrameLoop& loop) {
-  require_same_camera(cell, loop);
-  require_no_tool_changes(cell);
 }
 
 }  // namespace glint

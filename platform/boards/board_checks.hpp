@@ -7,7 +7,9 @@
 
 namespace glint {
 
-// Throws InputError where the loop's frames are not the cell's camera's, or the cell changes tools.
-void check_for_board(const Cell& cell, const FrameLoop& loop);
+// Throws InputError where the cell changes tools.
+void check_for_board(const Cell& cell);
+// Throws InputError where the loop's frames are not the cell's camera's.
+void check_camera(const Cell& cell, const FrameLoop& loop);
 
 }  // namespace glint

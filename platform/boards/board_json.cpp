@@ -53,6 +53,12 @@ Json output_of(const TicksLeft& left) {
           {"longest_without_measurement_ms", tool.longest_without_measurement.seconds() * 1e3}};
 }
 
+Json source_of(const SessionResult& result) {
+  Json counts = Json::object();
+  for (const auto& [name, count] : result.source.counts) counts[name] = count;
+  return {{"text", result.source.text}, {"counts", counts}, {"failures", result.source.failures}};
+}
+
 Json losses_json(const SinkOutcome& result) {
   Json losses = Json::array();
   for (const Loss& loss : losses_of(result)) {
@@ -68,6 +74,7 @@ Json as_json(const BoardResult& result) {
       {"frames", result.frames},
       {"frames_worst", result.frames_worst},
       {"frames_tracked", result.frames_tracked},
+      {"source", source_of(result)},
       {"ticks", result.ticks},
       {"ticks_late", result.ticks_late},
       {"ticks_skipped", result.ticks_skipped},

@@ -1,8 +1,9 @@
-// glint_board: Glint as a board runs it. Frames come from memory, poses go to CAN and DDS, and what
-// the cell maps and follows goes on beneath.
+// glint_board: Glint as a board runs it. Frames come from memory or a live source, poses go to CAN
+// and DDS, and what the cell maps and follows goes on beneath.
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <cstdio>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "platform/input_error.hpp"
 #include "platform/part_file.hpp"
 #include "platform/session/losses.hpp"
+#include "platform/sources/open_live_source.hpp"
 #include "platform/stop_signals.hpp"
 #include "schedules/node_bounds.hpp"
 
@@ -57,11 +59,25 @@ void write(const std::string& file, const nlohmann::ordered_json& figures) {
 std::vector<std::string> failures_of(const BoardResult& result, const BoardOptions& options) {
   std::vector<std::string> lines = lines_of(losses_of(result));
   if (!result.fault.empty()) lines.push_back(result.fault);
+  for (const std::string& line : result.source.failures) lines.push_back("source: " + line);
   if (options.frames > 0 && result.frames != options.frames && !*options.stop) {
     lines.push_back(std::to_string(result.frames) + " frames processed; expected " +
                     std::to_string(options.frames));
   }
   return lines;
+}
+
+// Of the loop, or of the cell's live source.
+BoardResult run_on_frames(const std::string& loop_file, Cell cell, const BoardOptions& options) {
+  if (!loop_file.empty()) return run_board(std::move(cell), FrameLoop(loop_file), options);
+  cell.realtime = true;
+  const std::unique_ptr<LiveSource> source =
+      open_live_source(cell, {Duration{}, options.stop, options.frames});
+  if (source == nullptr) {
+    throw InputError("no frames: expected --frames, or a cell whose [source] is live: " +
+                     live_kinds());
+  }
+  return run_board(std::move(cell), *source, options);
 }
 
 int run(const Arguments& arguments) {
@@ -83,11 +99,10 @@ int run(const Arguments& arguments) {
                  static_cast<unsigned long long>(sink->counts().lost()));
     return 1;
   }
-  const FrameLoop loop(arguments.frames_file);
   BoardOptions options = arguments.options;
   options.stop = &stop_on_signals();
   options.bounds = bounds_on(arguments.board, cell);
-  const BoardResult result = run_board(std::move(cell), loop, options);
+  const BoardResult result = run_on_frames(arguments.frames_file, std::move(cell), options);
   std::vector<std::string> failures = failures_of(result, options);
   try {
     write(arguments.json_file, as_json(result));
@@ -107,7 +122,7 @@ int run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   glint::Arguments arguments;
-  CLI::App app{"Glint on a board: frames from memory, poses to CAN and DDS"};
+  CLI::App app{"Glint on a board: frames from memory or live ones, poses to CAN and DDS"};
   app.add_option("--config,--cell", arguments.cell_file, "cell file; default: the built-in cell");
   app.add_option("--board", arguments.board,
                  "costs, a built-in board or a board file: overruns are then noticed ahead");
@@ -119,7 +134,9 @@ int main(int argc, char** argv) {
   app.add_option("--core", arguments.options.core, "the core for all threads of the run");
   app.add_flag("--dds", arguments.with_dds, "publish over DDS as the cell says");
   auto* const frames = app.add_option("--frames", arguments.frames_file,
-                                      "loop of frames made by glint_board_frames");
+                                      "loop of frames made by glint_board_frames; default: the "
+                                      "cell's [source], " +
+                                          glint::live_kinds());
   app.add_option("--count", arguments.options.frames,
                  "frames to process; 0: until SIGTERM or SIGINT, in constant memory")
       ->check(CLI::NonNegativeNumber)
@@ -127,12 +144,11 @@ int main(int argc, char** argv) {
   auto* const system = app.add_flag("--measure-system", arguments.measure_system,
                                     "measure the operating system's share instead");
   frames->excludes(system);
-  app.footer("Example: glint_board --frames loop.frames --count 10000 --can socketcan:can0");
+  app.footer(
+      "Examples:\n  glint_board --frames loop.frames --count 10000 --can socketcan:can0\n"
+      "  glint_board --cell live.toml --count 0");
   return glint::exit_code_of(app, "glint_board", [&] {
     app.parse(argc, argv);
-    if (arguments.frames_file.empty() && !arguments.measure_system) {
-      throw CLI::RequiredError("--frames or --measure-system");
-    }
     return glint::run(arguments);
   });
 }

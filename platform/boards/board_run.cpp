@@ -18,8 +18,8 @@ RunPlan plan_on_one_core(Cell cell, int core, const BoardBounds& bounds) {
   return plan;
 }
 
-BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& options) {
-  check_for_board(cell, loop);
+BoardResult run_board(Cell cell, FrameSource& source, const BoardOptions& options) {
+  check_for_board(cell);
   cell.realtime = true;
   cell.record.file = options.record;
   cell.files = {"", ""};
@@ -31,12 +31,18 @@ BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& opti
   session.stop = options.stop;
   session.plan = plan_on_one_core(cell, options.core, options.bounds);
   session.write_map = false;
+  return {run_session(cell, source, session), 0, {}};
+}
+
+BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& options) {
+  check_camera(cell, loop);
   // The first frame's exposure must not lie before the session's clock began.
   const Duration period{loop.header().period_ns};
   LoopSource source(
       loop, {options.frames, period, period, k_arrival_priority, options.core, options.stop});
-  BoardResult result{run_session(cell, source, session), source.worst_shown(),
-                     source.wake_ups_ns()};
+  BoardResult result = run_board(std::move(cell), source, options);
+  result.frames_worst = source.worst_shown();
+  result.frame_wake_up_ns = source.wake_ups_ns();
   if (!source.thread_report().refused.empty()) {
     result.refused.push_back(source.thread_report().name + ": " + source.thread_report().refused);
   }

@@ -1,5 +1,6 @@
-// A run on a board: frames from memory at the camera's rate, ticks by the clock, poses to CAN and,
-// if asked for, to DDS and into a recording; a cell's background beneath. Real time on one core.
+// A run on a board: frames from memory at the camera's rate, or live ones, ticks by the clock,
+// poses to CAN and, if asked for, to DDS and into a recording; a cell's background beneath. Real
+// time on one core.
 #pragma once
 
 #include <atomic>
@@ -9,6 +10,7 @@
 
 #include "platform/boards/frame_loop.hpp"
 #include "platform/cells/cell.hpp"
+#include "platform/session/frame_source.hpp"
 #include "platform/session/session.hpp"
 
 namespace glint {
@@ -36,8 +38,11 @@ struct BoardResult : SessionResult {
 // One worker a group, all on one core, in the graphs' order.
 [[nodiscard]] RunPlan plan_on_one_core(Cell cell, int core, const BoardBounds& bounds);
 
-// Throws InputError for what a board does not run (board_checks.hpp), for depth pictures or a model
-// that cannot be read, and for a recording that cannot be made; MissingDevice.
+// On the frames of a live source, of the cell's camera; its own settings say when it ends. Throws
+// InputError for what a board does not run (board_checks.hpp), for depth pictures or a model that
+// cannot be read, and for a recording that cannot be made; MissingDevice.
+[[nodiscard]] BoardResult run_board(Cell cell, FrameSource& source, const BoardOptions& options);
+// On a loop of frames, as a camera of that period.
 [[nodiscard]] BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& options);
 
 }  // namespace glint

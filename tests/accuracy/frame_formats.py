@@ -16,6 +16,19 @@ import zlib
 
 ARRIVAL_NS = 9_000_000          # exposure / 2 and transport of Glint's AHAT preset
 FILE_TIME_OF_UNIX = 116_444_736_000_000_000
+# Of Glint's AHAT preset: platform/sensors/camera.cpp.
+AHAT_LENS = """[camera]
+lens = "rational"
+width = 512
+height = 512
+fx_px = 253.247009763
+fy_px = 253.582053183
+cx_px = 258.754402348
+cy_px = 254.752807282
+k1_k2_p1_p2_k3_k4_k5_k6 = [0.483160358562, 0.192690496386, 0.000807326604142, -9.40674893651e-05,
+  0.0138065295212, 0.815416536943, 0.289178608617, 0.0623515734461]
+field_tangent = 1.7363
+"""
 # The camera on the rig: any rigid transform will do.
 RIG_POSITION = (0.021, -0.034, 0.055)
 RIG_QUATERNION = (0.1, -0.2, 0.05, math.sqrt(1 - 0.1**2 - 0.2**2 - 0.05**2))
