@@ -110,11 +110,13 @@ void TrackTools::operator()(const FrameVerdict& verdict, const Anchor& anchor,
     if (anchor.now.moved_along && track.base == ReferenceFrame::world) move(anchor.now, track);
 
     const FollowedTool& tool = followed[t % k_tool_slices].items[t / k_tool_slices];
+    // Of an imprecise pose, too: too large an estimate would else keep every pose imprecise.
+    if (tool.reason == Reason::none && estimate_noise)
+      add(fitted[t % k_tool_slices].tools[t].residuals, noise, estimates.noise);
     if (tool.reason == Reason::none && tool.stands) {
       ++counts_[2];
-      const FittedTool& found = fitted[t % k_tool_slices].tools[t];
-      if (estimate_noise) add(found.residuals, noise, estimates.noise);
-      accept(found, tool, verdict.stamp, anchor.now, settings.velocity_gap_max, track);
+      accept(fitted[t % k_tool_slices].tools[t], tool, verdict.stamp, anchor.now,
+             settings.velocity_gap_max, track);
       continue;
     }
     track.seen_now = false;

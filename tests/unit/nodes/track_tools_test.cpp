@@ -66,9 +66,8 @@ TEST_F(TrackToolsInTime, MakesAPoseByFewMarkersTheNewestAndKeepsWhyThereAreNoMor
   EXPECT_LT((middle - Vector3(0.1, 0, 0.5)).norm(), 1e-12);
 }
 
-TEST_F(TrackToolsInTime, EstimatesTheNoiseFromThePosesThatStandAndFromNoOthers) {
+TEST_F(TrackToolsInTime, EstimatesTheNoiseFromPosesAndFromNothingElse) {
   (*fitted_)[0].tools[0].residuals = {{9e-6, 1}, {0.04, 4}};
-  (void)found(false);
   (void)few(true);
   EXPECT_FALSE(out_->noise.known);
   for (int i = 0; i < 2000; ++i) (void)found();
@@ -79,6 +78,16 @@ TEST_F(TrackToolsInTime, EstimatesTheNoiseFromThePosesThatStandAndFromNoOthers) 
   (void)found();
   EXPECT_EQ(out_->noise.sums.range.freedom, freedom) << "a refused frame shows nothing";
   EXPECT_TRUE(out_->noise.known) << "and what was known stays";
+}
+
+// With it every pose may be imprecise.
+TEST_F(TrackToolsInTime, ComesBackFromTooLargeANoise) {
+  (*fitted_)[0].tools[0].residuals = {{4e-4, 1}, {4, 4}};
+  for (int i = 0; i < 1000; ++i) (void)found();
+  EXPECT_GT(out_->noise.noise.range_sigma_m, 0.015);
+  (*fitted_)[0].tools[0].residuals = {{1e-6, 1}, {0.01, 4}};
+  for (int i = 0; i < 2000; ++i) (void)found(false);
+  EXPECT_LT(out_->noise.noise.range_sigma_m, 0.0012);
 }
 
 TEST_F(TrackToolsInTime, KeepsToTheDeclaredNoiseWhereItIsToldTo) {
