@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "graph/describe.hpp"
@@ -100,9 +101,7 @@ void FrameGroupOf<G>::process(const ArrivedFrame& arrived, const ChoiceRecord* r
   }
   if (method_ == nullptr) runner_->settle(*tracker_);
   tell_transforms(arrived.head);
-  if constexpr (std::same_as<G, Tracker>) {
-    if (lane_ != nullptr) record(arrived);
-  }
+  if (lane_ != nullptr) record(arrived);
 }
 
 template <class G>
@@ -134,29 +133,31 @@ void FrameGroupOf<G>::tell_transforms(const HeadPose& head) const noexcept {
 }
 
 template <class G>
-void FrameGroupOf<G>::record(
-    const ArrivedFrame& arrived) noexcept requires std::same_as<G, Tracker> {
-  const auto ran = [&](int node) { return !overrun_.happened() || overrun_.after_node >= node; };
-  (void)lane_->offer_head_pose(arrived.head);
-  ChoiceRecord choice = as_record(group_.choice(), 0);
-  choice.overrun = overrun_;
-  (void)lane_->offer_choice(choice);
-  // The frame comes last: with it a replay has all that the activation was given. The one or the
-  // other is left out by the recording's level. What was not computed for this frame is not there.
-  (void)lane_->offer_frame(arrived.frame,
-                           ran(k_locate_rois) ? tracker_->template token<Rois>() : Rois{});
-  MarkerFrame markers;
-  markers.mid_exposure = arrived.frame.mid_exposure;
-  markers.arrival = arrived.frame.arrival;
-  markers.sequence = arrived.frame.sequence;
-  markers.reason = tracker_->template token<FrameStamp>().reason;
-  if (ran(k_back_project)) markers.markers = tracker_->template token<Markers>();
-  (void)lane_->offer_markers(markers);
-  const Reason dropped = overrun_.happened() ? reason_of(overrun_.policy)
-                                             : tracker_->template token<FrameVerdict>().reason;
-  if (dropped != Reason::none) {
-    (void)lane_->offer_dropped(
-        {arrived.frame.mid_exposure, arrived.frame.arrival, arrived.frame.sequence, dropped});
+void FrameGroupOf<G>::record(const ArrivedFrame& arrived) noexcept {
+  if constexpr (std::is_same_v<G, Tracker>) {  // a recording is not recorded again
+    const auto ran = [&](int node) { return !overrun_.happened() || overrun_.after_node >= node; };
+    (void)lane_->offer_head_pose(arrived.head);
+    ChoiceRecord choice = as_record(group_.choice(), 0);
+    choice.overrun = overrun_;
+    (void)lane_->offer_choice(choice);
+    // The frame comes last: with it a replay has all that the activation was given. The one or the
+    // other is left out by the recording's level. What was not computed for this frame is not
+    // there.
+    (void)lane_->offer_frame(arrived.frame,
+                             ran(k_locate_rois) ? tracker_->template token<Rois>() : Rois{});
+    MarkerFrame markers;
+    markers.mid_exposure = arrived.frame.mid_exposure;
+    markers.arrival = arrived.frame.arrival;
+    markers.sequence = arrived.frame.sequence;
+    markers.reason = tracker_->template token<FrameStamp>().reason;
+    if (ran(k_back_project)) markers.markers = tracker_->template token<Markers>();
+    (void)lane_->offer_markers(markers);
+    const Reason dropped = overrun_.happened() ? reason_of(overrun_.policy)
+                                               : tracker_->template token<FrameVerdict>().reason;
+    if (dropped != Reason::none) {
+      (void)lane_->offer_dropped(
+          {arrived.frame.mid_exposure, arrived.frame.arrival, arrived.frame.sequence, dropped});
+    }
   }
 }
 

@@ -2,7 +2,6 @@
 // published to the tick group, and what a replay needs is offered to the recorder.
 #pragma once
 
-#include <concepts>
 #include <functional>
 #include <memory>
 
@@ -61,7 +60,7 @@ class FrameGroupOf {
  private:
   void publish() noexcept;
   void answer(const ArrivedFrame& arrived) noexcept;
-  void record(const ArrivedFrame& arrived) noexcept requires std::same_as<G, Tracker>;
+  void record(const ArrivedFrame& arrived) noexcept;
   void tell_transforms(const HeadPose& head) const noexcept;
 
   std::unique_ptr<G> tracker_ = std::make_unique<G>();
