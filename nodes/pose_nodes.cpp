@@ -39,13 +39,13 @@ void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
   // Never narrower gates than the declared noise's: residuals do not show how far a marker may be
   // off that strays or a hand half hide.
   const double noisier =
-      predictions.noise.known ? predictions.noise.noise.range_sigma_m / settings.range_sigma_m : 1;
+      predictions.noise.known ? predictions.noise.range_sigma_m / settings.range_sigma_m : 1;
   if (noisier > 1) {
     gated.range_sigma_m *= noisier;
     gated.max_rms_m *= noisier;
   }
   if (predictions.noise.known) {
-    gated.pixel_sigma_px = std::max(gated.pixel_sigma_px, predictions.noise.noise.pixel_sigma_px);
+    gated.pixel_sigma_px = std::max(gated.pixel_sigma_px, predictions.noise.pixel_sigma_px);
   }
   for (int t = slice.index; t < count; t += slice.count) {
     const auto i = static_cast<std::size_t>(t);

@@ -118,6 +118,12 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
     out.near_T_camera_tool = agreed.T_camera_tool;
     out.near_covariance = agreed.covariance;
   }
+  if (kept.have_images) {
+    out.residuals = residuals_of({kept.items.data(), kept.count},
+                                 {kept.variances.data(), kept.count}, pose.T_camera_tool, now);
+    counts_[3] += k_residual_steps;
+    counts_[4] += k_residual_steps * static_cast<int>(kept.count);
+  }
   const bool stretched = pose.reason == Reason::bad_fit &&
                          pose.chi_square <= k_noise_stretch_most * pose.degrees_of_freedom;
   out.reason = stretched ? Reason::none : pose.reason;
@@ -145,12 +151,6 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
     out.marker_mask = static_cast<std::uint8_t>(out.marker_mask | (1u << kept.of_tool[i]));
   }
   out.rms_m = std::sqrt(squares / static_cast<double>(kept.count));
-  if (kept.have_images) {
-    out.residuals = residuals_of({kept.items.data(), kept.count},
-                                 {kept.variances.data(), kept.count}, pose.T_camera_tool, now);
-    counts_[3] += k_residual_steps;
-    counts_[4] += k_residual_steps * static_cast<int>(kept.count);
-  }
   out.T_camera_tool = correct_bias(correction, pose.T_camera_tool).T_camera_tool;
   out.near_T_camera_tool = correct_bias(correction, out.near_T_camera_tool).T_camera_tool;
 }

@@ -95,11 +95,11 @@ MarkerResiduals residuals_of(std::span<const WeightedMarker> markers,
 
 void add(const MarkerResiduals& residuals, const MarkerNoise& declared,
          NoiseEstimate& estimate) noexcept {
-  estimate.noise = declared;
-  estimate.noise.range_sigma_m = std::sqrt(
+  if (!(residuals.range.freedom > 0 && residuals.pixel.freedom > 0)) return;
+  estimate.range_sigma_m = std::sqrt(
       update(residuals.range, squared(declared.range_sigma_m), squared(k_range_sigma_least_m),
              squared(k_range_sigma_most_m), estimate.known, estimate.sums.range));
-  estimate.noise.pixel_sigma_px = std::sqrt(
+  estimate.pixel_sigma_px = std::sqrt(
       update(residuals.pixel, squared(declared.pixel_sigma_px), squared(k_pixel_sigma_least_px),
              squared(k_pixel_sigma_most_px), estimate.known, estimate.sums.pixel));
   estimate.known = true;

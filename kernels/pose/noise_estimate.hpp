@@ -50,17 +50,18 @@ inline constexpr double k_pixel_sigma_most_px = 1;
 
 struct NoiseEstimate {
   MarkerResiduals sums;
-  MarkerNoise noise;   // with them; of use if known
-  bool known = false;  // false: no residual yet
+  double range_sigma_m = 0, pixel_sigma_px = 0;  // by them
+  bool known = false;                            // false: no residual yet
 };
 
 // The declared noise until a residual is known.
-[[nodiscard]] inline const MarkerNoise& noise_now(const NoiseEstimate& estimate,
-                                                  const MarkerNoise& declared) {
-  return estimate.known ? estimate.noise : declared;
+[[nodiscard]] inline MarkerNoise noise_now(const NoiseEstimate& estimate,
+                                           const MarkerNoise& declared) {
+  if (!estimate.known) return declared;
+  return {estimate.range_sigma_m, estimate.pixel_sigma_px, declared.focal_px};
 }
 
-// Adds the residuals of one fit.
+// Adds the residuals of one fit, if it has any.
 void add(const MarkerResiduals& residuals, const MarkerNoise& declared,
          NoiseEstimate& estimate) noexcept GLINT_NONBLOCKING;
 

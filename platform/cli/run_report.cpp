@@ -125,7 +125,7 @@ std::string released_text(std::uint64_t released) {
 // Beyond what a marker's own pixels show, 1 sigma.
 ordered_json noise_json(const Cell& cell, const SessionResult& result) {
   const MarkerNoise declared{cell.camera.range_sigma_m, cell.camera.pixel_sigma_px};
-  const MarkerNoise& noise = noise_now(result.noise, declared);
+  const MarkerNoise noise = noise_now(result.noise, declared);
   return {{"estimated", result.noise.known},
           {"range_sigma_mm", 1e3 * noise.range_sigma_m},
           {"pixel_sigma_px", noise.pixel_sigma_px}};

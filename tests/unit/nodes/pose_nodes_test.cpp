@@ -64,11 +64,12 @@ TEST_F(Correspond, OpensItsGatesWithTheNoiseThatWasSeenAndNeverClosesThem) {
   show_scaled_by(1.2);
   EXPECT_NE(reason(Reason::none), Reason::none);
   predictions_->noise.known = true;
-  predictions_->noise.noise = {0.01, 0.1};
+  predictions_->noise.range_sigma_m = 0.01;
+  predictions_->noise.pixel_sigma_px = 0.1;
   EXPECT_EQ(reason(Reason::none), Reason::none);
   show_scaled_by(1.02);
   for (const double sigma_m : {0.01, 0.0001}) {
-    predictions_->noise.noise.range_sigma_m = sigma_m;
+    predictions_->noise.range_sigma_m = sigma_m;
     EXPECT_EQ(reason(Reason::none), Reason::none) << sigma_m;
   }
 }

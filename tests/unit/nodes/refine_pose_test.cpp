@@ -99,7 +99,7 @@ TEST_F(RefinePose, WeighsMarkersByTheNoiseThatWasSeenAndStatesTheirResiduals) {
   constexpr int k_trials = 1000;
   double nees = 0;
   MarkerResiduals sums;
-  world_->predictions.noise = {{}, {3 * k_range_sigma_m, 3 * k_pixel_sigma_px, 253}, true};
+  world_->predictions.noise = {{}, 3 * k_range_sigma_m, 3 * k_pixel_sigma_px, true};
   for (int trial = 0; trial < k_trials; ++trial) {
     start_over();
     const Pose truth = test::tilted_pose(tool, random.within(0.4, 1), k_place, random);

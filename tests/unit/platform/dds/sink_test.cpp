@@ -320,10 +320,13 @@ TEST_F(Sinks, RefuseSettingsThatCannotBe) {
   refuses([](DdsSettings& settings) { settings.peers = {"\"/><evil"}; });
 }
 
-TEST_F(Sinks, CanBeOpenedAgainOnTheSameDomain) {
+TEST_F(Sinks, ShareTheirDomainWithOthersOfTheProcessByTheSameSettings) {
+  DdsSettings other = test_settings();
+  other.peers = {"127.0.0.2"};
   for (int i = 0; i < 2; ++i) {
     DdsSink sink(test_settings());
-    EXPECT_THROW(DdsSink twin(test_settings()), InputError);
+    EXPECT_NO_THROW(DdsSink twin(test_settings()));
+    EXPECT_THROW(DdsSink stranger(other), InputError);
     sink.start();
     sink.offer(sample_at(1));
     sink.stop();
