@@ -120,6 +120,7 @@ class RefineKernel final : public NodeKernel<RefinePose> {
         labeling.marker[m] = static_cast<std::int16_t>(first + m);
       }
     }
+    show_in_image();
     tools_.set(set_, 1, 0);
     rewind();
   }
@@ -132,6 +133,15 @@ class RefineKernel final : public NodeKernel<RefinePose> {
   // The surer the markers the longer every fit walks.
   static constexpr MarkerNoise k_surest = {k_range_sigma_least_m, k_pixel_sigma_least_px, 0};
   static constexpr int k_tries = 200;
+
+  // As a pinhole of the declared focal length turns rays: only with an image are there residuals.
+  void show_in_image() {
+    for (int m = 0; m < markers_.count; ++m) {
+      Marker& marker = markers_.items[static_cast<std::size_t>(m)];
+      marker.along_x = marker.ray.unitOrthogonal() / start_.noise.focal_px;
+      marker.along_y = marker.ray.cross(marker.along_x);
+    }
+  }
 
   // A tool whose markers were seen where no pose has them, with all or without any one, and no fit
   // ends before its last step: the hardest of some.
