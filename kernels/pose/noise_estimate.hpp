@@ -3,16 +3,17 @@
 // What:     a residual v of variance t and leverage h has the expectation E v^2 = (1 - h) t, and t
 //           is the marker's own variance plus the one declared for all (marker_sight.hpp). So the
 //           latter is sum w (v^2 - (1 - h) own) / sum w (1 - h), for ranges and for pixels apart,
-//           with w = (least t / t)^2. Sums forget as they grow: the newest k_memory residuals
-//           that were free to deviate count. A residual beyond three sigma counts as three.
+//           with w = (least t / t)^2. Old residuals lose weight as new ones come: about the newest
+//           k_noise_memory of those free to deviate count. A residual beyond three sigma counts as
+//           three.
 // Cost:     for each fit the normal equations once more and their factor; three forward
 //           substitutions a marker.
 // Worst:    none is worse than another of as many markers.
-// Accuracy: a variance within sqrt(2 / k_memory) = 8 %, 1 sigma; 0.5 % too small by the three
+// Accuracy: a variance within sqrt(2 / k_noise_memory) = 8 %, 1 sigma; 0.5 % too small by the three
 //           sigmas. What several markers have in common (a tool's size, an offset of all ranges)
 //           leaves no residual and is not in it.
-// Source:   Foerstner and Wrobel 2016, "Photogrammetric Computer Vision", eq. (4.91): a variance
-//           factor for each group of observations.
+// Source:   Foerstner 1979, "Ein Verfahren zur Schaetzung von Varianz- und Kovarianzkomponenten":
+//           a variance for each group of observations by its residuals and their redundancy.
 #pragma once
 
 #include <span>
@@ -54,7 +55,7 @@ struct NoiseEstimate {
   bool known = false;                            // false: no residual yet
 };
 
-// The declared noise until a residual is known.
+// The declared noise until there are residuals.
 [[nodiscard]] inline MarkerNoise noise_now(const NoiseEstimate& estimate,
                                            const MarkerNoise& declared) {
   if (!estimate.known) return declared;
