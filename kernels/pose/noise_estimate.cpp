@@ -44,7 +44,7 @@ class Kind {
   ResidualSum sum_;
 };
 
-double squared(double x) { return x * x; }
+double variance_of(double sigma) { return sigma * sigma; }
 
 // The variance of all ranges or pixels; the declared one is worth some residuals.
 double update(const ResidualSum& newest, double declared, double least, double most, bool known,
@@ -71,8 +71,8 @@ MarkerResiduals residuals_of(std::span<const WeightedMarker> markers,
     least_m2 = std::min(least_m2, variance.range_m2);
     least_px2 = std::min({least_px2, variance.xx_px2, variance.yy_px2});
   }
-  Kind range(least_m2, squared(noise.range_sigma_m));
-  Kind pixel(least_px2, squared(noise.pixel_sigma_px));
+  Kind range(least_m2, variance_of(noise.range_sigma_m));
+  Kind pixel(least_px2, variance_of(noise.pixel_sigma_px));
   for (std::size_t i = 0; i < markers.size(); ++i) {
     const WeightedMarker& marker = markers[i];
     const Vector3 lever = T_camera_tool.rotation * (marker.model_m - mean_m);
@@ -96,12 +96,12 @@ MarkerResiduals residuals_of(std::span<const WeightedMarker> markers,
 void add(const MarkerResiduals& residuals, const MarkerNoise& declared,
          NoiseEstimate& estimate) noexcept {
   if (!(residuals.range.freedom > 0 && residuals.pixel.freedom > 0)) return;
-  estimate.range_sigma_m = std::sqrt(
-      update(residuals.range, squared(declared.range_sigma_m), squared(k_range_sigma_least_m),
-             squared(k_range_sigma_most_m), estimate.known, estimate.sums.range));
-  estimate.pixel_sigma_px = std::sqrt(
-      update(residuals.pixel, squared(declared.pixel_sigma_px), squared(k_pixel_sigma_least_px),
-             squared(k_pixel_sigma_most_px), estimate.known, estimate.sums.pixel));
+  estimate.range_sigma_m = std::sqrt(update(
+      residuals.range, variance_of(declared.range_sigma_m), variance_of(k_range_sigma_least_m),
+      variance_of(k_range_sigma_most_m), estimate.known, estimate.sums.range));
+  estimate.pixel_sigma_px = std::sqrt(update(
+      residuals.pixel, variance_of(declared.pixel_sigma_px), variance_of(k_pixel_sigma_least_px),
+      variance_of(k_pixel_sigma_most_px), estimate.known, estimate.sums.pixel));
   estimate.known = true;
 }
 
