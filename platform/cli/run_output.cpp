@@ -76,6 +76,7 @@ ordered_json errors_of(const OutputErrors& errors) {
   if (errors.count == 0) return nullptr;
   const auto n = static_cast<double>(errors.count);
   return {{"n", errors.count},
+          {"gross", errors.gross},
           {"tip_rms_mm", 1e3 * std::sqrt(errors.square_m2 / n)},
           {"tip_p95_mm", 0.1 * quantile(errors.histogram, 0.95)},
           {"tip_max_mm", 1e3 * errors.largest_m},
@@ -124,10 +125,12 @@ std::string error_text(const ordered_json& errors) {
   char text[256];
   std::snprintf(
       text, sizeof text,
-      "tip %.2f mm rms (stated %.2f), angle %.2f deg (%.2f); inside 95 %%: %s, %s",
+      "tip %.2f mm rms (stated %.2f), angle %.2f deg (%.2f); inside 95 %%: %s, %s; "
+      "gross: %llu",
       errors.at("tip_rms_mm").get<double>(), errors.at("tip_stated_mm").get<double>(),
       errors.at("angle_rms_deg").get<double>(), errors.at("angle_stated_deg").get<double>(),
-      percent(errors.at("coverage_tip")).c_str(), percent(errors.at("coverage_angle")).c_str());
+      percent(errors.at("coverage_tip")).c_str(), percent(errors.at("coverage_angle")).c_str(),
+      errors.at("gross").get<unsigned long long>());
   return text;
 }
 

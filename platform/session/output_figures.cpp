@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "kernels/motion/interpolate.hpp"
+#include "platform/session/accuracy.hpp"
 
 namespace glint {
 namespace {
@@ -94,6 +95,7 @@ void OutputFigures::judge(const PoseSample& sample, OutputErrors& errors) {
   ++errors.count;
   errors.inside_position += inside(shift, of_position) ? 1 : 0;
   errors.inside_rotation += inside(turn, of_rotation) ? 1 : 0;
+  errors.gross += is_gross({shift.norm(), turn.norm(), std::sqrt(of_position.trace())}) ? 1 : 0;
   errors.square_m2 += shift.squaredNorm();
   errors.square_rad2 += turn.squaredNorm();
   errors.stated_m2 += of_position.trace();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "kernels/angles.hpp"
 #include "kernels/motion/interpolate.hpp"
 
 namespace glint {
@@ -93,8 +94,27 @@ TEST(OutputFigures, JudgePosesAtTheTimeThatTheyAreFor) {
   EXPECT_NEAR(measured.square_m2, 9e-6 + 16e-6 + 7.29e-6, 1e-12);
   EXPECT_NEAR(measured.stated_m2, 3 * 3e-6, 1e-15);
   EXPECT_NEAR(measured.largest_m, 0.004, 1e-12);
+  EXPECT_EQ(measured.gross, 0u);
   EXPECT_EQ(rate.of_predicted.count, 1u);
   EXPECT_EQ(rate.of_predicted.inside_position, 1u);
+  EXPECT_EQ(rate.of_predicted.gross, 0u);  // 30 mm, but the stated sigma is 35
+}
+
+// By more than 15 degrees; or by more than 20 mm and three stated sigmas.
+TEST(OutputFigures, CountGrossPoses) {
+  const Cell cell = judged_cell();
+  OutputFigures figures(cell, [&](int, Time time) { return moving_tool(cell, time); });
+  const auto add = [&](double off_m, double sigma_m, double turned_deg) {
+    PoseSample sample = sample_at(ms_after_start(10), TrackState::measured, {off_m, 0, 0}, sigma_m);
+    sample.pose.rotation = from_rotation_vector(Vector3(0, turned_deg * k_radians_per_degree, 0));
+    figures.add(sample, ms_after_start(9));
+    return figures.figures().tools[0][0].of_measured.gross;
+  };
+  EXPECT_EQ(add(0.0195, 0.001, 0), 0u);
+  EXPECT_EQ(add(0.0205, 0.001, 0), 1u);
+  EXPECT_EQ(add(0.0205, 0.004, 0), 1u);  // three sigmas of all axes: 20.8 mm
+  EXPECT_EQ(add(0, 0.001, 14.5), 1u);
+  EXPECT_EQ(add(0, 0.001, 15.5), 2u);
 }
 
 TEST(OutputFigures, JudgeInTheRobotsFrameAndRotations) {
