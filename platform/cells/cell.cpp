@@ -99,6 +99,10 @@ void CellParser::read_simulator(const toml::table* table) {
   sim.duration_s = reader.real("duration_s", sim.duration_s, 0.1, 3600);
   sim.seed = static_cast<std::uint64_t>(reader.integer("seed", 1, 0, INT64_MAX));
   sim.pen_scale = reader.real("pen_scale", sim.pen_scale, 0.001, 10);
+  if (table->contains("marker_range_sigma_mm"))
+    sim.marker_range_sigma_m = 1e-3 * reader.real("marker_range_sigma_mm", 0, 0, 20);
+  if (table->contains("marker_pixel_sigma_px"))
+    sim.marker_pixel_sigma_px = reader.real("marker_pixel_sigma_px", 0, 0, 2);
   sim.background_layout =
       reader.one_of("background_layout", sim.background_layout, {"adi", "ahat", "pgm"});
   const auto path = [&](const char* key) {

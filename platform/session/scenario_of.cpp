@@ -26,6 +26,9 @@ sim::Scenario scenario_of(const Cell& cell) {
     scenario.signal = sensor.signal;
     scenario.localisation = sensor.localisation;
   }
+  sim::NoiseSettings& noise = scenario.noise;
+  noise.blob_range_sigma_m = settings.marker_range_sigma_m.value_or(noise.blob_range_sigma_m);
+  noise.blob_pixel_sigma_px = settings.marker_pixel_sigma_px.value_or(noise.blob_pixel_sigma_px);
   if (cell.reference >= 0) sim::lay_on_table(scenario, static_cast<std::size_t>(cell.reference));
   if (!settings.background.empty()) {
     const FrameBuffer frame =

@@ -49,6 +49,16 @@ TEST(CellCamera, LeavesThePresetsBitsWhereNothingIsStated) {
   EXPECT_EQ(cell.camera.period, preset.period);
 }
 
+TEST(CellSimulator, TakesTheMarkersNoise) {
+  const SimulatorSettings none = cell_from_text("[simulator]\nseed = 2\n", "c").simulator;
+  EXPECT_FALSE(none.marker_range_sigma_m || none.marker_pixel_sigma_px);
+  const SimulatorSettings sim =
+      cell_from_text("[simulator]\nmarker_range_sigma_mm = 3\nmarker_pixel_sigma_px = 0.2\n", "c")
+          .simulator;
+  EXPECT_DOUBLE_EQ(sim.marker_range_sigma_m.value_or(0), 0.003);
+  EXPECT_DOUBLE_EQ(sim.marker_pixel_sigma_px.value_or(0), 0.2);
+}
+
 TEST(CellCamera, TakesWhatDiffersFromThePreset) {
   const Cell cell = cell_from_text(
       std::string(k_generic) +
