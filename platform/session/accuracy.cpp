@@ -36,12 +36,6 @@ bool is_trackable(std::uint8_t visible_mask) {
   return std::popcount(visible_mask) >= k_trackable_markers;
 }
 
-bool is_gross(const TrackingError& error) {
-  if (error.angle_rad > k_gross_angle_rad) return true;
-  if (error.misassigned && error.tip_m > k_gross_misassigned_m) return true;
-  return error.tip_m > k_gross_tip_m && error.tip_m > k_gross_sigmas * error.tip_sigma_m;
-}
-
 TrackingError error_of(const ToolOutcome& outcome, const Tool& tool, const Pose& T_camera_tool) {
   TrackingError error;
   error.tip_m = (outcome.T_camera_tool * tool.tip_m - T_camera_tool * tool.tip_m).norm();

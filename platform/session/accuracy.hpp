@@ -35,7 +35,11 @@ struct TrackingError {
 
 // The rotation is off by more than 15 deg; or the tip by more than 20 mm and by more than three
 // stated sigmas; or by more than 5 mm under a wrong marker assignment.
-[[nodiscard]] bool is_gross(const TrackingError& error);
+[[nodiscard]] inline bool is_gross(const TrackingError& error) {
+  if (error.angle_rad > k_gross_angle_rad) return true;
+  if (error.misassigned && error.tip_m > k_gross_misassigned_m) return true;
+  return error.tip_m > k_gross_tip_m && error.tip_m > k_gross_sigmas * error.tip_sigma_m;
+}
 
 // Where in the image a marker's blob lies: x/z and y/z of its centroid's ray.
 struct BlobSlopes {
