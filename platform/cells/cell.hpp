@@ -76,7 +76,7 @@ struct SimulatorSettings {
   std::uint64_t seed = 1;
   std::string head_trajectory, pen_trajectory;  // files; scenario = "trajectories"
   double pen_scale = 1.0;                       // pen motion is scaled into view
-  // Of each marker's image in each frame, at 0.5 m; nothing: the camera model's.
+  // Of each marker's image in each frame, the range's at 0.5 m; nothing: the camera model's.
   std::optional<double> marker_range_sigma_m, marker_pixel_sigma_px;
   std::string background;  // a frame file, or empty for the drawn room
   std::string background_layout = "adi";

@@ -10,6 +10,7 @@
 #include "platform/cells/cell.hpp"
 #include "platform/experiments/clutter_scene.hpp"
 #include "platform/experiments/point_view.hpp"
+#include "platform/session/accuracy.hpp"
 #include "platform/session/pipeline.hpp"
 #include "platform/sim/simulator.hpp"
 
@@ -19,13 +20,11 @@ namespace {
 constexpr int k_seeds = 20, k_seeds_quick = 3;
 constexpr int k_frames = 135, k_frames_quick = 68;  // 3 s, 1.5 s
 constexpr double k_found_ms_max = 1000, k_fresh_min = 99;
-constexpr double k_gross_m = 0.02, k_gross_rad = 15 * 3.14159265358979323846 / 180;
-constexpr int k_trackable_markers = 3;
 constexpr int k_findable_markers = 4;  // without a prediction three of many strays agree by chance
 
-bool is_gross(const Tool& tool, const Pose& seen, const Pose& truth) {
-  return (seen * tool.tip_m - truth * tool.tip_m).norm() > k_gross_m ||
-         turned_by(seen, truth) > k_gross_rad;
+// No covariance is asked for: every 20 mm count.
+bool far_off(const Tool& tool, const Pose& seen, const Pose& truth) {
+  return is_gross({(seen * tool.tip_m - truth * tool.tip_m).norm(), turned_by(seen, truth)});
 }
 
 void add_frame(const Track& track, const Tool& tool, const Pose& truth, int visible, double time_s,
@@ -41,7 +40,7 @@ void add_frame(const Track& track, const Tool& tool, const Pose& truth, int visi
   if (!tally.found) return;
   tally.trackable += trackable ? 1 : 0;
   tally.fresh += trackable && track.seen_now ? 1 : 0;
-  tally.gross += track.seen_now && is_gross(tool, track.T_camera_tool, truth) ? 1 : 0;
+  tally.gross += track.seen_now && far_off(tool, track.T_camera_tool, truth) ? 1 : 0;
 }
 
 SpotSettings discs(int count, double radius_min_px, double radius_max_px) {

@@ -9,7 +9,7 @@
 #include "kernels/pose/decide_labeling.hpp"
 #include "platform/experiments/estimator_settings.hpp"
 #include "platform/experiments/noisy_frame.hpp"
-#include "platform/session/accuracy.hpp"
+#include "platform/session/gross.hpp"
 
 namespace glint {
 namespace {

@@ -5,7 +5,7 @@
 // Correspondence with the gate of the declared noise, then the weighted fit of every labeling kept,
 // decided by chi-square; beside it the labeling and the pose of the least unweighted rms. Found: a
 // pose is called measured. Wrong: with a wrong marker assignment. Gross: as is_gross() of
-// platform/session/accuracy.hpp defines it.
+// platform/session/gross.hpp defines it.
 #pragma once
 
 #include "platform/experiments/case_list.hpp"

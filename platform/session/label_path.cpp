@@ -8,7 +8,7 @@
 
 #include "kernels/motion/interpolate.hpp"
 #include "kernels/pose/chi_square_limit.hpp"
-#include "platform/session/accuracy.hpp"
+#include "platform/session/gross.hpp"
 
 namespace glint {
 namespace {

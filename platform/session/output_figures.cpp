@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "kernels/motion/interpolate.hpp"
-#include "platform/session/accuracy.hpp"
+#include "platform/session/gross.hpp"
 
 namespace glint {
 namespace {

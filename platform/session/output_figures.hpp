@@ -27,7 +27,7 @@ inline constexpr int k_errors = 2048;    // of 0.1 mm; likewise
 // Of poses with a truth, at the time that they are predicted to, in the pose's own frame.
 struct OutputErrors {
   std::uint64_t count = 0, inside_position = 0, inside_rotation = 0;  // the stated 95 % ellipsoid
-  std::uint64_t gross = 0;                                            // accuracy.hpp
+  std::uint64_t gross = 0;                                            // gross.hpp
   double square_m2 = 0, square_rad2 = 0;                              // sums of squared errors
   double stated_m2 = 0, stated_rad2 = 0;  // sums of the stated covariances' traces
   double largest_m = 0;

@@ -1,4 +1,5 @@
-// [camera] and [source] of a cell: presets, what differs from them, lenses from elsewhere.
+// [camera], [source] and [simulator] of a cell: presets, what differs from them, lenses from
+// elsewhere.
 #include <gtest/gtest.h>
 
 #include <memory>

@@ -103,14 +103,6 @@ class FrameGroupOverruns : public testing::TestWithParam<OverrunPolicy> {
   RunnerSettings<Tracker> watched_;
 };
 
-TEST(ScenarioOf, TakesTheMarkersNoiseFromTheCell) {
-  Cell cell = default_cell();
-  cell.simulator.marker_pixel_sigma_px = 0.4;
-  const sim::NoiseSettings usual, noise = scenario_of(cell).noise;
-  EXPECT_EQ(noise.blob_pixel_sigma_px, 0.4);
-  EXPECT_EQ(noise.blob_range_sigma_m, usual.blob_range_sigma_m);
-}
-
 TEST_P(FrameGroupOverruns, RestOnWhatWasInTimeWheneverTheReaderTakesIt) {
   for (unsigned taken = 0; taken < 1u << k_judged; ++taken) run(taken);
 }
