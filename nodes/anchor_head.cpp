@@ -21,7 +21,7 @@ void AnchorHead::operator()(const FrameVerdict& verdict, const HeadPose& head,
   const UncertainPose* seen = nullptr;
   if (declared) {
     const FittedTool& found = fitted[reference % k_tool_slices].tools[reference];
-    if (found.reason == Reason::none) {
+    if (found.reason == Reason::none && !found.ambiguous()) {
       body = middle_of(found, tools.value().items[reference], verdict.stamp.mid_exposure);
       seen = &body;
       ++counts_[1];

@@ -79,6 +79,7 @@ void FollowMotion::operator()(
     tool.reason = verdict.reason;
     tool.few_mask = 0;
     tool.stands = false;
+    tool.ambiguous = tool.filtered = false;
     tool.in_use = true;
     if (tool.identity != set.items[t].identity) {
       tool.motion.forget();
@@ -99,7 +100,7 @@ void FollowMotion::operator()(
     }
     const ReferenceFrame base =
         anchored.head.valid ? ReferenceFrame::world : ReferenceFrame::camera;
-    if (tool.base != base) tool.motion.forget();
+    if (tool.base != base || found.turned) tool.motion.forget();
     tool.base = base;
     const UncertainPose seen = told_middle_of(found, set.items[t], verdict.stamp.mid_exposure);
     const MotionUpdate done = tool.motion.update(in_base(seen, anchored), settings, sums_[place]);
@@ -109,7 +110,9 @@ void FollowMotion::operator()(
     counts_[3] += done.rest_tests;
     tool.estimate = tool.motion.estimate(sums_[place]);
     tool.noise = tool.motion.noise_scale();
-    tool.stands = is_sure(tool.estimate.covariance, sure);
+    tool.ambiguous = found.ambiguous();
+    tool.filtered = !within(found.covariance.bottomRightCorner<3, 3>(), sure.rotation_rad);
+    tool.stands = !tool.ambiguous && is_sure(tool.estimate.covariance, sure);
   }
   // To clear what is clear would cost more than to follow a tool.
   for (; place < k_tools_per_slice; ++place) {

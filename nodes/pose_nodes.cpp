@@ -88,12 +88,26 @@ void AssignMarkers::operator()(const FrameVerdict& verdict, const graph::Latest<
   }
   const AssignWork work = assign_markers(first(per_tool_, count), first(chosen_, count),
                                          first(assignment.reason, count));
-  counts_ = {{1, count, work.rounds, work.tests}};
+  owners_.fill(-1);
   for (int t = 0; t < count; ++t) {
     const auto i = static_cast<std::size_t>(t);
     if (chosen_[i] < 0) continue;
     assignment.labeling[i] = per_tool_[i].items[static_cast<std::size_t>(chosen_[i])];
+    for (const std::int16_t marker : assignment.labeling[i].marker) {
+      if (marker >= 0)
+        owners_[static_cast<std::size_t>(marker) % k_blobs_max] = static_cast<std::int8_t>(t);
+    }
   }
+  int tests = work.tests;
+  for (int t = 0; t < count; ++t) {
+    const auto i = static_cast<std::size_t>(t);
+    assignment.rival[i].count = 0;
+    if (chosen_[i] < 0) continue;
+    const int rival =
+        rival_of(per_tool_[i], chosen_[i], t, owners_, tools.value().items[i].tip_m, tests);
+    if (rival >= 0) assignment.rival[i] = per_tool_[i].items[static_cast<std::size_t>(rival)];
+  }
+  counts_ = {{1, count, work.rounds, tests}};
 }
 
 }  // namespace glint

@@ -68,6 +68,7 @@ struct AssignMarkers {
  private:
   std::array<Labelings, k_tools_max> per_tool_;  // the slices' answers, by tool
   std::array<int, k_tools_max> chosen_{};
+  MarkerOwners owners_{};
   graph::LoopCounts counts_;
 };
 

@@ -55,7 +55,7 @@ void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& es
     sample.reason = track.reason;
     sample.registration = robot.value().state;
     sample.registration_rms_m = robot.value().rms_m;
-    if (!track.alive) {
+    if (!track.alive || track.doubted) {
       sample.state = track.reason == Reason::no_frame_yet ? TrackState::none : TrackState::lost;
       continue;
     }

@@ -59,6 +59,7 @@ double PredictTracks::foretell(const Track& track, const Tool& tool, Time time,
   const bool goes_on = time - track.motion.time <= settings.horizon;
   Pose middle = goes_on ? later.pose : track.motion.pose;
   prediction.covariance = track.surprise * later.covariance;
+  prediction.odds = track.odds;
   const double held_back_m = (later.pose.translation - middle.translation).norm();
   if (in_world) {
     const double since_s = (time - track.newest.time).seconds();

@@ -7,6 +7,8 @@
 #include "kernels/pose/agreed_pose.hpp"
 #include "kernels/pose/blob_size.hpp"
 #include "kernels/pose/chi_square_limit.hpp"
+#include "kernels/pose/choose_reading.hpp"
+#include "kernels/pose/lever_arm.hpp"
 #include "kernels/pose/marker_range.hpp"
 
 namespace glint {
@@ -87,30 +89,104 @@ constexpr std::size_t k_agree_by_chance_most = 3;
 constexpr double k_surprise_usual = 6;
 constexpr double k_surprise_most = chi_square_limit(6);
 
+// Of chi-square, above the minima.
+constexpr double k_wall_least = 16;
+
+// What a marker that had to be left out speaks against a reading.
+constexpr double k_left_out_cost = chi_square_limit(3);
+
+// A labeling, its markers weighed, and its pose.
+struct FittedLabeling {
+  SeenMarkers seen;
+  RefinedPose pose;
+};
+
+// Both minima, the better one first. Returns how many there are.
+std::size_t add_readings(const RefinedPose& pose, int labeling, std::span<Reading> out) {
+  const double cost = pose.left_out >= 0 ? k_left_out_cost : 0;
+  const double most = chi_square_limit(pose.degrees_of_freedom);
+  const double first = pose.chi_square, second = first + pose.other.delta_chi_square;
+  out[0] = {pose.T_camera_tool, pose.covariance, cost + first,
+            pose.surprise,      first <= most,   labeling};
+  if (!pose.other.exists) return 1;
+  const OtherMinimum& other = pose.other;
+  out[1] = {other.T_camera_tool, other.covariance, cost + second,
+            other.surprise,      second <= most,   labeling};
+  return 2;
+}
+
+bool is_fitted(const RefinedPose& pose) {
+  return pose.reason == Reason::none || pose.reason == Reason::bad_fit;
+}
+
 }  // namespace
 
 void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& labeling,
-                     const Prediction& prediction, const MarkerNoise& now,
+                     const Labeling& rival, const Prediction& prediction, const MarkerNoise& now,
                      FittedTool& out) noexcept {
-  const SeenMarkers seen = weigh(tool, markers_within(tool, limits), markers, labeling, now);
-  out.reason = seen.reason;
+  std::array<FittedLabeling, 2> fits;
+  fits[0].seen = weigh(tool, markers_within(tool, limits), markers, labeling, now);
+  out.reason = fits[0].seen.reason;
   if (out.reason != Reason::none) return;
   constexpr RefineSettings k_most;
-  const RefineSettings within = {
+  RefineSettings within = {
       std::min(settings.steps_max, k_most.steps_max), settings.left_out_max,
       std::min(settings.left_out_steps_max, k_most.left_out_steps_max),
       labeling.predicted_worth_m2 > 0 ? k_predicted_left_least : k_most.markers_left_least};
   const ExpectedPose expected = {prediction.T_camera_tool, prediction.covariance, tool.middle_m()};
-  const RefinedPose pose = refine_pose({seen.items.data(), seen.count}, tool.tip_m, nullptr, within,
-                                       prediction.follows_motion ? &expected : nullptr);
-  counts_[2] += pose.work.fits;
-  counts_[3] += pose.work.steps;
-  counts_[4] += pose.work.marker_steps;
-  const SeenMarkers kept = without(seen, pose.left_out);
+  std::array<Reading, 4> readings;
+  std::size_t count = 0;
+  for (int k = 0; k < 2; ++k) {
+    FittedLabeling& fitted = fits[static_cast<std::size_t>(k)];
+    if (k == 1) {
+      if (rival.count == 0) break;
+      within.left_out_max = 0;
+      fitted.seen = weigh(tool, markers_within(tool, limits), markers, rival, now);
+      if (fitted.seen.reason != Reason::none) break;
+    }
+    fitted.pose = refine_pose({fitted.seen.items.data(), fitted.seen.count}, tool.tip_m, nullptr,
+                              within, prediction.follows_motion ? &expected : nullptr);
+    counts_[2] += fitted.pose.work.fits;
+    counts_[3] += fitted.pose.work.steps;
+    counts_[4] += fitted.pose.work.marker_steps;
+    if (is_fitted(fitted.pose))
+      count += add_readings(fitted.pose, k, std::span(readings).subspan(count));
+  }
+  if (count == 0) {
+    out.reason = fits[0].pose.reason;
+    return;
+  }
+  const ChosenReading chosen =
+      choose_reading({readings.data(), count}, prediction.odds, tool.tip_m);
+  const Reading& reading = readings[static_cast<std::size_t>(chosen.index)];
+  const FittedLabeling& best = fits[static_cast<std::size_t>(reading.labeling)];
+  const RefinedPose& pose = best.pose;
+  const double chi_square = reading.chi_square - (pose.left_out >= 0 ? k_left_out_cost : 0);
+  out.odds = chosen.odds;
+  out.turned = chosen.turned;
+  out.by_rival = reading.labeling == 1;
+  const bool followed = prediction.follows_motion && !chosen.turned && !chosen.unexpected;
+  const SeenMarkers kept = without(best.seen, pose.left_out);
+  const std::span<const WeightedMarker> items = {kept.items.data(), kept.count};
+  // Between two minima that run into each other there is no wall that the noise could not pass:
+  // what holds for both is what the markers show of a pose between them.
+  Pose facing;
+  NearPose between;
+  bool shallow = false;
+  if (pose.shallow) {
+    facing = face_on(items, reading.T_camera_tool);
+    between = near_pose(items, facing, tool.tip_m);
+    shallow = between.reason == Reason::none && between.chi_square - chi_square < k_wall_least;
+  }
   // Few markers may tell little of a turn, and their likeliest pose too much: agreed_pose.hpp.
-  if (kept.whole_count() <= k_agree_by_chance_most && prediction.follows_motion) {
-    const AgreedPose agreed =
-        agreed_pose({kept.items.data(), kept.count}, expected, within.steps_max);
+  AgreedPose agreed;
+  if (followed && shallow) {
+    const NearPose of_middle = near_pose(items, facing, expected.reference_m);
+    out.tells_near = true;
+    out.near_T_camera_tool = of_middle.T_camera_tool;
+    out.near_covariance = of_middle.covariance;
+  } else if (followed && kept.whole_count() <= k_agree_by_chance_most) {
+    agreed = agreed_pose(items, expected, within.steps_max);
     ++counts_[2];
     counts_[3] += agreed.steps;
     counts_[4] += agreed.steps * static_cast<int>(kept.count);
@@ -119,39 +195,56 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
     out.near_covariance = agreed.covariance;
   }
   if (kept.have_images) {
-    out.residuals = residuals_of({kept.items.data(), kept.count},
-                                 {kept.variances.data(), kept.count}, pose.T_camera_tool, now);
+    out.residuals =
+        residuals_of(items, {kept.variances.data(), kept.count}, reading.T_camera_tool, now);
     counts_[3] += k_residual_steps;
     counts_[4] += k_residual_steps * static_cast<int>(kept.count);
   }
-  const bool stretched = pose.reason == Reason::bad_fit &&
-                         pose.chi_square <= k_noise_stretch_most * pose.degrees_of_freedom;
-  out.reason = stretched ? Reason::none : pose.reason;
+  // By the chosen minimum, not the likelier of both.
+  const bool explained = chi_square <= chi_square_limit(pose.degrees_of_freedom);
+  const bool stretched = !explained && chi_square <= k_noise_stretch_most * pose.degrees_of_freedom;
+  out.reason = explained || stretched ? Reason::none : Reason::bad_fit;
   if (out.reason != Reason::none) return;
-  double growth = stretched ? pose.chi_square / pose.degrees_of_freedom : 1.0;
+  double growth = stretched ? chi_square / pose.degrees_of_freedom : 1.0;
   const bool weak = stretched || pose.left_out >= 0 || kept.whole_count() <= k_agree_by_chance_most;
-  if (weak && prediction.follows_motion) {
+  // The markers and the motion, each explained alone, may contradict each other; and what agrees by
+  // chance does not end a motion that was told from others.
+  const bool contradicts =
+      out.tells_near && !shallow &&
+      agreed.chi_square > growth * chi_square_limit(3 * static_cast<int>(kept.count));
+  const bool by_chance = weak && chosen.unexpected && prediction.odds >= k_odds_least;
+  if (contradicts || by_chance) {
+    out.reason = Reason::bad_fit;
+    return;
+  }
+  if (weak && followed) {
     const double surprise =
         out.tells_near
             ? surprise_of(expected, out.near_T_camera_tool, growth * out.near_covariance,
                           expected.reference_m)
-            : surprise_of(expected, pose.T_camera_tool, growth * pose.covariance, tool.tip_m);
+            : surprise_of(expected, reading.T_camera_tool, growth * reading.covariance, tool.tip_m);
     if (surprise > k_surprise_most) {
       out.reason = Reason::bad_fit;
       return;
     }
     growth *= std::max(1.0, surprise / k_surprise_usual);
   }
-  out.covariance = growth * pose.covariance;
+  Pose T_camera_tool = reading.T_camera_tool;
+  out.covariance = reading.covariance;
+  if (shallow) {
+    T_camera_tool = between.T_camera_tool;
+    out.covariance = between.covariance;
+  }
+  out.covariance *= growth;
   out.near_covariance *= growth;
   double squares = 0;
   for (std::size_t i = 0; i < kept.count; ++i) {
     const WeightedMarker& marker = kept.items[i];
-    squares += (pose.T_camera_tool * marker.model_m - marker.measured_m()).squaredNorm();
+    squares += (T_camera_tool * marker.model_m - marker.measured_m()).squaredNorm();
     out.marker_mask = static_cast<std::uint8_t>(out.marker_mask | (1u << kept.of_tool[i]));
   }
   out.rms_m = std::sqrt(squares / static_cast<double>(kept.count));
-  out.T_camera_tool = correct_bias(correction, pose.T_camera_tool).T_camera_tool;
+  out.T_camera_tool = correct_bias(correction, T_camera_tool).T_camera_tool;
   out.near_T_camera_tool = correct_bias(correction, out.near_T_camera_tool).T_camera_tool;
 }
 
@@ -169,7 +262,7 @@ void RefinePose::operator()(const FrameVerdict& verdict, const Markers& markers,
     out = FittedTool{};
     out.reason = verdict.usable() ? assignment.reason[i] : verdict.reason;
     if (out.reason == Reason::none)
-      fit(set.items[i], markers, assignment.labeling[i], predictions.tools[i],
+      fit(set.items[i], markers, assignment.labeling[i], assignment.rival[i], predictions.tools[i],
           noise_now(predictions.noise, noise), out);
   }
 }

@@ -24,7 +24,9 @@ inline constexpr int k_predicted_left_least = 3;
 // covariance grown to what its residuals show, and where four times the noise would not do either
 // it is none: its reason is bad_fit. So it is where three markers, or what was forgiven, put the
 // tool where its followed motion cannot have brought it. The mask names the markers that count.
-// What no more than three whole ones tell a filter is read near where it expects the tool.
+// What no more than three whole ones, or a flat tool nearly face-on, tell a filter is read near
+// where it expects the tool, or face-on. The labeling's rival is fitted beside it; the likeliest
+// reading stands, with its odds against the others (choose_reading.hpp).
 struct RefinePose {
   static constexpr std::array<std::string_view, 5> k_loops = {"call", "tools", "fits", "steps",
                                                               "marker_steps"};
@@ -49,19 +51,20 @@ struct RefinePose {
                   FittedTools& fitted) noexcept GLINT_NONBLOCKING;
 
  private:
-  // What the residuals of a pose cost, in steps of a fit.
-  static constexpr int k_residual_steps = 3;
+  // What the residuals of a pose cost, in steps of a fit, and what two poses face-on do.
+  static constexpr int k_residual_steps = 5;
   // What the markers tell a filter may be read a second time, near where the tool is expected; of
   // the pose that stands the residuals are taken.
   [[nodiscard]] static constexpr RefineWork work_max(int markers) noexcept {
     constexpr RefineSettings k_most = {.markers_left_least = k_predicted_left_least};
     RefineWork work = refine_work_max(markers, k_most);
     work += {1, k_most.steps_max, k_most.steps_max * markers};
+    work += refine_work_max(markers, {.left_out_max = 0});  // the rival labeling's
     work += {0, k_residual_steps, k_residual_steps * markers};
     return work;
   }
   void fit(const Tool& tool, const Markers& markers, const Labeling& labeling,
-           const Prediction& prediction, const MarkerNoise& now,
+           const Labeling& rival, const Prediction& prediction, const MarkerNoise& now,
            FittedTool& out) noexcept GLINT_NONBLOCKING;
 
   graph::LoopCounts counts_;

@@ -9,6 +9,7 @@
 #include "kernels/motion/head_anchor.hpp"
 #include "kernels/motion/interpolate.hpp"
 #include "kernels/motion/motion_track.hpp"
+#include "kernels/pose/expected_pose.hpp"
 #include "kernels/pose/few_markers.hpp"
 #include "kernels/pose/labeling.hpp"
 #include "kernels/pose/lever_arm.hpp"
@@ -52,7 +53,8 @@ struct Prediction {
   // By its followed motion, so that the covariance holds: of the middle of its markers, about the
   // camera's axes. Else the tool is held where the camera saw it.
   bool follows_motion = false;
-  bool only_near = false;  // its speed is known, too: what lies beyond reach_m is not it
+  bool only_near = false;     // its speed is known, too: what lies beyond reach_m is not it
+  double odds = k_odds_most;  // of that motion against another (expected_pose.hpp)
   Matrix6 covariance = Matrix6::Zero();
   // The markers' box in the image with that reach about each; not where one has no pixel.
   bool in_view = false;
@@ -82,6 +84,8 @@ struct ToolLabelings {
 // One labeling for each tool, no marker given twice.
 struct Assignment {
   std::array<Labeling, k_tools_max> labeling;
+  // The next one of as many markers that puts the tool elsewhere; count 0: there is none.
+  std::array<Labeling, k_tools_max> rival;
   std::array<Reason, k_tools_max> reason{};  // none: labeling holds
 };
 
@@ -97,6 +101,10 @@ struct FittedTool {
   double rms_m = 0;
   Pose T_camera_tool;
   Matrix6 covariance = Matrix6::Zero();  // of the tip, about the camera's axes
+  double odds = k_odds_most;  // against the likeliest pose that is far from it (expected_pose.hpp)
+  bool turned = false;        // it is not the motion that was followed
+  bool by_rival = false;      // its markers are named as the assignment's rival has them
+  [[nodiscard]] bool ambiguous() const { return odds < k_odds_least; }
   // What few markers tell a filter that expected the tool (agreed_pose.hpp): not a pose to show.
   bool tells_near = false;
   Pose near_T_camera_tool;
@@ -106,6 +114,10 @@ struct FittedTool {
 struct FittedTools {
   std::array<FittedTool, k_tools_max> tools;
 };
+[[nodiscard]] inline const Labeling& labeling_of(const Assignment& assignment,
+                                                 const FittedTool& fitted, std::size_t tool) {
+  return fitted.by_rival ? assignment.rival[tool] : assignment.labeling[tool];
+}
 
 // The frame at the middle of a tool's markers, as the camera saw it, with its covariance about the
 // camera's axes: there shift and rotation are measured nearly apart.
@@ -142,7 +154,9 @@ struct FollowedTool {
   std::uint32_t identity = 0;  // of the tool that it is of
   std::uint8_t few_mask = 0;   // one or two markers moved it on in place of a pose: which; 0: none
   bool stands = false;         // its pose is sure enough to be called measured
-  bool in_use = false;         // else it is as it was made
+  bool ambiguous = false;      // another is nearly as likely
+  bool filtered = false;  // the pose to show is the filter's: the markers alone show too little
+  bool in_use = false;    // else it is as it was made
 };
 // Of one slice: tool t is number t / k_tool_slices.
 struct FollowedTools {
@@ -155,6 +169,8 @@ struct FollowedTools {
 // enough (FollowMotion); its mask has no more, and the reason says why there are no more.
 struct Track {
   bool alive = false;                    // a pose younger than lost_after exists
+  bool filtered = false;                 // the newest is the filter's: the markers tell too little
+  bool doubted = false;                  // which never was told from another: it is not given out
   bool seen_now = false;                 // this frame gave it, by three markers or more
   bool has_previous = false;             // `previous` is in the same base and recent enough
   Reason reason = Reason::no_frame_yet;  // why this frame gave none
@@ -165,8 +181,9 @@ struct Track {
   double rms_m = 0;              // of the newest that three markers or more gave
   StampedPose newest, previous;  // T_base_tool
   Pose T_camera_tool;            // the newest, as the camera saw it
-  MotionState motion;   // T_base_middle (of its markers) and how it changes, not before newest.time
-  NoiseScale noise;     // of what the hand does next, as motion's filter has it
+  MotionState motion;  // T_base_middle (of its markers) and how it changes, not before newest.time
+  NoiseScale noise;    // of what the hand does next, as motion's filter has it
+  double odds = k_odds_most;  // of that motion against another (expected_pose.hpp)
   double surprise = 1;  // variance of the newest measurement beside what was foretold; 1: no more
   // What the headset's own error adds to motion's covariance, about the same point and axes.
   Matrix6 head_covariance = Matrix6::Zero();

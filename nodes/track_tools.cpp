@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "kernels/pose/lever_arm.hpp"
+
 namespace glint {
 namespace {
 
@@ -10,28 +12,47 @@ double surprise_of(const FollowedTool& followed, double numbers) {
   return std::max(1.0, followed.motion.last_correction().chi_square / numbers);
 }
 
-void accept(const FittedTool& found, const FollowedTool& followed, const FrameStamp& stamp,
-            const AnchoredHead& anchored, Duration velocity_gap_max, Track& track) {
+// Of the tool's own frame.
+Pose pose_of(const MotionState& middle, const Tool& tool) {
+  return {middle.pose.rotation, middle.pose * (-tool.middle_m())};
+}
+
+void accept(const FittedTool& found, const FollowedTool& followed, const Tool& tool,
+            const FrameStamp& stamp, const AnchoredHead& anchored, Duration velocity_gap_max,
+            Track& track) {
   const HeadPose& head = anchored.head;
   const ReferenceFrame base = head.valid ? ReferenceFrame::world : ReferenceFrame::camera;
-  const Pose pose = head.valid ? head.T_world_camera * found.T_camera_tool : found.T_camera_tool;
+  track.filtered = followed.filtered;
+  Pose pose = head.valid ? head.T_world_camera * found.T_camera_tool : found.T_camera_tool;
+  if (track.filtered) pose = pose_of(followed.estimate, tool);
   track.has_previous = track.alive && track.base == base &&
                        stamp.mid_exposure - track.newest.time <= velocity_gap_max;
   track.previous = track.newest;
   track.newest = {stamp.mid_exposure, pose};
   track.base = base;
   track.alive = true;
+  track.doubted = false;
   track.seen_now = true;
   track.reason = Reason::none;
   track.marker_mask = found.marker_mask;
   track.frame_sequence = stamp.sequence;
   track.rms_m = found.rms_m;
-  track.T_camera_tool = found.T_camera_tool;
+  track.T_camera_tool = head.valid ? head.T_world_camera.inverse() * pose : pose;
   track.motion = followed.estimate;
   track.noise = followed.noise;
   track.surprise = surprise_of(followed, 6);
   track.head_covariance = Matrix6::Zero();
   if (head.valid) track.head_covariance = anchored.lasting_at(track.motion.pose.translation);
+}
+
+// It is followed, so that time may make it sure, but not given out.
+void doubt(const FittedTool& found, const FollowedTool& followed, const Tool& tool,
+           const FrameStamp& stamp, const AnchoredHead& anchored, Duration velocity_gap_max,
+           Reason why, Track& track) {
+  accept(found, followed, tool, stamp, anchored, velocity_gap_max, track);
+  track.doubted = true;
+  track.seen_now = false;
+  track.reason = why;
 }
 
 // What is known goes on, but is no measurement.
@@ -47,15 +68,15 @@ void accept_few(const FollowedTool& followed, const Tool& tool, const FrameStamp
   move_on(followed, 3, track);
   if (!followed.stands) return;
   const HeadPose& head = anchored.head;
-  const Pose& middle = track.motion.pose;
-  const Pose pose{middle.rotation, middle * (-tool.middle_m())};
+  const Pose pose = pose_of(track.motion, tool);
+  track.filtered = true;
   track.has_previous = false;
   track.newest = {stamp.mid_exposure, pose};
   track.marker_mask = followed.few_mask;
   track.frame_sequence = stamp.sequence;
   track.T_camera_tool = head.valid ? head.T_world_camera.inverse() * pose : pose;
   track.head_covariance = Matrix6::Zero();
-  if (head.valid) track.head_covariance = anchored.lasting_at(middle.translation);
+  if (head.valid) track.head_covariance = anchored.lasting_at(track.motion.pose.translation);
 }
 
 // The world turned out to lie elsewhere: what is known of the tool moves along.
@@ -110,27 +131,50 @@ void TrackTools::operator()(const FrameVerdict& verdict, const Anchor& anchor,
     if (anchor.now.moved_along && track.base == ReferenceFrame::world) move(anchor.now, track);
 
     const FollowedTool& tool = followed[t % k_tool_slices].items[t / k_tool_slices];
+    const FittedTool& found = fitted[t % k_tool_slices].tools[t];
+    if (tool.reason == Reason::none) track.odds = found.odds;
     // Of an imprecise pose, too: too large an estimate would else keep every pose imprecise.
-    if (tool.reason == Reason::none && estimate_noise)
-      add(fitted[t % k_tool_slices].tools[t].residuals, noise, estimates.noise);
+    if (tool.reason == Reason::none && estimate_noise) add(found.residuals, noise, estimates.noise);
     if (tool.reason == Reason::none && tool.stands) {
       ++counts_[2];
-      accept(fitted[t % k_tool_slices].tools[t], tool, verdict.stamp, anchor.now,
-             settings.velocity_gap_max, track);
+      accept(found, tool, shape, verdict.stamp, anchor.now, settings.velocity_gap_max, track);
       continue;
     }
     track.seen_now = false;
-    track.reason = tool.reason != Reason::none ? tool.reason : Reason::imprecise;
+    const Reason why = tool.reason != Reason::none ? tool.reason
+                       : tool.ambiguous            ? Reason::ambiguous
+                                                   : Reason::imprecise;
+    track.reason = why;
+    const bool goes_on = track.alive && !track.doubted && !found.turned && track.base == tool.base;
+    if (tool.reason == Reason::none && !goes_on) {
+      doubt(found, tool, shape, verdict.stamp, anchor.now, settings.velocity_gap_max, why, track);
+      continue;
+    }
     if (tool.reason == Reason::none && track.alive && track.base == tool.base)
       move_on(tool, 6, track);
     if (tool.few_mask != 0 && track.alive)
       accept_few(tool, shape, verdict.stamp, anchor.now, track);
     if (verdict.stamp.mid_exposure - track.newest.time > settings.lost_after) {
-      const Reason why = track.reason;
       restart(shape, track);
       track.reason = why;
     }
   }
+}
+
+Matrix6 tip_covariance(const Track& track, const FittedTool& found, const Vector3& arm_m) noexcept {
+  if (!track.filtered) return found.covariance;
+  Matrix6 covariance;
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      constexpr int k_place[] = {k_position, k_rotation};
+      covariance.block<3, 3>(3 * i, 3 * j) =
+          track.motion.covariance.block<3, 3>(k_place[i], k_place[j]);
+    }
+  }
+  const Quaternion camera_base =
+      track.T_camera_tool.rotation * track.newest.pose.rotation.conjugate();
+  return moved_covariance(turned_covariance(covariance, camera_base),
+                          track.T_camera_tool.rotation * arm_m);
 }
 
 }  // namespace glint

@@ -3,42 +3,76 @@
 #include <cmath>
 
 #include "kernels/motion/interpolate.hpp"
+#include "kernels/pose/depth_flip.hpp"
 #include "kernels/pose/lever_arm.hpp"
 
 namespace glint {
+namespace {
+
+// The reference goes straight on, however far the step turns: a filter's equations are straight,
+// too, and on an arc place and turn would not hang together as they say.
+Pose stepped(const Pose& x, const Vector6& step, const Vector3& lever, const Vector3& reference_m) {
+  const Vector3 turn = step.tail<3>();
+  const Vector3 reference = x * reference_m + step.head<3>() + turn.cross(lever);
+  Pose out;
+  out.rotation = (from_rotation_vector(turn) * x.rotation).normalized();
+  out.translation = reference - out.rotation * reference_m;
+  return out;
+}
+
+// The step from x that lowers chi-square most, and the covariance there.
+NearPose solved(const NormalEquations& normal, const Pose& x, const Vector3& mean_m,
+                const Vector3& reference_m) {
+  NearPose near;
+  const Result<PoseFactor> factor = pose_factor(normal.matrix);
+  if (!factor) {
+    near.reason = Reason::degenerate;
+    return near;
+  }
+  const Vector3 lever = x.rotation * (reference_m - mean_m);
+  const Vector6 step = -factor.value.solve(normal.slope);
+  near.T_camera_tool = stepped(x, step, lever, reference_m);
+  near.covariance = moved_covariance(factor.value.inverse(), lever);
+  near.chi_square = normal.chi_square;
+  if (!std::isfinite(near.covariance.sum())) near.reason = Reason::degenerate;
+  return near;
+}
+
+}  // namespace
+
+Pose face_on(std::span<const WeightedMarker> markers, const Pose& T_camera_tool) noexcept {
+  const Vector3 mean_m = mean_of(markers);
+  const Pose flip = depth_flipped(T_camera_tool, flattest_direction(markers, mean_m), mean_m);
+  Pose out;
+  out.rotation = slerp(T_camera_tool.rotation, flip.rotation, 0.5);
+  out.translation = T_camera_tool * mean_m - out.rotation * mean_m;
+  return out;
+}
+
+NearPose near_pose(std::span<const WeightedMarker> markers, const Pose& x,
+                   const Vector3& reference_m) noexcept {
+  const Vector3 mean_m = mean_of(markers);
+  NormalEquations alone;
+  if (add_markers(markers, x, mean_m, alone)) return solved(alone, x, mean_m, reference_m);
+  NearPose none;
+  none.reason = Reason::degenerate;
+  return none;
+}
 
 AgreedPose agreed_pose(std::span<const WeightedMarker> markers, const ExpectedPose& expected,
                        int steps_max) noexcept {
   AgreedPose agreed;
+  agreed.reason = Reason::degenerate;
   const Vector3 mean_m = mean_of(markers);
   const Result<PoseFactor> known = pose_factor(expected.covariance);
-  if (!known) {
-    agreed.reason = Reason::degenerate;
-    return agreed;
-  }
+  if (!known) return agreed;
   const PosePrior prior{expected.T_camera_tool, known.value.inverse(), expected.reference_m};
   const WeightedFit fit = fit_weighted(markers, mean_m, expected.T_camera_tool, &prior, steps_max);
   agreed.steps = fit.steps;
   agreed.reason = fit.reason;
   if (agreed.reason != Reason::none) return agreed;
-  const Pose& x = fit.T_camera_tool;
-  NormalEquations alone;
-  const Result<PoseFactor> factor = add_markers(markers, x, mean_m, alone)
-                                        ? pose_factor(alone.matrix)
-                                        : Result<PoseFactor>{{}, Reason::degenerate};
-  if (!factor) {
-    agreed.reason = Reason::degenerate;
-    return agreed;
-  }
-  const Vector6 step = -factor.value.solve(alone.slope);
-  const Vector3 turn = step.tail<3>();
-  const Vector3 lever = x.rotation * (expected.reference_m - mean_m);
-  const Vector3 reference = x * expected.reference_m + step.head<3>() + turn.cross(lever);
-  Pose& out = agreed.T_camera_tool;
-  out.rotation = (from_rotation_vector(turn) * x.rotation).normalized();
-  out.translation = reference - out.rotation * expected.reference_m;
-  agreed.covariance = moved_covariance(factor.value.inverse(), lever);
-  if (!std::isfinite(agreed.covariance.sum())) agreed.reason = Reason::degenerate;
+  static_cast<NearPose&>(agreed) = near_pose(markers, fit.T_camera_tool, expected.reference_m);
+  agreed.chi_square = fit.chi_square;
   return agreed;
 }
 

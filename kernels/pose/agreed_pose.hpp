@@ -4,6 +4,7 @@
 //           both in sigmas; the step that the markers alone would take from x, and their own
 //           information there. A filter with the same expectation that is given x moved by this
 //           step, with the inverse of this information, ends at x: the expectation counts once.
+//           Face-on, between the two minima of a flat tool, x is the pose that faces the camera.
 // Cost:     one weighted fit of steps_max steps at most, a 6x6 factor.
 // Worst:    a start that needs all its steps.
 // Accuracy: first order about x. Markers nearly on a line, or a flat tool seen face-on, tell little
@@ -23,15 +24,29 @@
 
 namespace glint {
 
-struct AgreedPose {
-  // x moved by the markers' step: the reference straight on, however far the step turns. A filter's
-  // equations are straight, too; on an arc place and turn would not hang together as they say.
+// The reference straight on from x, however far the step turns. degenerate: the markers show
+// nothing of a direction.
+struct NearPose {
   Pose T_camera_tool;
-  Matrix6 covariance = Matrix6::Zero();  // of the expectation's reference, as fit_covariance.hpp
-  int steps = 0;
-  // degenerate: the expectation's covariance is none, or the markers tell nothing of a direction.
+  Matrix6 covariance = Matrix6::Zero();  // of the reference, as fit_covariance.hpp
+  double chi_square = 0;                 // at x
   Reason reason = Reason::none;
 };
+
+// The markers' own near x. chi_square: of the markers and the expectation at x, of three numbers a
+// marker. degenerate: the expectation's covariance is none, too.
+struct AgreedPose : NearPose {
+  int steps = 0;
+};
+
+// A flat tool turned about the markers' mean until it faces the camera. There, and only there, the
+// linear equations hold for both of its minima: a tilt shows in the ranges alone.
+[[nodiscard]] Pose face_on(std::span<const WeightedMarker> markers,
+                           const Pose& T_camera_tool) noexcept GLINT_NONBLOCKING;
+
+// Of one marker or more, from their linear equations about x.
+[[nodiscard]] NearPose near_pose(std::span<const WeightedMarker> markers, const Pose& x,
+                                 const Vector3& reference_m) noexcept GLINT_NONBLOCKING;
 
 // Of one marker or more.
 [[nodiscard]] AgreedPose agreed_pose(std::span<const WeightedMarker> markers,

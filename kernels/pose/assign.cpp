@@ -4,6 +4,8 @@
 #include <array>
 #include <bitset>
 
+#include "kernels/pose/choose_reading.hpp"
+
 namespace glint {
 namespace {
 
@@ -73,6 +75,29 @@ AssignWork assign_markers(std::span<const Labelings> per_tool, std::span<int> ch
     }
   }
   return work;
+}
+
+int rival_of(const Labelings& labelings, int chosen, int tool, const MarkerOwners& owners,
+             const Vector3& tip_m, int& tests) noexcept {
+  const int count = std::min(labelings.count, k_labelings_max);
+  const Labeling& own = labelings.items[static_cast<std::size_t>(chosen)];
+  int rival = -1;
+  for (int k = 0; k < count; ++k) {
+    const Labeling& other = labelings.items[static_cast<std::size_t>(k)];
+    if (k == chosen || other.count != own.count) continue;
+    if (rival >= 0 && other.predicted_worth_m2 == 0) continue;
+    ++tests;
+    bool free = true;
+    for (const std::int16_t marker : other.marker) {
+      if (marker < 0) continue;
+      const int owner = owners[static_cast<std::size_t>(marker) % k_blobs_max];
+      free = free && (owner < 0 || owner == tool);
+    }
+    if (!free || !are_apart(own.T_camera_tool, other.T_camera_tool, tip_m)) continue;
+    rival = k;
+    if (other.predicted_worth_m2 > 0) break;
+  }
+  return rival;
 }
 
 }  // namespace glint

@@ -25,6 +25,19 @@ CandidateSets all_of(const Candidates& candidates) {
   return sets;
 }
 
+// The candidates that a labeling names, each for any of the tool's markers.
+CandidateSets those_of(const Labeling& labeling, const Candidates& candidates) {
+  CandidateSet named{};
+  for (int a = 0; a < candidates.count; ++a) {
+    const std::int16_t marker = candidates.marker[static_cast<std::size_t>(a)];
+    if (std::find(labeling.marker.begin(), labeling.marker.end(), marker) != labeling.marker.end())
+      named.insert(a);
+  }
+  CandidateSets sets;
+  sets.fill(named);
+  return sets;
+}
+
 bool agrees(const Labeling& labeling, const Tool& tool, const Pose& prior, double gate_m) {
   for (int j = 0; j < tool.marker_count; ++j) {
     const auto slot = static_cast<std::size_t>(j);
@@ -106,8 +119,12 @@ CorrespondWork propose_labelings(const Markers& markers, const Tool& tool,
     run_levels(search, candidates.nearest, settings, std::min(most, least_alone - 1),
                least_predicted, labelings);
   }
-  if (!predicted || !settings.only_near)
+  if (!predicted || !settings.only_near) {
     run_levels(search, all_of(candidates), settings, most, least_alone, labelings);
+  }
+  if (predicted && labelings.count > 0) {
+    search.run(those_of(labelings.items[0], candidates), labelings.items[0].count);
+  }
   if (predicted) prefer_predicted(labelings, tool, settings, *prior_T_camera_tool);
   if (search.full()) {
     labelings.reason = Reason::search_full;

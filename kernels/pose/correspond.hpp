@@ -19,8 +19,8 @@
 //   1. First only candidates within prior_gate_m of their predicted places are tried; there, and
 //      only there, min_markers_with_prior are enough.
 //   2. Then, unless only_near, all candidates are, for labelings of at least
-//   min_markers_without_prior markers and no
-//      fewer than the best found.
+//      min_markers_without_prior markers and no fewer than the best found. Then the
+//      markers of the best labeling are, named in other ways: they may have been named wrongly.
 //   3. The order stays by count, then rms, then the smaller marker indices; but among labelings
 //      with the most markers whose rms the noise cannot tell from the least, count (rms^2 -
 //      least^2) <= 9 range_sigma^2 (3 sigma of the likelihood ratio), one with every marker within

@@ -13,12 +13,21 @@
 
 namespace glint {
 
+// Odds of a pose against the likeliest other one: twice the logarithm of their likelihoods' ratio,
+// in units of chi-square. Below the least a pose is ambiguous: the other one is true once in 3000.
+// More than the most does not count, so that a wrong pose needs few frames to be refuted.
+inline constexpr double k_odds_least = 16;
+inline constexpr double k_odds_most = 40;
+
 // covariance: of (the reference's place, rotation about the camera frame's fixed axes) in metres
 // and radians; as in fit_covariance.hpp.
 struct ExpectedPose {
   Pose T_camera_tool;
   Matrix6 covariance = Matrix6::Zero();
   Vector3 reference_m = Vector3::Zero();  // tool frame: the point whose place is expected
+  // By how much of chi-square the frames before preferred it to the likeliest other pose. Readings
+  // of this frame that differ by more outweigh it.
+  double odds = k_odds_most;
 };
 
 // A pose that agrees has 6 on average. Where it cannot be told, as large as this:

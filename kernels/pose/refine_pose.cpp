@@ -70,18 +70,23 @@ bool is_better(const Minimum& a, const Minimum& b) {
   return a.misfit() < b.misfit();
 }
 
-OtherMinimum other_than(const WeightedFit& best, const WeightedFit& second) {
+OtherMinimum other_than(const WeightedFit& best, const Minimum& second) {
   OtherMinimum other;
-  const Vector3 apart =
-      rotation_vector(second.T_camera_tool.rotation * best.T_camera_tool.rotation.conjugate());
+  const Pose& pose = second.fit.T_camera_tool;
+  const Vector3 apart = rotation_vector(pose.rotation * best.T_camera_tool.rotation.conjugate());
   const Matrix3 turning =
       best.information.bottomRightCorner<3, 3>().selfadjointView<Eigen::Lower>();
   other.exists = apart.dot(turning * apart) > k_minima_apart_least;
   if (!other.exists) return other;
-  other.T_camera_tool = second.T_camera_tool;
-  other.delta_chi_square = second.chi_square - best.chi_square;
+  other.T_camera_tool = pose;
+  other.covariance = second.covariance;
+  other.delta_chi_square = second.fit.chi_square - best.chi_square;
+  other.surprise = second.surprise;
   return other;
 }
+
+// Of the quaternions of a pose and of its flip: tilted by less than 29 degrees to the view.
+constexpr double k_shallow_dot = 0.8776;
 
 bool is_explained(double chi_square, int degrees_of_freedom) {
   return chi_square <= chi_square_limit(degrees_of_freedom);
@@ -111,7 +116,11 @@ RefinedPose refine_all(MarkerSpan markers, const Task& task, int steps_max) {
     const double hopeless = hopeless_beside(best, markers, out.degrees_of_freedom);
     Minimum second = fit_from(flip, markers, mean, task, steps_max, hopeless, out.work);
     if (is_better(second, best)) std::swap(best, second);
-    if (second.reason == Reason::none) out.other = other_than(best.fit, second.fit);
+    if (second.reason == Reason::none) {
+      out.other = other_than(best.fit, second);
+      out.shallow = std::abs(first.rotation.dot(flip.rotation)) > k_shallow_dot &&
+                    second.fit.chi_square - best.fit.chi_square < k_odds_least;
+    }
   }
   out.reason = best.reason;
   out.T_camera_tool = best.fit.T_camera_tool;

@@ -73,7 +73,9 @@ struct RefineWork {
 struct OtherMinimum {
   bool exists = false;
   Pose T_camera_tool;
-  double delta_chi_square = 0;  // by how much it is worse; 9: three sigmas
+  Matrix6 covariance = Matrix6::Zero();  // as the best one's
+  double delta_chi_square = 0;           // by how much it is worse; 9: three sigmas
+  double surprise = 0;
 };
 
 struct RefinedPose {
@@ -83,6 +85,9 @@ struct RefinedPose {
   double surprise = 0;         // to whom expected a pose; 0 where none was
   int degrees_of_freedom = 0;  // residuals, the prior's six too, less the pose's six
   OtherMinimum other;
+  // A flat tool seen nearly face-on: its two minima run into each other, or are nearly as likely.
+  // Each is surer of itself than the markers are.
+  bool shallow = false;
   int left_out = -1;  // index of the marker that did not fit, -1: all count
   RefineWork work;
   Reason reason = Reason::none;

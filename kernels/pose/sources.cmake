@@ -13,7 +13,8 @@ target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/tool.cpp
 target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/pose_factor.cpp
   ${CMAKE_CURRENT_LIST_DIR}/weighted_marker.cpp ${CMAKE_CURRENT_LIST_DIR}/marker_sight.cpp
   ${CMAKE_CURRENT_LIST_DIR}/normal_equations.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/expected_pose.cpp ${CMAKE_CURRENT_LIST_DIR}/pose_prior.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/expected_pose.cpp ${CMAKE_CURRENT_LIST_DIR}/choose_reading.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/pose_prior.cpp
   ${CMAKE_CURRENT_LIST_DIR}/weighted_fit.cpp ${CMAKE_CURRENT_LIST_DIR}/agreed_pose.cpp
   ${CMAKE_CURRENT_LIST_DIR}/depth_flip.cpp ${CMAKE_CURRENT_LIST_DIR}/refine_pose.cpp
   ${CMAKE_CURRENT_LIST_DIR}/decide_labeling.cpp ${CMAKE_CURRENT_LIST_DIR}/few_markers.cpp

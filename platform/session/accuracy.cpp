@@ -15,12 +15,13 @@ bool lies_beside(const BlobSlopes& blob, const Vector3& marker_m, double radius_
   return marker_m.cross(ray).squaredNorm() > 4 * radius_m * radius_m;
 }
 
-void state(const Tracker& tracker, int t, ToolOutcome& outcome) {
+void state(const Tracker& tracker, int t, const Estimates& estimates, ToolOutcome& outcome) {
   const auto i = static_cast<std::size_t>(t);
   const FittedTool& fitted = tracker.parts<FittedTools>(t % k_tool_slices).tools[i];
-  const Labeling& labeling = tracker.token<Assignment>().labeling[i];
+  const Labeling& labeling = labeling_of(tracker.token<Assignment>(), fitted, i);
   const Markers& markers = tracker.token<Markers>();
-  outcome.tip_sigma_m = std::sqrt(fitted.covariance.topLeftCorner<3, 3>().trace());
+  const Matrix6 covariance = tip_covariance(estimates.tracks[i], fitted, estimates.arm_m[i]);
+  outcome.tip_sigma_m = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
   for (std::size_t m = 0; m < labeling.marker.size(); ++m) {
     if (((fitted.marker_mask >> m) & 1) == 0) continue;
     const Vector3& ray = markers.items[static_cast<std::size_t>(labeling.marker[m])].ray;
@@ -60,7 +61,7 @@ FrameOutcome outcome_of(const Estimates& estimates, const Tracker* tracker) {
     tool.marker_mask = track.marker_mask;
     tool.T_camera_tool = track.T_camera_tool;
     tool.there = track.identity != 0;
-    if (tool.seen && tracker != nullptr) state(*tracker, t, tool);
+    if (tool.seen && tracker != nullptr) state(*tracker, t, estimates, tool);
   }
   return outcome;
 }

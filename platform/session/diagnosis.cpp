@@ -272,8 +272,10 @@ std::vector<std::string> marker_names(const Cell& cell, Tracker& tracker) {
     const auto i = static_cast<std::size_t>(t);
     if (assigned.reason[i] != Reason::none) continue;
     if (!tracker.output<Estimates>().tracks[i].seen_now) continue;
+    const FittedTool& fitted = tracker.parts<FittedTools>(t % k_tool_slices).tools[i];
+    const Labeling& labeling = labeling_of(assigned, fitted, i);
     for (std::size_t m = 0; m < k_markers_per_tool_max; ++m) {
-      const int marker = assigned.labeling[i].marker[m];
+      const int marker = labeling.marker[m];
       if (marker < 0 || marker >= markers.count ||
           static_cast<int>(m) >= cell.tools.items[i].marker_count) {
         continue;

@@ -18,12 +18,12 @@ Pose with_origin(const Pose& T_frame_tool, const Tool& tool, PoseOrigin origin) 
   return {T_frame_tool.rotation, T_frame_tool * tool.tip_m};
 }
 
-// The fit's covariance, of the tip about the camera's axes, as the exported pose has it.
+// The pose's covariance, of the tip about the camera's axes, as the exported pose has it.
 Matrix6 covariance_of(const FittedTool& fit, const Track& track, const Tool& tool,
                       PoseOrigin origin) {
-  Matrix6 covariance = fit.covariance;
+  Matrix6 covariance = tip_covariance(track, fit, tool.tip_m - tool.middle_m());
   if (origin == PoseOrigin::tool) {
-    covariance = moved_covariance(covariance, fit.T_camera_tool.rotation * (-tool.tip_m));
+    covariance = moved_covariance(covariance, track.T_camera_tool.rotation * (-tool.tip_m));
   }
   if (track.base != ReferenceFrame::world) return covariance;
   const Quaternion world_camera =
@@ -43,9 +43,9 @@ FramePose frame_pose(const ArrivedFrame& arrived, Tracker& tracker, const Tool& 
   pose.sequence = arrived.frame.sequence;
   pose.tool = tool.name.data();
   pose.reason = track.reason;
-  pose.state = track.seen_now ? TrackState::measured
-               : track.alive  ? TrackState::predicted
-                              : TrackState::lost;
+  pose.state = track.seen_now                  ? TrackState::measured
+               : track.alive && !track.doubted ? TrackState::predicted
+                                               : TrackState::lost;
   if (!track.seen_now) return pose;
   const FittedTool& fit = tracker.parts<FittedTools>(static_cast<int>(t) % k_tool_slices).tools[t];
   pose.frame = track.base;

@@ -60,16 +60,18 @@ class AssignKernel final : public NodeKernel<AssignMarkers> {
 // As the node fits markers that lie where they were predicted.
 constexpr RefineSettings k_predicted = {.markers_left_least = k_predicted_left_least};
 
+WeightedMarker weighed(const Tool& tool, int m, const Marker& seen, const MarkerNoise& noise) {
+  const double range_m = seen.surface_range_m + tool.centre_offset_m();
+  const MarkerSight sight = sight_of(seen, range_m, noise);
+  return weigh_marker(tool.markers_m[m], sight.rays, range_m, sight.variance).value;
+}
+
 // How much of its loops the fit of one tool runs, with what few whole markers tell near where they
 // were expected.
 int marker_steps_of(const Tool& tool, const Marker* seen, const MarkerNoise& noise,
                     const Prediction& prediction) {
   std::array<WeightedMarker, k_markers_per_tool_max> markers;
-  for (int m = 0; m < tool.marker_count; ++m) {
-    const double range_m = seen[m].surface_range_m + tool.centre_offset_m();
-    const MarkerSight sight = sight_of(seen[m], range_m, noise);
-    markers[m] = weigh_marker(tool.markers_m[m], sight.rays, range_m, sight.variance).value;
-  }
+  for (int m = 0; m < tool.marker_count; ++m) markers[m] = weighed(tool, m, seen[m], noise);
   const std::size_t count = static_cast<std::size_t>(tool.marker_count);
   const ExpectedPose expected = {prediction.T_camera_tool, prediction.covariance, tool.middle_m()};
   const int steps = agreed_pose({markers.data(), count}, expected, k_predicted.steps_max).steps;
@@ -103,7 +105,8 @@ class RefineKernel final : public NodeKernel<RefinePose> {
       Prediction& prediction = predictions_.tools[t];
       prediction.follows_motion = all || numbers.one_in(2);
       prediction.T_camera_tool = any_view(numbers);
-      prediction.covariance = 1e-4 * Matrix6::Identity();
+      // Unsure enough that no pose is unexpected.
+      prediction.covariance = (all ? 10 : 1e-4) * Matrix6::Identity();
       if (all) {
         set_.items[t] = add_hardest(limits.markers_per_tool, prediction, numbers);
       } else {
@@ -119,6 +122,9 @@ class RefineKernel final : public NodeKernel<RefinePose> {
       for (int m = 0; m < labeling.count; ++m) {
         labeling.marker[m] = static_cast<std::int16_t>(first + m);
       }
+      assignment_.rival[t].count = 0;
+      if (all || numbers.one_in(2))
+        assignment_.rival[t] = rival_to(labeling, set_.items[t], numbers);
     }
     show_in_image();
     tools_.set(set_, 1, 0);
@@ -168,6 +174,27 @@ class RefineKernel final : public NodeKernel<RefinePose> {
       std::copy_n(&markers_.items[first], count, seen.begin());
     }
     std::copy_n(seen.begin(), count, &markers_.items[first]);
+    return hardest;
+  }
+
+  // The same markers under other names: of some, the ones whose fits walk longest.
+  Labeling rival_to(const Labeling& labeling, const Tool& tool, Numbers& numbers) {
+    constexpr RefineSettings k_all_count = {.left_out_max = 0};
+    const int most = refine_work_max(labeling.count, k_all_count).marker_steps;
+    Labeling hardest = labeling, tried = labeling;
+    for (int reached = -1, tries = 0; reached < most && tries < k_tries; ++tries) {
+      for (int m = labeling.count - 1; m > 0; --m)
+        std::swap(tried.marker[m], tried.marker[numbers.below(m + 1)]);
+      std::array<WeightedMarker, k_markers_per_tool_max> seen;
+      for (int m = 0; m < labeling.count; ++m)
+        seen[m] = weighed(tool, m, markers_.items[tried.marker[m]], start_.noise);
+      const std::size_t count = static_cast<std::size_t>(labeling.count);
+      const int steps =
+          refine_pose({seen.data(), count}, tool.tip_m, nullptr, k_all_count).work.marker_steps;
+      if (steps <= reached) continue;
+      reached = steps;
+      hardest = tried;
+    }
     return hardest;
   }
 

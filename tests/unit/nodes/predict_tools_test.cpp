@@ -65,6 +65,14 @@ TEST_F(PredictTools, IsPredictedUpToLostAfterAndThenLostWithoutAPose) {
   EXPECT_TRUE(lost.pose.translation.isZero());
 }
 
+TEST_F(PredictTools, IsLostWhereThePoseWasNeverToldFromAnother) {
+  estimates_->tracks[0].doubted = true;
+  estimates_->tracks[0].reason = Reason::ambiguous;
+  EXPECT_EQ(at(1010).state, TrackState::lost);
+  EXPECT_EQ(at(1010).reason, Reason::ambiguous);
+  EXPECT_TRUE(at(1010).pose.translation.isZero());
+}
+
 TEST_F(PredictTools, CountsItsToolsAndThoseWithAPose) {
   (void)at(1010);
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 1, 1}}));

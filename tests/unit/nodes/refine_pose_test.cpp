@@ -1,5 +1,6 @@
 #include <cstdio>
 
+#include "kernels/pose/depth_flip.hpp"
 #include "kernels/pose/pose_factor.hpp"
 #include "tests/unit/nodes/refine_pose_scene.hpp"
 
@@ -271,6 +272,9 @@ TEST_F(RefinePose, NeverRunsItsLoopsMoreOftenThanItSays) {
       for (int i = 3; few && i < tool.marker_count; ++i) marker_of(t, i).flags = k_marker_uneven;
       for (int bad = 0; bad < (few ? 1 : 2); ++bad)
         marker_of(t, bad).surface_range_m *= random.within(0.3, 3);
+      Labeling& rival = world_->assignment.rival[static_cast<std::size_t>(t)];
+      rival = world_->assignment.labeling[static_cast<std::size_t>(t)];
+      std::swap(rival.marker[0], rival.marker[1]);
     }
     run();
     EXPECT_TRUE(graph::within(node_.counts(), worst)) << trial;
@@ -280,6 +284,50 @@ TEST_F(RefinePose, NeverRunsItsLoopsMoreOftenThanItSays) {
   EXPECT_EQ(most[1], 2);
   EXPECT_EQ(most[2], worst[2]);
   EXPECT_GT(most[4], worst[4] / 2);
+}
+
+// By 14 degrees from face-on, with 15 mm and 0.3 px of noise, the mirrored pose is as likely.
+TEST_F(RefinePose, IsAmbiguousWhereTheMirroredPoseIsNearlyAsLikelyUntilTheMotionDecides) {
+  Random random(21);
+  const Tool tool = test::flat_tool();
+  node_.noise.range_sigma_m = 0.015;
+  node_.noise.pixel_sigma_px = 0.3;
+  int ambiguous = 0, decided = 0, apart = 0, turned = 0;
+  constexpr int k_trials = 200;
+  for (int trial = 0; trial < k_trials; ++trial) {
+    start_over();
+    const Pose truth = test::tilted_pose(tool, 0.25, k_place, random);
+    add_tool(0, tool, truth, 1, random);
+    Prediction& prediction = world_->predictions.tools[0];
+    prediction = {};
+    ambiguous += run_one().ambiguous() ? 1 : 0;
+    foretell(tool, truth, prediction);
+    decided += run_one().ambiguous() ? 0 : 1;
+    // Followed for long, and wrongly: what is foretold is the mirrored pose.
+    foretell(tool, depth_flipped(truth, Vector3::UnitX(), test::mean_of_markers(tool)), prediction);
+    prediction.odds = 0;
+    const FittedTool& wrong = run_one();
+    apart += wrong.odds < k_odds_most ? 1 : 0;
+    turned += wrong.turned ? 1 : 0;
+  }
+  EXPECT_GT(ambiguous, 0.5 * k_trials);
+  EXPECT_GT(decided, 0.9 * k_trials);
+  EXPECT_GT(turned, 0.5 * k_trials) << "odds of zero let the frame decide";
+  EXPECT_GT(apart, 0.5 * k_trials);
+}
+
+TEST_F(RefinePose, TakesTheRivalLabelingWhereTheNoiseExplainsItBetter) {
+  Random random(22);
+  const Tool tool = test::random_tool(random, 5);
+  add_tool(0, tool, test::tilted_pose(tool, 0.5, k_place, random), 1, random);
+  Labeling& labeling = world_->assignment.labeling[0];
+  Labeling& rival = world_->assignment.rival[0];
+  rival = labeling;
+  std::swap(labeling.marker[0], labeling.marker[1]);
+  const FittedTool& found = run_one();
+  EXPECT_EQ(found.reason, Reason::none);
+  EXPECT_TRUE(found.by_rival);
+  EXPECT_EQ(&labeling_of(world_->assignment, found, 0), &rival);
 }
 
 TEST_F(RefinePose, CountsTheMarkersOfItsFitsAndTheirSteps) {

@@ -116,9 +116,45 @@ TEST_F(TrackToolsInTime, LosesAToolWhosePoseByFewMarkersIsTooUnsure) {
   EXPECT_FALSE(few(false).alive) << "250 ms after the last that stood";
 }
 
+TEST_F(TrackToolsInTime, FollowsAnAmbiguousPoseWithoutGivingItOut) {
+  FittedTool& fit = (*fitted_)[0].tools[0];
+  fit.odds = 5;
+  followed().ambiguous = true;
+  const Track first = found(false);
+  EXPECT_TRUE(first.alive && first.doubted);
+  EXPECT_FALSE(first.seen_now);
+  EXPECT_EQ(first.reason, Reason::ambiguous);
+  EXPECT_EQ(first.odds, 5) << "what the next frame's evidence adds to";
+  fit.odds = 20;
+  followed().ambiguous = false;
+  const Track told = found();
+  EXPECT_TRUE(told.seen_now);
+  EXPECT_FALSE(told.doubted);
+  // A tool that was told apart goes on as predicted while a frame is ambiguous ...
+  fit.odds = 5;
+  followed().ambiguous = true;
+  const Track again = found(false);
+  EXPECT_FALSE(again.doubted || again.seen_now);
+  EXPECT_EQ(again.newest.time, told.newest.time);
+  // ... but not where it turned out to be the other one.
+  fit.turned = true;
+  EXPECT_TRUE(found(false).doubted);
+}
+
+TEST_F(TrackToolsInTime, ShowsTheFiltersPoseWhereTheMarkersAloneAreUnsure) {
+  (*fitted_)[0].tools[0].T_camera_tool.translation = {0, 0, 0.6};
+  followed().estimate.pose.translation = Vector3(0, 0, 0.5) + set_->items[0].middle_m();
+  EXPECT_NEAR(found().T_camera_tool.translation.z(), 0.6, 1e-12);
+  followed().filtered = true;
+  EXPECT_NEAR(found().T_camera_tool.translation.z(), 0.5, 1e-12);
+  EXPECT_TRUE(out_->tracks[0].filtered);
+}
+
 TEST_F(TrackToolsInTime, CallsNoPoseMeasuredThatIsUnsureButGoesOnByIt) {
-  EXPECT_FALSE(found(false).alive) << "a first pose that is imprecise";
+  EXPECT_TRUE(found(false).doubted) << "a first pose that is imprecise";
+  EXPECT_FALSE(out_->tracks[0].seen_now);
   EXPECT_EQ(out_->tracks[0].reason, Reason::imprecise);
+  EXPECT_FALSE(found().doubted);
   const Time sure = found().newest.time;
   followed().estimate.pose.translation.x() = 0.01;
   const Track& track = found(false);

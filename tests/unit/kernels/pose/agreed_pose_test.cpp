@@ -146,6 +146,48 @@ TEST(AgreedPose, ItsReferenceGoesStraightOnHoweverFarTheStepTurns) {
   EXPECT_GT(most_turn, 0.2) << "else no step turned far";
 }
 
+// Tilted by less than the ranges can show: both minima are some degrees off, and each states the
+// sureness of its own slope.
+TEST(AgreedPose, StatesFaceOnWhatTheRangesShow) {
+  Random random(5);
+  const Tool tool = test::flat_tool();
+  const Vector3 mean = test::mean_of_markers(tool);
+  const MarkerVariance noisy{0.09, 0, 0.09, 0.005 * 0.005};
+  constexpr int k_trials = 2000;
+  double facing = 0, likeliest = 0;
+  for (int trial = 0; trial < k_trials; ++trial) {
+    const Pose truth = test::tilted_pose(tool, random.within(0, 0.08), k_place, random);
+    const auto markers = test::weighted_view(tool, truth, noisy, 1, random);
+    const RefinedPose pose = refine_pose(markers, mean);
+    ASSERT_EQ(pose.reason, Reason::none);
+    EXPECT_TRUE(pose.shallow);
+    const NearPose near = near_pose(markers, face_on(markers, pose.T_camera_tool), mean);
+    ASSERT_EQ(near.reason, Reason::none);
+    const auto nees = [&](const Pose& found, const Matrix6& covariance) {
+      const Vector6 error = difference(found, truth, mean);
+      return error.dot(pose_factor(covariance).value.solve(error)) / (6 * k_trials);
+    };
+    facing += nees(near.T_camera_tool, near.covariance);
+    likeliest += nees(pose.T_camera_tool, pose.covariance);
+  }
+  std::printf("  NEES/6: face-on %.2f, the likeliest pose %.2f\n", facing, likeliest);
+  EXPECT_NEAR(facing, 1, 0.1);
+  EXPECT_GT(likeliest, 1.15 * facing) << "else there is nothing to mend";
+}
+
+TEST(AgreedPose, TurnsAFlatToolFaceOnAboutItsMean) {
+  Random random(6);
+  const Tool tool = test::flat_tool();
+  const Pose tilted = test::tilted_pose(tool, 0.4, k_place, random);
+  const auto markers = test::weighted_view(tool, tilted, k_usual, 0, random);
+  const Pose facing = face_on(markers, tilted);
+  const Vector3 mean = test::mean_of_markers(tool);
+  EXPECT_LT((facing * mean - tilted * mean).norm(), 1e-9);
+  const Vector3 normal = facing.rotation * Vector3::UnitX();
+  EXPECT_NEAR(std::abs(normal.dot((facing * mean).normalized())), 1, 1e-6);
+  EXPECT_NEAR(facing.rotation.angularDistance(tilted.rotation), 0.4, 1e-6);
+}
+
 TEST(AgreedPose, SaysWhereThereIsNone) {
   Random random(3);
   const Tool tool = test::five_marker_pen();

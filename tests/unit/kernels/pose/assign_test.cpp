@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <vector>
 
+#include "kernels/motion/interpolate.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
 
 namespace glint::assign_test {
@@ -113,6 +114,40 @@ TEST(Assign, NeverGivesAMarkerToTwoTools) {
       }
     }
   }
+}
+
+Labeling turned(Labeling labeling, double radians) {
+  labeling.T_camera_tool.rotation = from_rotation_vector(Vector3(radians, 0, 0));
+  return labeling;
+}
+
+TEST(Assign, FindsTheRivalOfAsManyFreeMarkersThatPutsTheToolElsewhere) {
+  const Labelings labelings = labelings_of(
+      {labeling_of({0, 1, 2}, 0.001), turned(labeling_of({1, 0, 2}, 0.002), 0.05),
+       turned(labeling_of({3, 0, 2}, 0.002), 1), turned(labeling_of({2, 1, 4}, 0.003), 1),
+       turned(labeling_of({0, 1}, 0.001), 1)});
+  MarkerOwners owners;
+  owners.fill(-1);
+  owners[0] = owners[1] = owners[2] = 0;
+  int tests = 0;
+  EXPECT_EQ(rival_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 2);
+  EXPECT_LE(tests, k_labelings_max - 1);
+  owners[3] = 1;
+  EXPECT_EQ(rival_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 3) << "3 is another tool's";
+  owners[4] = 1;
+  EXPECT_EQ(rival_of(labelings, 0, 0, owners, Vector3::Zero(), tests), -1)
+      << "0.05 rad is the same place, two markers are not as many";
+}
+
+TEST(Assign, PrefersAsARivalTheOneThatWasForetold) {
+  Labelings labelings =
+      labelings_of({labeling_of({0, 1, 2}, 0.001), turned(labeling_of({1, 2, 0}, 0.002), 1),
+                    turned(labeling_of({2, 0, 1}, 0.004), 2)});
+  labelings.items[2].predicted_worth_m2 = 1e-6;
+  MarkerOwners owners;
+  owners.fill(-1);
+  int tests = 0;
+  EXPECT_EQ(rival_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 2);
 }
 
 }  // namespace
