@@ -102,7 +102,7 @@ struct FittedLabeling {
 };
 
 // Both minima, the better one first. Returns how many there are.
-std::size_t add_readings(const RefinedPose& pose, int labeling, std::span<Reading> out) {
+std::size_t add_readings(const RefinedPose& pose, int labeling, std::span<PoseReading> out) {
   const double cost = pose.left_out >= 0 ? k_left_out_cost : 0;
   const double most = chi_square_limit(pose.degrees_of_freedom);
   const double first = pose.chi_square, second = first + pose.other.delta_chi_square;
@@ -134,7 +134,7 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
       std::min(settings.left_out_steps_max, k_most.left_out_steps_max),
       labeling.predicted_worth_m2 > 0 ? k_predicted_left_least : k_most.markers_left_least};
   const ExpectedPose expected = {prediction.T_camera_tool, prediction.covariance, tool.middle_m()};
-  std::array<Reading, 4> readings;
+  std::array<PoseReading, 4> readings;
   std::size_t count = 0;
   for (int k = 0; k < 2; ++k) {
     FittedLabeling& fitted = fits[static_cast<std::size_t>(k)];
@@ -158,7 +158,7 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
   }
   const ChosenReading chosen =
       choose_reading({readings.data(), count}, prediction.odds, tool.tip_m);
-  const Reading& reading = readings[static_cast<std::size_t>(chosen.index)];
+  const PoseReading& reading = readings[static_cast<std::size_t>(chosen.index)];
   const FittedLabeling& best = fits[static_cast<std::size_t>(reading.labeling)];
   const RefinedPose& pose = best.pose;
   const double chi_square = reading.chi_square - (pose.left_out >= 0 ? k_left_out_cost : 0);

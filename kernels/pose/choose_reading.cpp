@@ -10,17 +10,17 @@ bool are_apart(const Pose& one, const Pose& other, const Vector3& tip_m) noexcep
          std::abs(one.rotation.dot(other.rotation)) < k_readings_apart_dot;
 }
 
-ChosenReading choose_reading(std::span<const Reading> readings, double odds_before,
+ChosenReading choose_reading(std::span<const PoseReading> readings, double odds_before,
                              const Vector3& tip_m) noexcept {
   double surprise_most = k_followed_surprise_most;
   bool follows = false;
-  for (const Reading& reading : readings) {
+  for (const PoseReading& reading : readings) {
     if (!reading.explained || reading.surprise > surprise_most) continue;
     surprise_most = reading.surprise;
     follows = true;
   }
   surprise_most += odds_before;
-  const auto misfit = [&](const Reading& reading) {
+  const auto misfit = [&](const PoseReading& reading) {
     return reading.chi_square + std::min(reading.surprise, surprise_most);
   };
   std::size_t best = 0;
@@ -34,7 +34,7 @@ ChosenReading choose_reading(std::span<const Reading> readings, double odds_befo
   chosen.unexpected = elsewhere && !follows;
   bool alone = true;
   double ahead = k_odds_most;
-  for (const Reading& reading : readings) {
+  for (const PoseReading& reading : readings) {
     if (!are_apart(readings[best].T_camera_tool, reading.T_camera_tool, tip_m)) continue;
     alone = false;
     ahead = std::min(ahead, misfit(reading) - misfit(readings[best]));

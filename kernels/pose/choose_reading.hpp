@@ -32,7 +32,7 @@ inline constexpr double k_followed_surprise_most = 40;
 // among those that were not looked at.
 inline constexpr double k_no_rival_worth = 8;
 
-struct Reading {
+struct PoseReading {
   Pose T_camera_tool;
   Matrix6 covariance = Matrix6::Zero();
   double chi_square = 0;
@@ -52,7 +52,8 @@ struct ChosenReading {
                              const Vector3& tip_m) noexcept GLINT_NONBLOCKING;
 
 // One reading at least. odds_before: of the expectation that the surprises are from.
-[[nodiscard]] ChosenReading choose_reading(std::span<const Reading> readings, double odds_before,
+[[nodiscard]] ChosenReading choose_reading(std::span<const PoseReading> readings,
+                                           double odds_before,
                                            const Vector3& tip_m) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -13,15 +13,16 @@ namespace {
 const Vector3 k_tip(0, 0, -0.1);
 
 // Turned by so much from the camera's axes.
-Reading reading_of(double radians, double chi_square, double surprise) {
-  Reading reading;
+PoseReading reading_of(double radians, double chi_square, double surprise) {
+  PoseReading reading;
   reading.T_camera_tool.rotation = from_rotation_vector(Vector3(radians, 0, 0));
   reading.chi_square = chi_square;
   reading.surprise = surprise;
   return reading;
 }
 
-ChosenReading chosen_of(const std::vector<Reading>& readings, double odds_before = k_odds_most) {
+ChosenReading chosen_of(const std::vector<PoseReading>& readings,
+                        double odds_before = k_odds_most) {
   return choose_reading(readings, odds_before, k_tip);
 }
 
@@ -60,7 +61,7 @@ TEST(ChooseReading, GathersEvidenceUpToABound) {
 }
 
 TEST(ChooseReading, IsUnexpectedWhereTheFollowedReadingIsMissingOrNotExplained) {
-  Reading torn = reading_of(0, 300, 5);
+  PoseReading torn = reading_of(0, 300, 5);
   torn.explained = false;
   const ChosenReading missing = chosen_of({reading_of(0.7, 3, 2500)});
   const ChosenReading chosen = chosen_of({torn, reading_of(0.7, 3, 2500)});
