@@ -59,6 +59,13 @@ TEST_F(AnchorHeadByABody, CountsTheFramesThatShowTheBody) {
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1}}));
 }
 
+TEST_F(AnchorHeadByABody, TakesNoAmbiguousPoseForTheBodys) {
+  body().odds = k_odds_least - 1;
+  for (int i = 1; i < 9; ++i) frame(i);
+  EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1}}));
+  EXPECT_FALSE(out_.state.known());
+}
+
 // How long the head moved unseen is unknown then: its correction counts for nothing any more.
 TEST_F(AnchorHeadByABody, LosesItsCorrectionWhereTheClockRestarts) {
   for (int i = 1; i < 30; ++i) frame(i);

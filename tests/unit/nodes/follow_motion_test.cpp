@@ -265,6 +265,26 @@ TEST_F(FollowMotion, LetsAPoseStandOnlyWithinBothLimits) {
   }
 }
 
+TEST_F(FollowMotion, LetsNoAmbiguousPoseStandHoweverSureItIs) {
+  for (int i = 0; i < 20; ++i) frame();
+  ASSERT_TRUE(tool().stands);
+  const Time before = tool().estimate.time;
+  (*fitted_)[0].tools[0].odds = k_odds_least - 1;
+  frame();
+  EXPECT_TRUE(tool().ambiguous);
+  EXPECT_FALSE(tool().stands);
+  EXPECT_GT(tool().estimate.time, before) << "but it is followed";
+}
+
+TEST_F(FollowMotion, BeginsAnewWhereThePoseIsNotTheOneThatWasFollowed) {
+  for (int i = 0; i < 90; ++i) frame();
+  ASSERT_TRUE(tool().motion.rests());
+  (*fitted_)[0].tools[0].turned = true;
+  frame();
+  EXPECT_FALSE(tool().motion.rests());
+  EXPECT_EQ(tool().noise.linear, NoiseScale{}.linear);
+}
+
 TEST_F(FollowMotion, LetsNoPoseOfAFrameStandInTheNext) {
   for (int i = 0; i < 9; ++i) frame();
   ASSERT_TRUE(tool().stands);

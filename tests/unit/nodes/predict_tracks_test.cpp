@@ -83,6 +83,11 @@ TEST_F(PredictTracks, HasTheWholeFrameSearchedUnlessEachToolWasSeen) {
   EXPECT_FALSE(predictions_->narrowed) << "now and then the whole frame";
 }
 
+TEST_F(PredictTracks, HandsOnTheOddsOfTheMotion) {
+  track().odds = 7;
+  EXPECT_EQ(predict().odds, 7);
+}
+
 TEST_F(PredictTracks, CountsItsToolsThoseItMovedAndTheirMarkers) {
   predict();
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 1, 1, 3}}));

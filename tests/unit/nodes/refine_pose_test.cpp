@@ -316,6 +316,25 @@ TEST_F(RefinePose, IsAmbiguousWhereTheMirroredPoseIsNearlyAsLikelyUntilTheMotion
   EXPECT_GT(apart, 0.5 * k_trials);
 }
 
+// All four markers whole, but their likeliest pose is surer than their ranges.
+TEST_F(RefinePose, StatesOfAFlatToolFaceOnWhatItsRangesShow) {
+  Random random(23);
+  const Tool tool = test::flat_tool();
+  node_.noise.range_sigma_m = 0.005;
+  const Pose truth = test::tilted_pose(tool, 0.1, k_place, random);
+  add_tool(0, tool, truth, 1, random);
+  const double turn_alone =
+      refine_pose(test::weighted_view(tool, truth, {0.01, 0, 0.01, 2.5e-5}, 1, random), tool.tip_m)
+          .covariance.bottomRightCorner<3, 3>()
+          .trace();
+  const FittedTool first = run_one();
+  EXPECT_FALSE(first.tells_near) << "nothing is expected";
+  const double turn = first.covariance.bottomRightCorner<3, 3>().trace();
+  EXPECT_GT(turn, 1.2 * turn_alone);
+  foretell(tool, truth, world_->predictions.tools[0]);
+  EXPECT_TRUE(run_one().tells_near);
+}
+
 TEST_F(RefinePose, TakesTheRivalLabelingWhereTheNoiseExplainsItBetter) {
   Random random(22);
   const Tool tool = test::random_tool(random, 5);
