@@ -22,8 +22,11 @@ void NameFew::operator()(const FrameVerdict& verdict, const Markers& markers,
                 assignment.reason[t] != Reason::none};
     any_wanted = any_wanted || (expected.predicted && expected.wanted);
     if (expected.wanted) continue;
-    for (const std::int16_t marker : assignment.labeling[t].marker) {
-      if (marker >= 0) taken[static_cast<std::size_t>(marker) % k_blobs_max] = true;
+    for (const Labeling* labeling : {&assignment.labeling[t], &assignment.rival[t]}) {
+      if (labeling->count == 0) continue;
+      for (const std::int16_t marker : labeling->marker) {
+        if (marker >= 0) taken[static_cast<std::size_t>(marker) % k_blobs_max] = true;
+      }
     }
   }
   if (!any_wanted) return;

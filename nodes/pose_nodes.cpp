@@ -25,6 +25,13 @@ Reason left_unsearched(const Markers& markers, const Predictions& predictions,
   return predictions.narrowed ? Reason::runs_full : markers.incomplete;
 }
 
+void own(const Labeling& labeling, int tool, MarkerOwners& owners) {
+  for (const std::int16_t marker : labeling.marker) {
+    if (marker >= 0)
+      owners[static_cast<std::size_t>(marker) % k_blobs_max] = static_cast<std::int8_t>(tool);
+  }
+}
+
 }  // namespace
 
 void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
@@ -93,10 +100,7 @@ void AssignMarkers::operator()(const FrameVerdict& verdict, const graph::Latest<
     const auto i = static_cast<std::size_t>(t);
     if (chosen_[i] < 0) continue;
     assignment.labeling[i] = per_tool_[i].items[static_cast<std::size_t>(chosen_[i])];
-    for (const std::int16_t marker : assignment.labeling[i].marker) {
-      if (marker >= 0)
-        owners_[static_cast<std::size_t>(marker) % k_blobs_max] = static_cast<std::int8_t>(t);
-    }
+    own(assignment.labeling[i], t, owners_);
   }
   int tests = work.tests;
   for (int t = 0; t < count; ++t) {
@@ -105,7 +109,9 @@ void AssignMarkers::operator()(const FrameVerdict& verdict, const graph::Latest<
     if (chosen_[i] < 0) continue;
     const int rival =
         rival_of(per_tool_[i], chosen_[i], t, owners_, tools.value().items[i].tip_m, tests);
-    if (rival >= 0) assignment.rival[i] = per_tool_[i].items[static_cast<std::size_t>(rival)];
+    if (rival < 0) continue;
+    assignment.rival[i] = per_tool_[i].items[static_cast<std::size_t>(rival)];
+    own(assignment.rival[i], t, owners_);  // RefinePose may prefer it
   }
   counts_ = {{1, count, work.rounds, tests}};
 }

@@ -92,7 +92,7 @@ constexpr double k_surprise_most = chi_square_limit(6);
 // Of chi-square, above the minima.
 constexpr double k_wall_least = 16;
 
-// What a marker that had to be left out speaks against a reading.
+// Added to the chi-square of a reading that needs one marker left out.
 constexpr double k_left_out_cost = chi_square_limit(3);
 
 // A labeling, its markers weighed, and its pose.
@@ -168,8 +168,8 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
   const bool followed = prediction.follows_motion && !chosen.turned && !chosen.unexpected;
   const SeenMarkers kept = without(best.seen, pose.left_out);
   const std::span<const WeightedMarker> items = {kept.items.data(), kept.count};
-  // Between two minima that run into each other there is no wall that the noise could not pass:
-  // what holds for both is what the markers show of a pose between them.
+  // Where the noise bridges the wall between the two minima, the linear equations of the pose
+  // between them hold for both.
   Pose facing;
   NearPose between;
   bool shallow = false;
@@ -207,8 +207,8 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
   if (out.reason != Reason::none) return;
   double growth = stretched ? chi_square / pose.degrees_of_freedom : 1.0;
   const bool weak = stretched || pose.left_out >= 0 || kept.whole_count() <= k_agree_by_chance_most;
-  // The markers and the motion, each explained alone, may contradict each other; and what agrees by
-  // chance does not end a motion that was told from others.
+  // Markers and motion may each pass their own test and fail together. Few markers agree by chance:
+  // they do not end a motion whose odds are settled.
   const bool contradicts =
       out.tells_near && !shallow &&
       agreed.chi_square > growth * chi_square_limit(3 * static_cast<int>(kept.count));

@@ -9,8 +9,8 @@
 namespace glint {
 namespace {
 
-// The reference goes straight on, however far the step turns: a filter's equations are straight,
-// too, and on an arc place and turn would not hang together as they say.
+// The reference moves along a line, however far the step turns: the covariance of position and
+// rotation is linear, as the filter's equations are.
 Pose stepped(const Pose& x, const Vector6& step, const Vector3& lever, const Vector3& reference_m) {
   const Vector3 turn = step.tail<3>();
   const Vector3 reference = x * reference_m + step.head<3>() + turn.cross(lever);

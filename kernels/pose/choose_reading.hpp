@@ -1,11 +1,9 @@
 // Which reading of a tool's markers is the true one, and the odds of that against all others.
 //
-// What:     a reading is a labeling and one of its pose's minima. The likeliest has the least sum
-// of
-//           chi-square and surprise: how well the noise explains it, how well the followed motion
-//           does. The motion may itself be that of a wrong reading: its surprise counts for no more
-//           than the odds with which the frames before preferred it. So evidence of the frames adds
-//           up, and a wrong pose is outweighed in the end.
+// What:     a reading is a labeling and one of its pose's minima. The chosen one has the least sum
+//           of chi-square (against the noise) and surprise (against the followed motion). The
+//           motion may itself follow a wrong reading: a surprise counts at most by the odds that
+//           earlier frames gave the motion. Evidence accumulates, and a wrong motion is outweighed.
 // Cost:     a few operations a pair of readings.
 // Worst:    all readings exist.
 // Accuracy: as the likelihoods: a motion model with too small a covariance overrates what is near.

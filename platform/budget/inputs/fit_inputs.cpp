@@ -29,6 +29,9 @@ class AssignKernel final : public NodeKernel<AssignMarkers> {
         labeling.marker.fill(-1);
         labeling.count = 3 + numbers.below(limits.markers_per_tool - 2);
         labeling.rms_m = numbers.within(0, 0.004);
+        // Of contested ones the last alone lies elsewhere: all are tested before a rival is found.
+        if (!contested || k + 1 == k_labelings_max)
+          labeling.T_camera_tool.rotation = numbers.rotation();
         if (contested) {
           contest(t, k, numbers, labeling);
           continue;

@@ -74,5 +74,40 @@ TEST_F(Correspond, OpensItsGatesWithTheNoiseThatWasSeenAndNeverClosesThem) {
   }
 }
 
+// RefinePose may prefer either: a stray in the rivals of two tools would be both tools' marker.
+TEST(AssignMarkers, GivesNoMarkerToTheLabelingsOfTwoTools) {
+  const auto labeling = [](std::int16_t a, std::int16_t b, std::int16_t c, double turn) {
+    Labeling out;
+    out.marker.fill(-1);
+    out.marker[0] = a;
+    out.marker[1] = b;
+    out.marker[2] = c;
+    out.count = 3;
+    out.rms_m = 0.001 + 0.001 * turn;
+    out.T_camera_tool.rotation = Quaternion(1, turn, 0, 0).normalized();
+    return out;
+  };
+  auto set = std::make_unique<ToolSet>();
+  set->count = 2;
+  graph::Latest<ToolSet> tools;
+  tools.set(*set, 1, 0);
+  auto labelings = std::make_unique<graph::Parts<ToolLabelings, k_tool_slices>>();
+  for (std::int16_t t = 0; t < 2; ++t) {
+    Labelings& own = (*labelings)[t % k_tool_slices].tools[static_cast<std::size_t>(t)];
+    const auto first = static_cast<std::int16_t>(3 * t);
+    own.items[0] = labeling(first, static_cast<std::int16_t>(first + 1),
+                            static_cast<std::int16_t>(first + 2), 0);
+    own.items[1] = labeling(first, static_cast<std::int16_t>(first + 1), 6, 1);  // 6: a stray
+    own.count = 2;
+  }
+  auto node = std::make_unique<AssignMarkers>();
+  auto assignment = std::make_unique<Assignment>();
+  (*node)(FrameVerdict{}, tools, *labelings, *assignment);
+  EXPECT_EQ(assignment->labeling[1].marker[0], 3);
+  EXPECT_EQ(assignment->rival[0].count, 3);
+  EXPECT_EQ(assignment->rival[0].marker[2], 6);
+  EXPECT_EQ(assignment->rival[1].count, 0);
+}
+
 }  // namespace
 }  // namespace glint
