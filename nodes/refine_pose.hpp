@@ -24,9 +24,9 @@ inline constexpr int k_predicted_left_least = 3;
 // covariance grown to what its residuals show, and where four times the noise would not do either
 // it is none: its reason is bad_fit. So it is where three markers, or what was forgiven, put the
 // tool where its followed motion cannot have brought it. The mask names the markers that count.
-// What no more than three whole ones, or a flat tool nearly face-on, tell a filter is read near
-// where it expects the tool, or face-on. The labeling's rival is fitted beside it; the likeliest
-// reading stands, with its odds against the others (choose_reading.hpp).
+// For three isolated markers or fewer the filter receives a measurement linearised at its
+// prediction; for a flat tool nearly face-on, one linearised face-on. The rival labeling is fitted,
+// too: choose_reading.hpp selects a reading and returns its odds against the others.
 struct RefinePose {
   static constexpr std::array<std::string_view, 5> k_loops = {"call", "tools", "fits", "steps",
                                                               "marker_steps"};

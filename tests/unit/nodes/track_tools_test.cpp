@@ -127,15 +127,15 @@ TEST_F(TrackToolsInTime, FollowsAnAmbiguousPoseWithoutGivingItOut) {
   EXPECT_EQ(first.odds, 5) << "what the next frame's evidence adds to";
   fit.odds = 20;
   followed().ambiguous = false;
-  const Track told = found();
-  EXPECT_TRUE(told.seen_now);
-  EXPECT_FALSE(told.doubted);
-  // A tool that was told apart goes on as predicted while a frame is ambiguous ...
+  const Track settled = found();
+  EXPECT_TRUE(settled.seen_now);
+  EXPECT_FALSE(settled.doubted);
+  // A tool with settled odds is predicted while a frame is ambiguous ...
   fit.odds = 5;
   followed().ambiguous = true;
   const Track again = found(false);
   EXPECT_FALSE(again.doubted || again.seen_now);
-  EXPECT_EQ(again.newest.time, told.newest.time);
+  EXPECT_EQ(again.newest.time, settled.newest.time);
   // ... but not where it turned out to be the other one.
   fit.turned = true;
   EXPECT_TRUE(found(false).doubted);
