@@ -2,6 +2,7 @@ target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/head_anchor.cpp
   ${CMAKE_CURRENT_LIST_DIR}/interpolate.cpp
   ${CMAKE_CURRENT_LIST_DIR}/motion_filter.cpp ${CMAKE_CURRENT_LIST_DIR}/predict_motion.cpp
   ${CMAKE_CURRENT_LIST_DIR}/rest_window.cpp ${CMAKE_CURRENT_LIST_DIR}/singer.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/correlated_errors.cpp
   ${CMAKE_CURRENT_LIST_DIR}/motion_track.cpp)
 
 # SUNDIALS behind one file, in a library of its own: what it asks of the machine is judged apart

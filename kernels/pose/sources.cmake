@@ -18,7 +18,8 @@ target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/pose_factor.cpp
   ${CMAKE_CURRENT_LIST_DIR}/weighted_fit.cpp ${CMAKE_CURRENT_LIST_DIR}/agreed_pose.cpp
   ${CMAKE_CURRENT_LIST_DIR}/depth_flip.cpp ${CMAKE_CURRENT_LIST_DIR}/refine_pose.cpp
   ${CMAKE_CURRENT_LIST_DIR}/decide_labeling.cpp ${CMAKE_CURRENT_LIST_DIR}/few_markers.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/noise_estimate.cpp)
+  ${CMAKE_CURRENT_LIST_DIR}/noise_estimate.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/systematic_covariance.cpp)
 # Nobody reads errno or asks for floating-point traps here; where either might be seen, the pass over
 # all pairs handles one at a time. Neither changes a result.
 set_source_files_properties(${CMAKE_CURRENT_LIST_DIR}/pair_matches.cpp PROPERTIES

@@ -1,0 +1,35 @@
+// Measurement errors of successive frames that are correlated: what a mean over a window leaves of
+// them.
+//
+// What:     the sum of two first-order Gauss-Markov processes, a fast and a slow one, each with a
+//           covariance and a correlation time. of_mean: covariance of their mean over a window;
+//           of_halves: of the difference between the means of the window's two halves.
+// Cost:     two exponentials and two sums of matrices.
+// Worst:    none is worse than another.
+// Accuracy: exact for a continuous mean; frames farther apart than fast_s average less.
+// Source:   autocovariance e^(-|t|/T), integrated twice: Brown and Hwang 2012, Introduction to
+//           Random Signals and Applied Kalman Filtering, section 3.6.
+#pragma once
+
+#include "kernels/geometry.hpp"
+#include "kernels/nonblocking.hpp"
+
+namespace glint {
+
+// Of a pose, order (x, y, z, rx, ry, rz), metres and radians.
+struct CorrelatedErrors {
+  Matrix6 fast = Matrix6::Zero(), slow = Matrix6::Zero();
+  [[nodiscard]] Matrix6 sum() const { return fast + slow; }
+};
+
+// Two tools at rest before a HoloLens 2, 120 s: `glint calibrate noise`.
+struct CorrelationTimes {
+  double fast_s = 0.5, slow_s = 20;
+};
+
+[[nodiscard]] Matrix6 of_mean(const CorrelatedErrors& errors, const CorrelationTimes& times,
+                              double window_s) noexcept GLINT_NONBLOCKING;
+[[nodiscard]] Matrix6 of_halves(const CorrelatedErrors& errors, const CorrelationTimes& times,
+                                double window_s) noexcept GLINT_NONBLOCKING;
+
+}  // namespace glint
