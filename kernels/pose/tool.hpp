@@ -25,6 +25,9 @@ struct Tool {
   // Of its body, so that a slot of the set whose tool is exchanged is seen to be: from all fields
   // above but the name, by prepare_tool(). 0: not prepared.
   std::uint32_t identity = 0;
+  // Standard deviation of a marker's position in the tool, an axis: of a tool that was not measured
+  // by `glint calibrate tool`.
+  double marker_sigma_m = 0.0003;
 
   // A slot of the set may be empty.
   [[nodiscard]] bool present() const { return marker_count > 0; }

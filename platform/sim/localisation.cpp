@@ -87,8 +87,9 @@ Pose Localisation::pose(Time time) const {
   const Error now = error(time);
   const Quaternion turn = from_rotation_vector(now.angle);
   const Vector3 pivot = truth * Vector3(0, 0, settings_.pivot_m);
-  return {(turn * truth.rotation).normalized(),
-          pivot + now.position + turn * (truth.translation - pivot)};
+  const Pose drifted{(turn * truth.rotation).normalized(),
+                     pivot + now.position + turn * (truth.translation - pivot)};
+  return settings_.T_stated_world ? *settings_.T_stated_world * drifted : drifted;
 }
 
 Pose reference_pose(const ReferenceSettings& settings, const Pose& T_world_tool, std::uint64_t seed,

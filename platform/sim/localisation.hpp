@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "platform/sim/motion.hpp"
@@ -31,6 +32,8 @@ struct LocalisationSettings {
   Vector3 motion_angle_bias = Vector3::Zero();     // a tenth of its standard deviation
 
   double latency_s = 0;
+  // An error that stays: the headset's world in the one that it states; nothing: none.
+  std::optional<Pose> T_stated_world;
   double pivot_m = 0.5;  // ahead of the camera, on its axis
 };
 

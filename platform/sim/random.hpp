@@ -27,6 +27,8 @@ enum class Stream : std::uint64_t {
   room = 10,
   points = 11,
   long_throw = 12,
+  device = 13,
+  field = 14,
 };
 
 [[nodiscard]] constexpr std::uint64_t mixed(std::uint64_t x) {

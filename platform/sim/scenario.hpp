@@ -6,6 +6,7 @@
 
 #include "kernels/pose/tool.hpp"
 #include "platform/sensors/camera.hpp"
+#include "platform/sim/device_errors.hpp"
 #include "platform/sim/localisation.hpp"
 #include "platform/sim/motion.hpp"
 #include "platform/sim/noise.hpp"
@@ -45,11 +46,12 @@ struct OcclusionEvent {
   double share_of_range = 0.6;
 };
 
-// The tool leaves: moved by `away` (world) within the interval, with 0.25 s of way out and back.
+// The tool leaves: moved by `away` (world) within the interval, with way_s of way out and back.
 struct AwayEvent {
   Interval during;
   int tool = 0;
   Vector3 away_m{0, 0, -1.2};
+  double way_s = 0.25;
 };
 
 struct Scenario {
@@ -60,6 +62,7 @@ struct Scenario {
   Duration duration = milliseconds(60'000);
   TimingSettings timing;
   NoiseSettings noise;
+  DeviceErrors device;
   SignalSettings signal;
   LocalisationSettings localisation;
   ReferenceSettings reference;

@@ -93,18 +93,14 @@ void lay_on_table(Scenario& scenario, std::size_t tool) {
   body.parts.clear();
 }
 
-Scenario default_run(const std::vector<Tool>& tools) {
-  Scenario scenario = still_run(hololens2_ahat(), tools);
-  scenario.duration = milliseconds(60'000);
+Scenario hand_held_run(const Camera& camera, const std::vector<Tool>& tools, std::uint64_t seed) {
+  Scenario scenario = still_run(camera, tools);
+  scenario.seed = seed;
   HeadSettings head;
   head.position_m = k_camera_m;
   head.target_m = k_workplace_m;
   scenario.head = head_motion(head, scenario.seed);
   draw_by_hand(scenario, tools_or_pen(tools), HandSettings{});
-  scenario.timing.slow.push_back(seconds(20, 24));
-  scenario.occlusions.push_back({seconds(30, 31), 0, 0.09, 0.6});
-  scenario.occlusions.push_back({seconds(50, 51), 0, 0.05, 0.45});
-  scenario.aways.push_back({seconds(40, 42), 0, Vector3(0, 0, -1.2)});
   // A lamp on the cabinet that saturates, two strips of reflective tape, three balls of a marker's
   // size.
   scenario.clutter.push_back({{0.85, 0.5, 0.02}, Vector3::Zero(), 0.05, 400'000});
@@ -113,6 +109,16 @@ Scenario default_run(const std::vector<Tool>& tools) {
   scenario.clutter.push_back({{0.6, 0.22, -0.36}, Vector3::Zero(), 0.0055, 8'000});
   scenario.clutter.push_back({{0.7, -0.3, -0.05}, Vector3::Zero(), 0.0065, 8'000});
   scenario.clutter.push_back({{0.5, -0.33, -0.3}, Vector3::Zero(), 0.005, 8'000});
+  return scenario;
+}
+
+Scenario default_run(const std::vector<Tool>& tools) {
+  Scenario scenario = hand_held_run(hololens2_ahat(), tools, 1);
+  scenario.duration = milliseconds(60'000);
+  scenario.timing.slow.push_back(seconds(20, 24));
+  scenario.occlusions.push_back({seconds(30, 31), 0, 0.09, 0.6});
+  scenario.occlusions.push_back({seconds(50, 51), 0, 0.05, 0.45});
+  scenario.aways.push_back({seconds(40, 42), 0, Vector3(0, 0, -1.2)});
   return scenario;
 }
 

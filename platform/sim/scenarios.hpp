@@ -21,6 +21,10 @@ inline constexpr int k_dynamic_runs = 5;
 // The same place without events, clutter or motion.
 [[nodiscard]] Scenario still_run(const Camera& camera, const std::vector<Tool>& tools = {});
 
+// The default run's place, motion and clutter without its events, on another camera.
+[[nodiscard]] Scenario hand_held_run(const Camera& camera, const std::vector<Tool>& tools,
+                                     std::uint64_t seed);
+
 // Puts one of the scenario's tools on the table beside the workplace, free of any hand, where it
 // stays: a reference.
 void lay_on_table(Scenario& scenario, std::size_t tool);

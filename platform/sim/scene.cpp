@@ -10,26 +10,33 @@ namespace {
 
 constexpr double k_way_s = 0.25;  // how long something takes to come or go
 
-double presence(const Interval& during, Time time) {
+double presence(const Interval& during, Time time, double way_s = k_way_s) {
   const double t = Duration{time.nanoseconds}.seconds();
   const double begin = Duration{during.begin.nanoseconds}.seconds();
   const double end = Duration{during.end.nanoseconds}.seconds();
-  return smooth_step(t, begin, k_way_s) * (1 - smooth_step(t, end - k_way_s, k_way_s));
+  return smooth_step(t, begin, way_s) * (1 - smooth_step(t, end - way_s, way_s));
 }
 
 // Moves the image by the blob's pixel error at unchanged range, and sets its range error.
-void disturb(const Scenario& scenario, std::uint64_t sequence, Reflector& reflector) {
+void disturb(const Scenario& scenario, std::uint64_t sequence, Time time, Reflector& reflector) {
   const NoiseSettings& noise = scenario.noise;
-  const RandomKey key{
-      scenario.seed, Stream::blob,
-      static_cast<std::uint64_t>(reflector.tool * k_markers_per_tool_max + reflector.marker)};
+  const auto number =
+      static_cast<std::uint64_t>(reflector.tool * k_markers_per_tool_max + reflector.marker);
+  const RandomKey key{scenario.seed, Stream::blob, number};
   const Vector3 normal = gaussian_vector(key, sequence);
   const double range = reflector.centre.norm();
   reflector.range_error_m = noise.blob_range_sigma_m * (range / 0.5) * normal.z();
-  if (noise.blob_pixel_sigma_px == 0) return;
-  const Result<Vector2> pixel = project(scenario.camera.model, reflector.centre);
+  if (noise.blob_pixel_sigma_px == 0 && !scenario.device.exists) return;
+  const CameraModel& model = scenario.camera.model;
+  const Result<Vector2> pixel = project(model, reflector.centre);
   if (!pixel) return;
-  const Vector2 moved = pixel.value + noise.blob_pixel_sigma_px * Vector2(normal.x(), normal.y());
+  Vector2 moved = pixel.value + noise.blob_pixel_sigma_px * Vector2(normal.x(), normal.y());
+  if (scenario.device.exists) {
+    const MarkerError error =
+        marker_error(scenario.device, pixel.value, {model.cx, model.cy}, range, number, time);
+    moved += error.shift_px;
+    reflector.range_error_m += error.range_m;
+  }
   const Result<Vector3> ray = unproject(scenario.camera.model, moved);
   if (ray) reflector.centre = range * ray.value.normalized();
 }
@@ -38,8 +45,8 @@ struct Moments {
   Pose before, middle, after;  // begin, middle and end of the exposure
 };
 
-void add_tool(const Scenario& scenario, int index, std::uint64_t sequence, const Moments& seen,
-              Scene& out) {
+void add_tool(const Scenario& scenario, int index, std::uint64_t sequence, Time time,
+              const Moments& seen, Scene& out) {
   const ToolBody& body = scenario.tools[static_cast<std::size_t>(index)];
   for (int i = 0; i < body.tool.marker_count; ++i) {
     const Vector3& marker = body.tool.markers_m[static_cast<std::size_t>(i)];
@@ -54,7 +61,7 @@ void add_tool(const Scenario& scenario, int index, std::uint64_t sequence, const
     reflector.limb = scenario.signal.sphere_limb;
     reflector.tool = index;
     reflector.marker = i;
-    disturb(scenario, sequence, reflector);
+    disturb(scenario, sequence, time, reflector);
     out.reflectors.push(reflector);
   }
   for (const Capsule& part : body.parts) out.capsules.push(transformed(seen.middle, part));
@@ -93,7 +100,8 @@ void add_occlusions(const Scenario& scenario, const Pose& T_camera_world, Time t
 Pose tool_pose(const Scenario& scenario, int tool, Time time) {
   Pose pose = scenario.tools[static_cast<std::size_t>(tool)].motion->pose(time);
   for (const AwayEvent& event : scenario.aways) {
-    if (event.tool == tool) pose.translation += presence(event.during, time) * event.away_m;
+    if (event.tool == tool)
+      pose.translation += presence(event.during, time, event.way_s) * event.away_m;
   }
   return pose;
 }
@@ -116,7 +124,7 @@ void build_scene(const Scenario& scenario, Time mid_exposure, std::uint64_t sequ
     const Moments seen{camera_world.before * tool_pose(scenario, tool, times[0]),
                        camera_world.middle * tool_pose(scenario, tool, times[1]),
                        camera_world.after * tool_pose(scenario, tool, times[2])};
-    add_tool(scenario, tool, sequence, seen, out);
+    add_tool(scenario, tool, sequence, mid_exposure, seen, out);
   }
   add_clutter(scenario, camera_world, out);
   add_occlusions(scenario, camera_world.middle, mid_exposure, out);

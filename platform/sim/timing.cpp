@@ -24,7 +24,8 @@ std::vector<FrameTiming> frame_timings(const Camera& camera, const TimingSetting
   Time exposed;
   for (std::uint64_t sequence = 0; exposed < Time{duration.nanoseconds}; ++sequence) {
     FrameTiming timing;
-    timing.exposed = timing.mid_exposure = exposed;
+    timing.exposed = exposed;
+    timing.mid_exposure = exposed + settings.stamp_offset;
     const double share = uniform(key, sequence);
     const Duration jitter{static_cast<std::int64_t>(
         share * static_cast<double>(settings.transport_jitter.nanoseconds))};
@@ -37,7 +38,8 @@ std::vector<FrameTiming> frame_timings(const Camera& camera, const TimingSetting
       if (happened[i] || exposed < fault.at) continue;
       happened[i] = true;
       if (fault.kind == Fault::late) timing.arrival = timing.arrival + fault.amount;
-      if (fault.kind == Fault::backward_stamp) timing.mid_exposure = exposed - fault.amount;
+      if (fault.kind == Fault::backward_stamp)
+        timing.mid_exposure = timing.mid_exposure - fault.amount;
       if (fault.kind == Fault::dropped) arrives = false;
       if (fault.kind == Fault::doubled) {
         copies.push_back(timing);

@@ -33,13 +33,14 @@ struct TimingSettings {
   std::vector<Interval> slow;  // the camera falls to slow_period here
   Duration slow_period = milliseconds(200);
   Duration transport_jitter = microseconds(400);  // added to Camera::transport, uniform
+  Duration stamp_offset;                          // of every stamp
   std::vector<FaultEvent> faults;
 };
 
 // One delivery; deliveries are numbered in the order of their arrival.
 struct FrameTiming {
   Time exposed;                // true mid-exposure
-  Time mid_exposure;           // as stamped: differs under Fault::backward_stamp only
+  Time mid_exposure;           // as stamped: differs by stamp_offset and Fault::backward_stamp
   Time arrival;                // last byte in memory
   std::uint64_t sequence = 0;  // counts exposures; a doubled frame keeps it
 };

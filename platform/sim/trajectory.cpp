@@ -124,8 +124,9 @@ Trajectory trajectory_from_text(const std::string& text, const std::string& name
 }
 
 Trajectory load_trajectory(const std::string& path) {
-  return trajectory_from_text(
-      read_file(path, k_data_bytes_max, std::string("a trajectory, ") + k_tum), path);
+  std::string expected = "a trajectory, ";
+  expected += k_tum;
+  return trajectory_from_text(read_file(path, k_data_bytes_max, expected), path);
 }
 
 }  // namespace glint::sim

@@ -1,0 +1,102 @@
+#include "platform/sim/field.hpp"
+
+#include "kernels/elementary.hpp"
+#include "kernels/motion/interpolate.hpp"
+#include "kernels/pose/systematic_covariance.hpp"
+#include "platform/sim/hand_motion.hpp"
+#include "platform/sim/scenarios.hpp"
+#include "platform/sim/tool_body.hpp"
+
+namespace glint::sim {
+namespace {
+
+// Errors that no setting states, each 1 sigma or an amplitude.
+constexpr double k_lens_residual_px = 0.1;
+constexpr double k_wiggle_m = 0.001;
+constexpr double k_radius_sigma_m = 0.0001;
+constexpr double k_head_sigma_s = 0.005;
+constexpr double k_lay_down_s = 0.8;      // 2.8 m/s at most
+constexpr double k_drift_factor_max = 3;  // and its inverse
+
+// Draws one after the other.
+class Draws {
+ public:
+  explicit Draws(std::uint64_t seed) : key_{seed, Stream::field} {}
+  double normal() { return gaussian(key_, next_++); }
+  double between(double low, double high) { return low + (high - low) * uniform(key_, next_++); }
+  Vector3 vector() {
+    const double x = normal(), y = normal();
+    return {x, y, normal()};
+  }
+
+ private:
+  RandomKey key_;
+  std::uint64_t next_ = 0;
+};
+
+Duration seconds_long(double seconds) { return {static_cast<std::int64_t>(seconds * 1e9)}; }
+
+Interval interval(double begin_s, double length_s) {
+  const Time begin = Time{} + seconds_long(begin_s);
+  return {begin, begin + seconds_long(length_s)};
+}
+
+DeviceErrors device(Draws& draws, std::uint64_t seed) {
+  const CameraUncertainty shipped;
+  DeviceErrors errors;
+  errors.exists = true;
+  const double right = draws.normal(), down = draws.normal();
+  errors.principal_point_px = shipped.principal_point_px * Vector2(right, down);
+  errors.focal_scale = shipped.focal_scale * draws.normal();
+  errors.range_offset_m = shipped.range_offset_m * draws.normal();
+  errors.range_scale = shipped.range_scale * draws.normal();
+  errors.slow_range_m = shipped.slow_range_m;
+  errors.slow_centroid_px = shipped.slow_centroid_px;
+  errors.lens_residual_px = k_lens_residual_px;
+  errors.range_wiggle_m = k_wiggle_m;
+  errors.seed = seed;
+  return errors;
+}
+
+// As made, beside as drawn.
+void build_inexactly(Draws& draws, ToolBody& body) {
+  Tool& tool = body.tool;
+  const double sigma_m = Tool{}.marker_sigma_m;
+  for (int i = 0; i < tool.marker_count; ++i)
+    tool.markers_m[static_cast<std::size_t>(i)] += sigma_m * draws.vector();
+  tool.marker_radius_m += k_radius_sigma_m * draws.normal();
+}
+
+void add_events(Draws& draws, double duration_s, Scenario& scenario) {
+  const auto begin = [&](double length_s) { return draws.between(1, duration_s - length_s); };
+  scenario.timing.slow.push_back(interval(begin(4), 4));
+  scenario.occlusions.push_back({interval(begin(1), 1), 0, 0.09, 0.6});
+  scenario.aways.push_back({interval(begin(3), 3), 0, Vector3(0, 0, -1.2), k_lay_down_s});
+}
+
+}  // namespace
+
+Scenario field_run(const Camera& camera, const std::vector<Tool>& tools,
+                   const RobotPlacement& robot, double duration_s, std::uint64_t seed) {
+  Draws draws(seed);
+  Scenario scenario = hand_held_run(camera, tools, seed);
+  scenario.device = device(draws, seed);
+  for (ToolBody& body : scenario.tools) build_inexactly(draws, body);
+  const double drift = exponential(draws.between(-1, 1) * logarithm(k_drift_factor_max));
+  LocalisationSettings& head = scenario.localisation;
+  for (double* part :
+       {&head.rest_position_m, &head.rest_angle_rad, &head.position_per_speed_s,
+        &head.position_per_turn_m, &head.angle_per_speed_s_m, &head.angle_per_turn_s}) {
+    *part *= drift;
+  }
+  head.latency_s = k_head_sigma_s * draws.normal();
+  scenario.timing.stamp_offset = seconds_long(CameraUncertainty{}.stamp_s * draws.normal());
+  // The robot stands where the cell states; the headset's world lies beside that.
+  const Vector3 turn = robot.sigma_rad * draws.vector();
+  const Pose off{from_rotation_vector(turn), robot.sigma_m * draws.vector()};
+  head.T_stated_world = robot.T_world_robot * off * robot.T_world_robot.inverse();
+  add_events(draws, duration_s, scenario);
+  return scenario;
+}
+
+}  // namespace glint::sim
