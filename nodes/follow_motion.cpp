@@ -14,6 +14,12 @@ UncertainPose in_base(const UncertainPose& T_camera_middle, const AnchoredHead& 
               anchored.fresh_at(T_world_middle.translation)};
 }
 
+CorrelatedErrors in_base(const CorrelatedErrors& of_camera, const AnchoredHead& anchored) {
+  if (!anchored.head.valid) return of_camera;
+  const Quaternion& turn = anchored.head.T_world_camera.rotation;
+  return {turned_covariance(of_camera.fast, turn), turned_covariance(of_camera.slow, turn)};
+}
+
 MeasuredPoint in_base(const NamedMarker& marker, const Tool& tool, const AnchoredHead& anchored) {
   const Pose T_base_camera = anchored.head.valid ? anchored.head.T_world_camera : Pose{};
   const Matrix3 turn = T_base_camera.rotation.toRotationMatrix();
@@ -59,6 +65,7 @@ void FollowMotion::follow_few(const FewMarkers& few, const Tool& shape,
   ++counts_[2];
   tool.few_mask = mask;
   tool.estimate = tool.motion.estimate(sums_[place]);
+  tool.correlated_covariance = tool.motion.correlated_covariance(sums_[place]);
   tool.noise = tool.motion.partial_noise_scale(settings);
   tool.stands = is_sure(tool.estimate.covariance, sure);
 }
@@ -103,12 +110,15 @@ void FollowMotion::operator()(
     if (tool.base != base || found.turned) tool.motion.forget();
     tool.base = base;
     const UncertainPose seen = told_middle_of(found, set.items[t], verdict.stamp.mid_exposure);
-    const MotionUpdate done = tool.motion.update(in_base(seen, anchored), settings, sums_[place]);
+    const MotionUpdate done =
+        tool.motion.update(in_base(seen, anchored), in_base(found.systematic.correlated, anchored),
+                           settings, sums_[place]);
     tool.reason = done.reason;
     if (done.reason != Reason::none) continue;
     ++counts_[2];
     counts_[3] += done.rest_tests;
     tool.estimate = tool.motion.estimate(sums_[place]);
+    tool.correlated_covariance = tool.motion.correlated_covariance(sums_[place]);
     tool.noise = tool.motion.noise_scale();
     tool.ambiguous = found.ambiguous();
     tool.filtered = !within(found.covariance.bottomRightCorner<3, 3>(), sure.rotation_rad);

@@ -9,12 +9,14 @@
 namespace glint {
 namespace {
 
-// Moves a pose, its speeds and its covariance from base to the frame that `T_frame_base` leads to.
-void express(const Pose& T_frame_base, MovingPose& moving, Matrix6& covariance) {
+// Moves a pose, its speeds and its covariances from base to the frame that `T_frame_base` leads to.
+void express(const Pose& T_frame_base, MovingPose& moving, Matrix6& covariance,
+             Matrix6& systematic) {
   moving.pose = T_frame_base * moving.pose;
   moving.velocity_m_s = T_frame_base.rotation * moving.velocity_m_s;
   moving.angular_velocity_rad_s = T_frame_base.rotation * moving.angular_velocity_rad_s;
   covariance = turned_covariance(covariance, T_frame_base.rotation);
+  systematic = turned_covariance(systematic, T_frame_base.rotation);
 }
 
 bool is_placed(const RobotFrame& robot, const Estimates& known) {
@@ -77,22 +79,32 @@ void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& es
     MovingPose moving = integrator_.after(track.motion, when - track.motion.time).value;
     Matrix6 covariance = predict_pose(track.motion, when, settings.motion, track.noise).covariance +
                          track.head_covariance;
+    Vector6 twist;
+    twist << moving.velocity_m_s, moving.angular_velocity_rad_s;
+    const double stamp_s2 = settings.stamp_sigma_s * settings.stamp_sigma_s;
+    Matrix6 systematic = track.calibration_covariance + track.correlated_covariance +
+                         stamp_s2 * twist.lazyProduct(twist.transpose());
     sample.frame = track.base;
     if (track.base == ReferenceFrame::camera) {
       if (sample.reason == Reason::none) sample.reason = Reason::head_pose_missing;
     } else if (is_placed(robot.value(), known)) {
-      express(T_world_robot(robot.value(), known).inverse(), moving, covariance);
+      const Pose placed = T_world_robot(robot.value(), known);
+      systematic +=
+          moved_covariance(settings.robot_covariance, moving.pose.translation - placed.translation);
+      express(placed.inverse(), moving, covariance, systematic);
       sample.frame = ReferenceFrame::robot;
     } else if (sample.reason == Reason::none) {
       sample.reason = Reason::no_reference;
     }
 
     const Vector3 arm = moving.pose.rotation * known.arm_m[static_cast<std::size_t>(t)];
-    covariance = moved_covariance(covariance, arm);
+    systematic = moved_covariance(systematic, arm);
+    covariance = moved_covariance(covariance, arm) + systematic;
     sample.pose = {moving.pose.rotation, moving.pose.translation + arm};
     sample.velocity_m_s = moving.velocity_m_s + moving.angular_velocity_rad_s.cross(arm);
     sample.angular_velocity_rad_s = moving.angular_velocity_rad_s;
     sample.covariance = covariance;
+    sample.systematic = systematic;
     sample.sigma_position_m = axis_sigma(covariance, 0);
     sample.sigma_orientation_rad = axis_sigma(covariance, 3);
   }

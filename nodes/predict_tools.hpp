@@ -25,10 +25,12 @@
 namespace glint {
 
 struct PredictSettings {
-  Duration nominal_gap = {22'222'222};      // the camera's period: 22.2 ms for AHAT
-  Duration lost_after = milliseconds(250);  // at most 400
-  Duration actuation_delay = {};            // the pose is for tick + this
-  MotionSettings motion;                    // as those that the estimates were followed with
+  Duration nominal_gap = {22'222'222};         // the camera's period: 22.2 ms for AHAT
+  Duration lost_after = milliseconds(250);     // at most 400
+  Duration actuation_delay = {};               // the pose is for tick + this
+  MotionSettings motion;                       // as those that the estimates were followed with
+  Matrix6 robot_covariance = Matrix6::Zero();  // of T_world_robot, about its base
+  double stamp_sigma_s = 0;                    // of a frame's mid-exposure
 };
 
 struct PredictTools {

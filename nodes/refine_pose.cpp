@@ -18,6 +18,7 @@ namespace {
 struct SeenMarkers {
   std::array<WeightedMarker, k_markers_per_tool_max> items;
   std::array<MarkerVariance, k_markers_per_tool_max> variances;
+  std::array<LocalRays, k_markers_per_tool_max> rays;
   std::array<int, k_markers_per_tool_max> of_tool{};
   std::array<bool, k_markers_per_tool_max> whole{};  // neither merged nor partly hidden
   std::size_t count = 0;
@@ -37,6 +38,7 @@ SeenMarkers without(const SeenMarkers& seen, int left_out) {
   for (std::size_t i = first; i < kept.count; ++i) {
     kept.items[i] = seen.items[i + 1];
     kept.variances[i] = seen.variances[i + 1];
+    kept.rays[i] = seen.rays[i + 1];
     kept.of_tool[i] = seen.of_tool[i + 1];
     kept.whole[i] = seen.whole[i + 1];
   }
@@ -72,6 +74,7 @@ SeenMarkers weigh(const Tool& tool, int marker_count, const Markers& markers,
     if (!weighed) out.reason = weighed.reason;
     out.items[i] = weighed.value;
     out.variances[i] = sights[i].variance;
+    out.rays[i] = sights[i].rays;
   }
   return out;
 }
@@ -200,6 +203,16 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
     counts_[3] += k_residual_steps;
     counts_[4] += k_residual_steps * static_cast<int>(kept.count);
   }
+  const Pose shown = shallow ? between.T_camera_tool : reading.T_camera_tool;
+  // A point without an image is another tracker's: of the camera's errors it has none.
+  const Result<SystematicCovariance> systematic =
+      systematic_covariance(items, {kept.rays.data(), kept.count}, shown, tool.middle_m(),
+                            kept.have_images ? uncertainty : k_exact_camera, tool.marker_sigma_m);
+  counts_[3] += k_systematic_steps;
+  counts_[4] += k_systematic_steps * static_cast<int>(kept.count);
+  out.systematic = systematic.value;
+  out.reason = systematic.reason;
+  if (out.reason != Reason::none) return;
   // By the chosen minimum, not the likelier of both.
   const bool explained = chi_square <= chi_square_limit(pose.degrees_of_freedom);
   const bool stretched = !explained && chi_square <= k_noise_stretch_most * pose.degrees_of_freedom;
@@ -229,22 +242,17 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
     }
     growth *= std::max(1.0, surprise / k_surprise_usual);
   }
-  Pose T_camera_tool = reading.T_camera_tool;
-  out.covariance = reading.covariance;
-  if (shallow) {
-    T_camera_tool = between.T_camera_tool;
-    out.covariance = between.covariance;
-  }
+  out.covariance = shallow ? between.covariance : reading.covariance;
   out.covariance *= growth;
   out.near_covariance *= growth;
   double squares = 0;
   for (std::size_t i = 0; i < kept.count; ++i) {
     const WeightedMarker& marker = kept.items[i];
-    squares += (T_camera_tool * marker.model_m - marker.measured_m()).squaredNorm();
+    squares += (shown * marker.model_m - marker.measured_m()).squaredNorm();
     out.marker_mask = static_cast<std::uint8_t>(out.marker_mask | (1u << kept.of_tool[i]));
   }
   out.rms_m = std::sqrt(squares / static_cast<double>(kept.count));
-  out.T_camera_tool = correct_bias(correction, T_camera_tool).T_camera_tool;
+  out.T_camera_tool = correct_bias(correction, shown).T_camera_tool;
   out.near_T_camera_tool = correct_bias(correction, out.near_T_camera_tool).T_camera_tool;
 }
 

@@ -11,6 +11,7 @@
 #include "kernels/pose/marker.hpp"
 #include "kernels/pose/marker_sight.hpp"
 #include "kernels/pose/refine_pose.hpp"
+#include "kernels/pose/systematic_covariance.hpp"
 #include "kernels/pose/tool.hpp"
 #include "nodes/node_limits.hpp"
 #include "nodes/tokens.hpp"
@@ -44,6 +45,7 @@ struct RefinePose {
   RefineSettings settings;    // at most the default's steps are taken: worst() counts on these
   MarkerNoise noise;          // declared: until residuals show it
   BiasCorrection correction;  // of every tool, where it holds; none unless a cell names one
+  CameraUncertainty uncertainty;
   Limits limits;
   void operator()(const FrameVerdict& verdict, const Markers& markers,
                   const graph::Latest<ToolSet>& tools, const Predictions& predictions,
@@ -51,8 +53,10 @@ struct RefinePose {
                   FittedTools& fitted) noexcept GLINT_NONBLOCKING;
 
  private:
-  // What the residuals of a pose cost, in steps of a fit, and what two poses face-on do.
+  // What the residuals of a pose cost, in steps of a fit, what two poses face-on do, and what the
+  // systematic covariance does.
   static constexpr int k_residual_steps = 5;
+  static constexpr int k_systematic_steps = 5;
   // What the markers tell a filter may be read a second time, near where the tool is expected; of
   // the pose that stands the residuals are taken.
   [[nodiscard]] static constexpr RefineWork work_max(int markers) noexcept {
@@ -60,7 +64,8 @@ struct RefinePose {
     RefineWork work = refine_work_max(markers, k_most);
     work += {1, k_most.steps_max, k_most.steps_max * markers};
     work += refine_work_max(markers, {.left_out_max = 0});  // the rival labeling's
-    work += {0, k_residual_steps, k_residual_steps * markers};
+    constexpr int k_more = k_residual_steps + k_systematic_steps;
+    work += {0, k_more, k_more * markers};
     return work;
   }
   void fit(const Tool& tool, const Markers& markers, const Labeling& labeling,

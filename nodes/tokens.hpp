@@ -14,6 +14,7 @@
 #include "kernels/pose/labeling.hpp"
 #include "kernels/pose/lever_arm.hpp"
 #include "kernels/pose/noise_estimate.hpp"
+#include "kernels/pose/systematic_covariance.hpp"
 #include "kernels/pose/tool.hpp"
 #include "kernels/reason.hpp"
 #include "kernels/units.hpp"
@@ -100,7 +101,8 @@ struct FittedTool {
   std::uint8_t marker_mask = 0;
   double rms_m = 0;
   Pose T_camera_tool;
-  Matrix6 covariance = Matrix6::Zero();  // of the tip, about the camera's axes
+  Matrix6 covariance = Matrix6::Zero();  // of the tip, about the camera's axes: the random part
+  SystematicCovariance systematic;       // of the markers' middle, about the camera's axes
   double odds = k_odds_most;  // against the likeliest pose that is far from it (expected_pose.hpp)
   bool turned = false;        // it is not the motion that was followed
   bool by_rival = false;      // its markers are named as the assignment's rival has them
@@ -148,8 +150,9 @@ struct Anchor {
 struct FollowedTool {
   Reason reason = Reason::no_frame_yet;  // why this frame did not move it on
   MotionTrack motion;
-  MotionState estimate;  // motion's, once it is known
-  NoiseScale noise;      // motion's
+  MotionState estimate;                             // motion's, once it is known
+  NoiseScale noise;                                 // motion's
+  Matrix6 correlated_covariance = Matrix6::Zero();  // beside estimate's
   ReferenceFrame base = ReferenceFrame::camera;
   std::uint32_t identity = 0;  // of the tool that it is of
   std::uint8_t few_mask = 0;   // one or two markers moved it on in place of a pose: which; 0: none
@@ -185,8 +188,11 @@ struct Track {
   NoiseScale noise;    // of what the hand does next, as motion's filter has it
   double odds = k_odds_most;  // of that motion against another (expected_pose.hpp)
   double surprise = 1;  // variance of the newest measurement beside what was foretold; 1: no more
-  // What the headset's own error adds to motion's covariance, about the same point and axes.
+  // What the headset's own error, calibration errors and correlated errors add to motion's
+  // covariance, about the same point and axes.
   Matrix6 head_covariance = Matrix6::Zero();
+  Matrix6 calibration_covariance = Matrix6::Zero();
+  Matrix6 correlated_covariance = Matrix6::Zero();
 };
 
 // The frame group's result.

@@ -43,6 +43,10 @@ void accept(const FittedTool& found, const FollowedTool& followed, const Tool& t
   track.surprise = surprise_of(followed, 6);
   track.head_covariance = Matrix6::Zero();
   if (head.valid) track.head_covariance = anchored.lasting_at(track.motion.pose.translation);
+  const Matrix6& calibration = found.systematic.calibration;
+  track.calibration_covariance =
+      head.valid ? turned_covariance(calibration, head.T_world_camera.rotation) : calibration;
+  track.correlated_covariance = followed.correlated_covariance;
 }
 
 // It is followed, so that time may make it sure, but not given out.
@@ -59,6 +63,7 @@ void doubt(const FittedTool& found, const FollowedTool& followed, const Tool& to
 void move_on(const FollowedTool& followed, double numbers, Track& track) {
   track.motion = followed.estimate;
   track.noise = followed.noise;
+  track.correlated_covariance = followed.correlated_covariance;
   track.surprise = surprise_of(followed, numbers);
 }
 
@@ -162,7 +167,10 @@ void TrackTools::operator()(const FrameVerdict& verdict, const Anchor& anchor,
 }
 
 Matrix6 tip_covariance(const Track& track, const FittedTool& found, const Vector3& arm_m) noexcept {
-  if (!track.filtered) return found.covariance;
+  const Matrix6 systematic =
+      moved_covariance(found.systematic.calibration + found.systematic.correlated.sum(),
+                       track.T_camera_tool.rotation * arm_m);
+  if (!track.filtered) return found.covariance + systematic;
   Matrix6 covariance;
   for (int i = 0; i < 2; ++i) {
     for (int j = 0; j < 2; ++j) {
@@ -173,8 +181,8 @@ Matrix6 tip_covariance(const Track& track, const FittedTool& found, const Vector
   }
   const Quaternion camera_base =
       track.T_camera_tool.rotation * track.newest.pose.rotation.conjugate();
-  return moved_covariance(turned_covariance(covariance, camera_base),
-                          track.T_camera_tool.rotation * arm_m);
+  return systematic + moved_covariance(turned_covariance(covariance, camera_base),
+                                       track.T_camera_tool.rotation * arm_m);
 }
 
 }  // namespace glint

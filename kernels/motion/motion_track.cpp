@@ -50,14 +50,14 @@ Reason MotionTrack::stamp(Time time) const {
   return time == state_.time ? Reason::frame_doubled : Reason::frame_late;
 }
 
-MotionUpdate MotionTrack::update(const UncertainPose& measured, const ToolMotionSettings& settings,
-                                 RestSums& sums) noexcept {
+MotionUpdate MotionTrack::update(const UncertainPose& measured, const CorrelatedErrors& correlated,
+                                 const ToolMotionSettings& settings, RestSums& sums) noexcept {
   MotionUpdate done{stamp(measured.time), 0};
   if (done.reason == Reason::none && !usable(measured)) done.reason = Reason::out_of_range;
   if (done.reason != Reason::none) return done;
   if (known_ && measured.time - state_.time > settings.gap_max) forget();
   loosened_.setZero();
-  done.rest_tests = rest_.add(measured, settings.rest, sums);
+  done.rest_tests = rest_.add(measured, correlated, settings.rest, sums);
   double frames = 1;
   if (known_) {
     frames = std::min((measured.time - state_.time).seconds() / k_frame_s, k_frames_most);
@@ -124,6 +124,10 @@ void MotionTrack::move(const Pose& moved) noexcept {
 void MotionTrack::loosen(const Matrix6& covariance) noexcept {
   add_pose_covariance(covariance, state_.covariance);
   loosened_ += covariance;
+}
+
+Matrix6 MotionTrack::correlated_covariance(const RestSums& sums) const noexcept {
+  return rest_.correlated(sums);
 }
 
 MotionState MotionTrack::estimate(const RestSums& sums) const noexcept {

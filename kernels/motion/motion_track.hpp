@@ -48,9 +48,11 @@ struct MotionUpdate {
 // to frame. One that was kept from before an update still holds if that update is to be undone.
 class MotionTrack {
  public:
+  // `correlated`: of errors that successive poses have in common, not in the pose's covariance.
   // Reason: frame_doubled or frame_late for a stamp that does not rise, out_of_range for a pose
   // that is none. Then nothing has changed.
-  MotionUpdate update(const UncertainPose& measured, const ToolMotionSettings& settings,
+  MotionUpdate update(const UncertainPose& measured, const CorrelatedErrors& correlated,
+                      const ToolMotionSettings& settings,
                       RestSums& sums) noexcept GLINT_NONBLOCKING;
   // One marker or two, of one time; needs a pose before: too_few_markers.
   Reason update(Time time, std::span<const MeasuredPoint> points,
@@ -74,6 +76,10 @@ class MotionTrack {
   }
   // At the newest measurement's time.
   [[nodiscard]] MotionState estimate(const RestSums& sums) const noexcept GLINT_NONBLOCKING;
+  // What correlated errors add to estimate()'s covariance: to position and rotation, at the same
+  // time.
+  [[nodiscard]] Matrix6 correlated_covariance(const RestSums& sums) const noexcept
+      GLINT_NONBLOCKING;
   [[nodiscard]] const Correction& last_correction() const { return correction_; }
 
  private:

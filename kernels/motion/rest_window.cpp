@@ -45,7 +45,8 @@ RestWindow::Halves RestWindow::halves(int frames, const RestSums& sums) const {
   const Sum newer = newest(newer_frames, sums);
   const Sum older{all.place - newer.place, all.covariance - newer.covariance, newer.time};
   const Cholesky<6> factor(newer_share * newer_share * newer.covariance +
-                           older_share * older_share * older.covariance);
+                           older_share * older_share * older.covariance +
+                           of_halves(correlated_, times_, seconds_of(frames, sums)));
   const Vector6 difference = newer_share * newer.place - older_share * older.place;
   if (!factor.positive) return {difference, std::numeric_limits<double>::infinity()};
   return {difference, factor.squared_length(difference)};
@@ -76,10 +77,12 @@ int RestWindow::push(Time time, const Sum& added, const RestSettings& settings, 
   return tests;
 }
 
-int RestWindow::add(const UncertainPose& measured, const RestSettings& settings,
-                    RestSums& sums) noexcept {
+int RestWindow::add(const UncertainPose& measured, const CorrelatedErrors& correlated,
+                    const RestSettings& settings, RestSums& sums) noexcept {
   frames_min_ = settings.frames_min;
   drift_chi_square_ = settings.drift_chi_square;
+  correlated_ = correlated;
+  times_ = settings.correlation;
   Vector6 place = pose_difference(measured.pose, anchor_);
   const bool near = place.head<3>().norm() <= k_anchor_m && place.tail<3>().norm() <= k_anchor_rad;
   if (kept_ == 0 || !near || measured.time - time_ > settings.gap_max) {
@@ -93,8 +96,8 @@ int RestWindow::add(const UncertainPose& measured, const RestSettings& settings,
   return tests;
 }
 
-Duration RestWindow::length(const RestSums& sums) const {
-  return frames_ < 2 ? Duration{} : sum_before(0, sums).time - sum_before(frames_ - 1, sums).time;
+double RestWindow::seconds_of(int frames, const RestSums& sums) const {
+  return (sum_before(0, sums).time - sum_before(frames - 1, sums).time).seconds();
 }
 
 Pose RestWindow::placed(const Vector6& place) const {
@@ -123,7 +126,7 @@ Rest RestWindow::rest(const RestSums& sums) const noexcept {
     rest.pose.covariance(i, i) += k_tremor_m * k_tremor_m;
     rest.pose.covariance(3 + i, 3 + i) += k_tremor_rad * k_tremor_rad;
   }
-  const double per_s = 2 / length(sums).seconds();
+  const double per_s = 2 / seconds_of(frames_, sums);
   rest.drift_per_s = (drifting * per_s) * cut.difference;
   rest.drift_covariance = (4 * per_s * per_s) * mean_covariance;
   return rest;

@@ -3,8 +3,8 @@
 //
 // What:     windows of the newest n, 3/4 n, 1/2 n, 3/8 n .. frames, from the shortest on; each
 //           is cut into an older and a newer half whose means differ by d' (C1 + C2)^-1 d, C the
-//           covariance of a half's mean. The first that differs too much ends the rest there.
-//           Frames count alike.
+//           covariance of a half's mean, correlated errors included. The first that differs too
+//           much ends the rest there. Frames count alike.
 // Cost:     at most k_rest_levels tests of one 6x6 factor each, 0.4 us: 5 us.
 // Worst:    a full window that passes all tests.
 // Accuracy: the mean is exact for small rotations: a pose further than k_anchor_rad from the anchor
@@ -15,6 +15,7 @@
 
 #include <array>
 
+#include "kernels/motion/correlated_errors.hpp"
 #include "kernels/motion/motion_state.hpp"
 #include "kernels/nonblocking.hpp"
 
@@ -33,6 +34,7 @@ struct RestSettings {
   double drift_chi_square = 12.6;        // 6 degrees of freedom, 5 %: what exceeds it is a drift
   int frames_min = 8;                    // fewer are no rest yet
   Duration gap_max = milliseconds(250);  // a longer silence ends a rest
+  CorrelationTimes correlation;
 };
 
 // What a window says of the tool: where it is, and how it may drift.
@@ -66,9 +68,10 @@ class RestSums {
 // can be undone; one window's sums serve no other.
 class RestWindow {
  public:
+  // `correlated`: of errors that successive poses have in common, not in the pose's covariance.
   // Returns how often it tested the halves.
-  int add(const UncertainPose& measured, const RestSettings& settings,
-          RestSums& sums) noexcept GLINT_NONBLOCKING;
+  int add(const UncertainPose& measured, const CorrelatedErrors& correlated,
+          const RestSettings& settings, RestSums& sums) noexcept GLINT_NONBLOCKING;
   void clear() noexcept { frames_ = kept_ = 0; }
   // All poses move by this little: the anchor does, from which the sums are counted. That their
   // axes turn too is left out, for what they hold is as small as the noise.
@@ -80,11 +83,14 @@ class RestWindow {
   [[nodiscard]] int frames() const { return frames_; }
   // At the newest frame's time. Meaningless if frames() < 2.
   [[nodiscard]] Rest rest(const RestSums& sums) const noexcept GLINT_NONBLOCKING;
+  // The correlated errors' covariance: of the mean at rest, else of the newest pose.
+  [[nodiscard]] Matrix6 correlated(const RestSums& sums) const noexcept GLINT_NONBLOCKING {
+    return of_mean(correlated_, times_, rests() ? seconds_of(frames_, sums) : 0.0);
+  }
 
  private:
   using Sum = RestSums::Sum;
   void restart(const UncertainPose& only, RestSums& sums);
-  [[nodiscard]] Duration length(const RestSums& sums) const;
   int push(Time time, const Sum& added, const RestSettings& settings, RestSums& sums);
   [[nodiscard]] const Sum& sum_before(int frames, const RestSums& sums) const;
   [[nodiscard]] Sum newest(int frames, const RestSums& sums) const;
@@ -93,6 +99,7 @@ class RestWindow {
     double chi_square;
   };
   [[nodiscard]] Halves halves(int frames, const RestSums& sums) const;
+  [[nodiscard]] double seconds_of(int frames, const RestSums& sums) const;
   [[nodiscard]] Pose placed(const Vector6& place) const;
 
   Pose anchor_;
@@ -103,6 +110,8 @@ class RestWindow {
   int frames_ = 0;  // of them, those that do
   int frames_min_ = RestSettings{}.frames_min;
   double drift_chi_square_ = RestSettings{}.drift_chi_square;
+  CorrelatedErrors correlated_;  // of the newest pose
+  CorrelationTimes times_;
 };
 
 }  // namespace glint

@@ -13,8 +13,9 @@ class ToolMotion {
   ToolMotionSettings settings;
 
   // As MotionTrack has them.
-  Reason update(const UncertainPose& measured) noexcept GLINT_NONBLOCKING {
-    return track_.update(measured, settings, sums_).reason;
+  Reason update(const UncertainPose& measured,
+                const CorrelatedErrors& correlated = {}) noexcept GLINT_NONBLOCKING {
+    return track_.update(measured, correlated, settings, sums_).reason;
   }
   Reason update(Time time, std::span<const MeasuredPoint> points) noexcept GLINT_NONBLOCKING {
     return track_.update(time, points, settings, sums_);
@@ -26,6 +27,9 @@ class ToolMotion {
   [[nodiscard]] const NoiseScale& noise_scale() const { return track_.noise_scale(); }
   [[nodiscard]] MotionState estimate() const noexcept GLINT_NONBLOCKING {
     return track_.estimate(sums_);
+  }
+  [[nodiscard]] Matrix6 correlated_covariance() const noexcept GLINT_NONBLOCKING {
+    return track_.correlated_covariance(sums_);
   }
   [[nodiscard]] const Correction& last_correction() const { return track_.last_correction(); }
 

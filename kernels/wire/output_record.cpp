@@ -76,9 +76,16 @@ void encode(const PoseSample& s, std::span<std::uint8_t, k_output_record_bytes> 
   out.real(s.sigma_position_m);
   out.real(s.sigma_orientation_rad);
   out.real(s.registration_rms_m);
+  for (int row = 0; row < 6; ++row)
+    for (int column = 0; column <= row; ++column) out.real(s.systematic(row, column));
 }
 
-Result<PoseSample> decode(std::span<const std::uint8_t, k_output_record_bytes> record) noexcept {
+Result<PoseSample> decode(std::span<const std::uint8_t> record) noexcept {
+  constexpr std::size_t k_layout_at = 31;
+  const bool newest = record.size() == k_output_record_bytes;
+  if (!newest && record.size() != k_output_record_bytes_1) return {{}, Reason::out_of_range};
+  if (record[k_layout_at] != (newest ? k_output_record_layout : 1))
+    return {{}, Reason::out_of_range};
   Reader in(record);
   PoseSample s;
   s.tick.nanoseconds = static_cast<std::int64_t>(in.integer(8));
@@ -94,7 +101,7 @@ Result<PoseSample> decode(std::span<const std::uint8_t, k_output_record_bytes> r
   s.frame =
       static_cast<ReferenceFrame>(in.choice(static_cast<std::uint8_t>(ReferenceFrame::robot)));
   s.reason = static_cast<Reason>(in.choice(static_cast<std::uint8_t>(k_last_reason)));
-  in.good = in.integer(1) == k_output_record_layout && in.good;
+  (void)in.integer(1);  // the layout
   for (int i = 0; i < 3; ++i) s.pose.translation[i] = in.real();
   for (int i = 0; i < 4; ++i) s.pose.rotation.coeffs()[i] = in.real();
   for (int i = 0; i < 3; ++i) s.velocity_m_s[i] = in.real();
@@ -104,6 +111,10 @@ Result<PoseSample> decode(std::span<const std::uint8_t, k_output_record_bytes> r
   s.sigma_position_m = in.real();
   s.sigma_orientation_rad = in.real();
   s.registration_rms_m = in.real();
+  for (int row = 0; newest && row < 6; ++row) {
+    for (int column = 0; column <= row; ++column)
+      s.systematic(row, column) = s.systematic(column, row) = in.real();
+  }
   if (!in.good) return {{}, Reason::out_of_range};
   return {s, Reason::none};
 }

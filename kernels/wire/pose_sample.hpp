@@ -33,7 +33,8 @@ struct PoseSample {
   Pose pose;                               // T_frame_tip: the tool's axes, origin at its tip
   Vector3 velocity_m_s = Vector3::Zero();  // of the tip, in `frame`
   Vector3 angular_velocity_rad_s = Vector3::Zero();
-  Matrix6 covariance = Matrix6::Zero();  // x,y,z [m], rotation about fixed axes x,y,z [rad]
+  Matrix6 covariance = Matrix6::Zero();  // x,y,z [m], rotation about fixed axes x,y,z [rad]: total
+  Matrix6 systematic = Matrix6::Zero();  // of it, what calibration errors cause
   double sigma_position_m = 0;           // an axis: root of a third of the block's trace
   double sigma_orientation_rad = 0;      // likewise
   double registration_rms_m = 0;

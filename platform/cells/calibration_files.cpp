@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "kernels/angles.hpp"
 #include "kernels/elementary.hpp"
@@ -66,6 +67,9 @@ ValidRange cosines_of(const ValidRange& degrees) {
   return {cosine(degrees.to), cosine(degrees.from)};
 }
 
+// Of the focal length by which the ranges were measured, as a ratio.
+constexpr double k_lens_scale = 0.001;
+
 Vector3 vector_of(const std::vector<double>& values) { return {values[0], values[1], values[2]}; }
 
 }  // namespace
@@ -73,6 +77,16 @@ Vector3 vector_of(const std::vector<double>& values) { return {values[0], values
 DepthBias depth_bias_of(const NamedFile& file) {
   const Section section(file, "depth_bias", "depth");
   return depth_bias_of(*section.table, file.path, "depth_bias.");
+}
+
+void read_range_uncertainty(const NamedFile& file, CameraUncertainty& uncertainty) {
+  const toml::table root = parse_toml(file.text, file.path);
+  const auto offset_mm = root["offset_sigma_mm"].value<double>();
+  const auto per_metre_mm = root["mm_per_m_sigma"].value<double>();
+  if (!offset_mm || !per_metre_mm || !(*offset_mm >= 0) || !(*per_metre_mm >= 0)) return;
+  uncertainty.range_offset_m =
+      std::hypot(1e-3 * *offset_mm, k_lens_scale * DepthBias::k_reference_m);
+  uncertainty.range_scale = std::hypot(1e-3 * *per_metre_mm, k_lens_scale);
 }
 
 CameraModel lens_of(const NamedFile& file, const CameraModel& camera) {

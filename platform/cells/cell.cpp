@@ -95,7 +95,8 @@ void CellParser::read_simulator(const toml::table* table) {
   if (table == nullptr) return;
   TomlReader reader(*table, cell.file, "simulator.");
   SimulatorSettings& sim = cell.simulator;
-  sim.scenario = reader.one_of("scenario", sim.scenario, {"default", "still", "trajectories"});
+  sim.scenario =
+      reader.one_of("scenario", sim.scenario, {"default", "still", "trajectories", "field"});
   sim.duration_s = reader.real("duration_s", sim.duration_s, 0.1, 3600);
   sim.seed = static_cast<std::uint64_t>(reader.integer("seed", 1, 0, INT64_MAX));
   sim.pen_scale = reader.real("pen_scale", sim.pen_scale, 0.001, 10);
@@ -112,6 +113,12 @@ void CellParser::read_simulator(const toml::table* table) {
   sim.pen_trajectory = path("pen_trajectory");
   sim.background = path("background");
   reader.done();
+  constexpr double k_field_s_min = 5;
+  if (sim.scenario == "field" && sim.duration_s < k_field_s_min) {
+    throw InputError(cell.file + ":" + std::to_string(reader.line_of("duration_s")) +
+                     ": simulator.duration_s: found " + std::to_string(sim.duration_s) +
+                     "; expected at least 5 for scenario \"field\"");
+  }
   if (sim.scenario == "trajectories" &&
       (sim.head_trajectory.empty() || sim.pen_trajectory.empty())) {
     throw InputError(cell.file + ":" + std::to_string(table->source().begin.line) +
@@ -149,6 +156,8 @@ void read_sinks(TomlReader& root, Cell& cell) {
   }
 }
 
+constexpr double k_robot_sigma_max_mm = 1000, k_robot_sigma_max_deg = 90;
+
 void read_robot(const toml::table* table, Cell& cell) {
   cell.robot_given = table != nullptr;
   if (table == nullptr) return;
@@ -159,6 +168,12 @@ void read_robot(const toml::table* table, Cell& cell) {
   if (const auto rotation = reader.reals("rotation_deg", 3)) {
     cell.T_world_robot.rotation = from_fixed_axes(*rotation);
   }
+  cell.robot_sigma_m =
+      1e-3 * reader.real("position_sigma_mm", 1e3 * cell.robot_sigma_m, 0, k_robot_sigma_max_mm);
+  cell.robot_sigma_rad =
+      k_radians_per_degree * reader.real("rotation_sigma_deg",
+                                         k_degrees_per_radian * cell.robot_sigma_rad, 0,
+                                         k_robot_sigma_max_deg);
   cell.robot_in_reference = reader.one_of("frame", "world", {"world", "reference"}) == "reference";
   if (cell.robot_in_reference && cell.reference < 0) {
     throw InputError(cell.file + ":" + std::to_string(reader.line_of("frame")) +

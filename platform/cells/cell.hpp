@@ -71,7 +71,7 @@ struct SourceSettings {
 
 // Where simulated frames come from; everything else about the simulator has one declared default.
 struct SimulatorSettings {
-  std::string scenario = "default";  // default, still, or trajectories
+  std::string scenario = "default";  // default, still, trajectories, or field
   double duration_s = 60;
   std::uint64_t seed = 1;
   std::string head_trajectory, pen_trajectory;  // files; scenario = "trajectories"
@@ -132,9 +132,10 @@ struct Cell {
   std::string file;  // where it was read, for messages
   std::string text;  // as read: goes into every recording
   Camera camera;
-  int ray_steps = k_ray_steps_max;  // of the camera's lens, found once: see set_camera()
-  std::string ray_table;            // path, or empty
-  ToolSet tools;                    // all that may be there
+  int ray_steps = k_ray_steps_max;       // of the camera's lens, found once: see set_camera()
+  std::string ray_table;                 // path, or empty
+  bool lens_uncertainty_stated = false;  // then the source's own lens does not change it
+  ToolSet tools;                         // all that may be there
   ToolsPresent tools_at_start = k_all_tools;
   std::vector<ToolChange> tool_changes;  // in the order of their times
   std::vector<std::string> tool_files;
@@ -166,6 +167,8 @@ struct Cell {
   bool robot_given = true;          // T_world_robot holds; otherwise the pose stays in the world
   bool robot_in_reference = false;  // T_world_robot is T_reference_robot
   Pose T_world_robot;
+  // Of it, an axis: of a robot whose place was not measured by `glint reference`.
+  double robot_sigma_m = 0.003, robot_sigma_rad = 0.005;
 };
 
 // Another camera in its place, with the steps that its lens takes: some thousand rays are tried.

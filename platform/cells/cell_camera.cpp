@@ -24,7 +24,9 @@ constexpr const char* k_lens_key = "camera.file";
 void read_depth_bias(TomlReader& reader, Cell& cell, const CellFileReader& files) {
   if (reader.is_text("depth_bias")) {
     const std::string path = reader.text("depth_bias", "");
-    cell.camera.depth.bias = depth_bias_of(files.named_file(path, "camera.depth_bias"));
+    const NamedFile file = files.named_file(path, "camera.depth_bias");
+    cell.camera.depth.bias = depth_bias_of(file);
+    read_range_uncertainty(file, cell.camera.uncertainty);
   } else if (const toml::table* table = reader.table("depth_bias")) {
     cell.camera.depth.bias = depth_bias_of(*table, cell.file, "camera.depth_bias.");
   }
@@ -49,6 +51,52 @@ Duration duration_of(TomlReader& reader, const char* key, Duration preset, doubl
   const double preset_ms = static_cast<double>(preset.nanoseconds) * 1e-6;
   const double ms = reader.real(key, preset_ms, low, high);
   return ms == preset_ms ? preset : from_ms(ms);
+}
+
+// A device's own lens is better known than another unit's: pixels, and a ratio.
+constexpr double k_own_principal_point_px = 0.5, k_own_focal_scale = 0.001;
+
+void use_own_lens(Cell& cell) {
+  if (cell.lens_uncertainty_stated) return;
+  cell.camera.uncertainty.principal_point_px = k_own_principal_point_px;
+  cell.camera.uncertainty.focal_scale = k_own_focal_scale;
+}
+
+// A table of its own, or the file that has it.
+void read_uncertainty(TomlReader& camera, Cell& cell, const CellFileReader& files) {
+  std::optional<NamedFile> file;
+  toml::table root;
+  const toml::table* table = nullptr;
+  if (camera.is_text("uncertainty")) {
+    file = files.named_file(camera.text("uncertainty", ""), "camera.uncertainty");
+    root = parse_toml(file->text, file->path);
+    table = root["uncertainty"].as_table();
+    if (table == nullptr) {
+      throw InputError(file->path +
+                       ":1: no table [uncertainty]; expected a file of `glint calibrate noise "
+                       "--recording`");
+    }
+  } else {
+    table = camera.table("uncertainty");
+  }
+  if (table == nullptr) return;
+  TomlReader reader(*table, file ? file->path : cell.file,
+                    file ? "uncertainty." : "camera.uncertainty.");
+  CameraUncertainty& sigma = cell.camera.uncertainty;
+  sigma.range_offset_m = metres_of(reader, "range_offset_mm", sigma.range_offset_m, 0, 100);
+  sigma.range_scale = reader.real("range_scale", sigma.range_scale, 0, 0.2);
+  cell.lens_uncertainty_stated =
+      table->contains("principal_point_px") || table->contains("focal_scale");
+  sigma.principal_point_px = reader.real("principal_point_px", sigma.principal_point_px, 0, 50);
+  sigma.focal_scale = reader.real("focal_scale", sigma.focal_scale, 0, 0.2);
+  sigma.slow_range_m = metres_of(reader, "slow_range_mm", sigma.slow_range_m, 0, 20);
+  sigma.slow_centroid_px = reader.real("slow_centroid_px", sigma.slow_centroid_px, 0, 2);
+  sigma.fast_share = reader.real("fast_share", sigma.fast_share, 0, 1);
+  CorrelationTimes& times = cell.camera.correlation;
+  times.fast_s = reader.real("fast_s", times.fast_s, 0.001, 10'000);
+  times.slow_s = reader.real("slow_s", times.slow_s, 0.001, 10'000);
+  sigma.stamp_s = 1e-3 * reader.real("stamp_ms", 1e3 * sigma.stamp_s, 0, 100);
+  reader.done();
 }
 
 void read_sensor(TomlReader& reader, Cell& cell) {
@@ -135,7 +183,10 @@ void read_camera(const toml::table* table, Cell& cell, const CellFileReader& fil
     const std::string name = lens.empty() ? std::string(k_lens_key) + ".toml" : lens;
     cell.camera.model = lens_of(files.named_file(name, k_lens_key), cell.camera.model);
   }
+  const bool rays_carried = files.carried != nullptr && files.carried->rays != nullptr;
+  if (names_lens(cell) || !cell.ray_table.empty() || rays_carried) use_own_lens(cell);
   read_depth_bias(reader, cell, files);
+  read_uncertainty(reader, cell, files);
   reader.done();
   if (files.carried != nullptr) {
     if (files.carried->rays != nullptr) {
@@ -166,6 +217,7 @@ void set_lens(Cell& cell, SourceLens lens) {
   } else {
     set_rays(cell, std::move(lens.rays), lens.path);
   }
+  use_own_lens(cell);
   set_camera(cell, cell.camera);
 }
 

@@ -6,8 +6,8 @@
 namespace glint {
 
 // Where a cell may name one.
-inline constexpr const char* k_named_keys[] = {"camera.file", "camera.depth_bias", "motion.file",
-                                               "correction.file"};
+inline constexpr const char* k_named_keys[] = {
+    "camera.file", "camera.depth_bias", "camera.uncertainty", "motion.file", "correction.file"};
 
 struct NamedFile {
   std::string key;   // one of these; a recording carries the text under it

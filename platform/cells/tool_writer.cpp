@@ -45,9 +45,10 @@ std::string tool_toml_text(const Tool& tool, std::string_view comment) {
   for (int i = 0; i < tool.marker_count; ++i) {
     text += "  " + point_mm(tool.markers_m[static_cast<std::size_t>(i)]) + ",\n";
   }
-  char radius[48];
-  std::snprintf(radius, sizeof radius, "]\nradius_mm = %.4f\n", 1e3 * tool.marker_radius_m);
-  text += radius;
+  char sizes[96];
+  std::snprintf(sizes, sizeof sizes, "]\nmarker_sigma_mm = %.4f\nradius_mm = %.4f\n",
+                1e3 * tool.marker_sigma_m, 1e3 * tool.marker_radius_m);
+  text += sizes;
   text += "tip_mm = " + point_mm(tool.tip_m) + "\n";
   text += tool.shape == MarkerShape::sphere ? "shape = \"sphere\"\n" : "shape = \"disc\"\n";
   const std::string bias = depth_bias_text(tool.depth_bias);

@@ -93,6 +93,9 @@ int run_tool(const ToolArguments& arguments) {
   for (const Vector3& marker : found.markers_m) {
     tool.markers_m[static_cast<std::size_t>(tool.marker_count++)] = marker;
   }
+  double squares = 0;
+  for (const double sigma : found.marker_sigma_m) squares += sigma * sigma;
+  tool.marker_sigma_m = std::sqrt(squares / static_cast<double>(found.marker_sigma_m.size()));
   std::vector<double> residuals_mm;
   for (const double residual : found.residuals_m) residuals_mm.push_back(1e3 * residual);
   const std::string from = "by glint calibrate tool from " + source +

@@ -81,8 +81,10 @@ ordered_json errors_of(const OutputErrors& errors) {
           {"tip_p95_mm", 0.1 * quantile(errors.histogram, 0.95)},
           {"tip_max_mm", 1e3 * errors.largest_m},
           {"tip_stated_mm", 1e3 * std::sqrt(errors.stated_m2 / n)},
+          {"tip_random_mm", 1e3 * std::sqrt(errors.random_m2 / n)},
           {"angle_rms_deg", k_degrees_per_radian * std::sqrt(errors.square_rad2 / n)},
           {"angle_stated_deg", k_degrees_per_radian * std::sqrt(errors.stated_rad2 / n)},
+          {"angle_random_deg", k_degrees_per_radian * std::sqrt(errors.random_rad2 / n)},
           {"coverage_tip", share(errors.inside_position, errors.count)},
           {"coverage_angle", share(errors.inside_rotation, errors.count)}};
 }
@@ -125,10 +127,11 @@ std::string error_text(const ordered_json& errors) {
   char text[256];
   std::snprintf(
       text, sizeof text,
-      "tip %.2f mm rms (stated %.2f), angle %.2f deg (%.2f); inside 95 %%: %s, %s; "
-      "gross: %llu",
+      "tip %.2f mm rms (stated %.2f, random part %.2f), angle %.2f deg (%.2f, %.2f); inside 95 %%: "
+      "%s, %s; gross: %llu",
       errors.at("tip_rms_mm").get<double>(), errors.at("tip_stated_mm").get<double>(),
-      errors.at("angle_rms_deg").get<double>(), errors.at("angle_stated_deg").get<double>(),
+      errors.at("tip_random_mm").get<double>(), errors.at("angle_rms_deg").get<double>(),
+      errors.at("angle_stated_deg").get<double>(), errors.at("angle_random_deg").get<double>(),
       percent(errors.at("coverage_tip")).c_str(), percent(errors.at("coverage_angle")).c_str(),
       errors.at("gross").get<unsigned long long>());
   return text;

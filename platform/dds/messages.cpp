@@ -54,14 +54,14 @@ PoseMessage pose_message(const Pose& pose) {
   return {{t.x(), t.y(), t.z()}, {q.x(), q.y(), q.z(), q.w()}};
 }
 
-PoseCovarianceMessage pose_covariance_message(const HeaderMessage& header,
-                                              const PoseSample& sample) {
+PoseCovarianceMessage pose_covariance_message(const HeaderMessage& header, const Pose& pose,
+                                              const Matrix6& covariance) {
   PoseCovarianceMessage message{};
   message.header = header;
-  message.pose.pose = pose_message(sample.pose);
+  message.pose.pose = pose_message(pose);
   for (int row = 0; row < 6; ++row) {
     for (int column = 0; column < 6; ++column) {
-      message.pose.covariance[6 * row + column] = sample.covariance(row, column);
+      message.pose.covariance[6 * row + column] = covariance(row, column);
     }
   }
   return message;

@@ -39,7 +39,8 @@ using StatusMessage = glint_msgs_msg_dds__TrackStatus_;
 [[nodiscard]] PoseMessage pose_message(const Pose& pose);
 // The covariance goes row by row: x, y, z, rotation about fixed axes x, y, z (REP-103).
 [[nodiscard]] PoseCovarianceMessage pose_covariance_message(const HeaderMessage& header,
-                                                            const PoseSample& sample);
+                                                            const Pose& pose,
+                                                            const Matrix6& covariance);
 [[nodiscard]] TransformMessage transform_message(const HeaderMessage& header, const char* child,
                                                  const Pose& T_frame_child);
 

@@ -53,6 +53,8 @@ PosePublisher::PosePublisher(const DdsSettings& settings)
     stream.pose = participant_->writer(pose_stamped_type(), stream.topics.pose, k_pose_quality);
     stream.pose_covariance =
         participant_->writer(pose_covariance_type(), stream.topics.pose_covariance, k_pose_quality);
+    stream.pose_systematic =
+        participant_->writer(pose_covariance_type(), stream.topics.pose_systematic, k_pose_quality);
     streams_.push_back(std::move(stream));
   }
   tf_ = participant_->writer(tf_type(), k_tf_topic, k_tf_quality);
@@ -117,14 +119,18 @@ void PosePublisher::write_pose(const ToolStream& stream, const PoseSample& sampl
   const HeaderMessage header =
       header_message(unix_time(sample.tick + settings_.actuation_delay), frame_name(sample.frame));
   const PoseStampedMessage pose{header, pose_message(sample.pose)};
-  const PoseCovarianceMessage covariance = pose_covariance_message(header, sample);
+  const PoseCovarianceMessage total =
+      pose_covariance_message(header, sample.pose, sample.covariance);
+  const PoseCovarianceMessage systematic =
+      pose_covariance_message(header, sample.pose, sample.systematic);
   TransformMessage transform =
       transform_message(header, stream.topics.tip_frame.c_str(), sample.pose);
   TfMessage tf{};
   tf.transforms._length = tf.transforms._maximum = 1;
   tf.transforms._buffer = &transform;
   write_other(stream.pose, &pose);
-  write_other(stream.pose_covariance, &covariance);
+  write_other(stream.pose_covariance, &total);
+  write_other(stream.pose_systematic, &systematic);
   write_other(tf_, &tf);
 }
 

@@ -54,7 +54,7 @@ class PosePublisher {
   struct ToolStream {
     std::string name;
     ToolTopics topics;
-    dds_entity_t status = 0, pose = 0, pose_covariance = 0;
+    dds_entity_t status = 0, pose = 0, pose_covariance = 0, pose_systematic = 0;
     bool started = false;
     Time start;         // board time of the first tick
     Time newest;        // of the newest tick, written or not

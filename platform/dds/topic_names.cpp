@@ -36,7 +36,7 @@ ToolTopics topics_of(std::string_view prefix, std::string_view tool) {
   const std::string base = ros_name(prefix), name = ros_name(tool);
   const std::string topic = "rt/" + base + "/" + name;
   return {topic + "_status", topic + "_pose", topic + "_pose_covariance",
-          base + "_" + name + "_tip"};
+          topic + "_pose_systematic", base + "_" + name + "_tip"};
 }
 
 }  // namespace glint

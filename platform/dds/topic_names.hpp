@@ -15,7 +15,8 @@ namespace glint {
 struct ToolTopics {
   std::string status;           // rt/PREFIX/TOOL_status
   std::string pose;             // rt/PREFIX/TOOL_pose
-  std::string pose_covariance;  // rt/PREFIX/TOOL_pose_covariance
+  std::string pose_covariance;  // rt/PREFIX/TOOL_pose_covariance: the total
+  std::string pose_systematic;  // rt/PREFIX/TOOL_pose_systematic: its systematic part
   std::string tip_frame;        // PREFIX_TOOL_tip
 };
 [[nodiscard]] ToolTopics topics_of(std::string_view prefix, std::string_view tool);

@@ -12,9 +12,11 @@ GlintChain::GlintChain(const Camera& camera, const ChainSetup& setup)
     : tracker_(std::make_unique<Tracker>()) {
   Cell cell = default_cell();
   set_camera(cell, camera);
+  cell.camera.uncertainty = k_exact_camera;  // judged is the random part
   cell.tools.count = 0;
   for (const Tool& tool : setup.tools)
     cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] = tool;
+  for (Tool& tool : cell.tools.items) tool.marker_sigma_m = 0;
   cell.reference = setup.reference;
   cell.head_noise = setup.head_noise;
   configure(cell, *tracker_);

@@ -83,14 +83,12 @@ RecordedPath recorded_path(const std::string& recording, const RecordedPathOptio
   while (const auto message = reader.next()) {
     const auto* output = std::get_if<OutputMessage>(&*message);
     if (output == nullptr || output->tool != tool) continue;
-    if (output->record.size() != k_output_record_bytes) {
-      throw InputError(recording + ": an output record of " +
-                       std::to_string(output->record.size()) + " bytes; expected " +
-                       std::to_string(k_output_record_bytes));
+    const Result<PoseSample> sample = decode(output->record);
+    if (!sample) {
+      throw InputError(
+          recording + ": an output record of " + std::to_string(output->record.size()) +
+          " bytes, which is none; expected layout 1 or " + std::to_string(k_output_record_layout));
     }
-    const Result<PoseSample> sample = decode(std::span<const std::uint8_t, k_output_record_bytes>(
-        output->record.data(), k_output_record_bytes));
-    if (!sample) throw InputError(recording + ": an output record of another layout");
     for (; event != events.end() && before_pose(*event, sample.value.tick); ++event) {
       capture.add(*event);
     }

@@ -22,11 +22,11 @@
 
 namespace glint {
 
-inline constexpr std::size_t k_offered_record_bytes_max = 512;
+inline constexpr std::size_t k_offered_record_bytes_max = 640;
 
 struct RecorderSettings {
   std::size_t frame_lane_bytes = std::size_t{26} << 20;  // 24 whole AHAT frames
-  std::size_t tick_lane_bytes = std::size_t{4} << 20;    // 5 s of 1 kHz
+  std::size_t tick_lane_bytes = std::size_t{6} << 20;    // 5 s of 1 kHz
   std::size_t input_lane_bytes = std::size_t{1} << 16;
   std::size_t slice_lane_bytes = std::size_t{1} << 16;
   WhenFull when_full = WhenFull::drop;

@@ -58,17 +58,22 @@ class Row {
   std::string& line_;
 };
 
-constexpr int k_pose_fields = 3 + 4 + 3 + 3 + 36 + 2;
+constexpr int k_pose_fields = 3 + 4 + 3 + 3 + 36 + 2 + 36;
 
 std::string csv_heading() {
   std::string line =
       "tick_s,measurement_s,tick_number,frame_sequence,tool,state,reason,registration,frame,"
       "marker_mask,buttons,registration_rms_m,x_m,y_m,z_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s,"
       "wx_rad_s,wy_rad_s,wz_rad_s";
-  for (int row = 1; row <= 6; ++row)
-    for (int column = 1; column <= 6; ++column)
-      line += ",c" + std::to_string(row) + std::to_string(column);
-  return line + ",sigma_position_m,sigma_orientation_rad";
+  const auto matrix = [&](const char* name) {
+    for (int row = 1; row <= 6; ++row)
+      for (int column = 1; column <= 6; ++column)
+        line += name + std::to_string(row) + std::to_string(column);
+  };
+  matrix(",c");
+  line += ",sigma_position_m,sigma_orientation_rad";
+  matrix(",systematic_c");
+  return line;
 }
 
 void put_pose_fields(Row& row, const PoseSample& sample) {
@@ -76,9 +81,13 @@ void put_pose_fields(Row& row, const PoseSample& sample) {
   for (int i = 0; i < 4; ++i) row << sample.pose.rotation.coeffs()[i];  // x,y,z,w
   for (int i = 0; i < 3; ++i) row << sample.velocity_m_s[i];
   for (int i = 0; i < 3; ++i) row << sample.angular_velocity_rad_s[i];
-  for (int i = 0; i < 6; ++i)
-    for (int j = 0; j < 6; ++j) row << sample.covariance(i, j);
+  const auto matrix = [&](const Matrix6& covariance) {
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) row << covariance(i, j);
+  };
+  matrix(sample.covariance);
   row << sample.sigma_position_m << sample.sigma_orientation_rad;
+  matrix(sample.systematic);
 }
 
 }  // namespace

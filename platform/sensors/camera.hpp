@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "kernels/image/pixel_noise.hpp"
+#include "kernels/motion/correlated_errors.hpp"
 #include "kernels/pose/camera_model.hpp"
 #include "kernels/pose/depth_settings.hpp"
+#include "kernels/pose/systematic_covariance.hpp"
 #include "kernels/units.hpp"
 
 namespace glint {
@@ -26,7 +28,9 @@ struct Camera {
   // HoloLens 2 0.5 to 1.1 mm and 0.035 px were measured at 0.4 to 0.7 m.
   double range_sigma_m = 0.0015, pixel_sigma_px = 0.1;
   bool estimate_noise = true;  // from there on by the residuals of the tools' fits
-  Duration period;             // nominal gap between frames
+  CameraUncertainty uncertainty;
+  CorrelationTimes correlation;  // of the errors that are alike over many frames
+  Duration period;               // nominal gap between frames
   Duration exposure;
   Duration transport;                               // end of exposure -> last byte in memory
   double range_min_m = 0.15, range_max_m = 1.0;     // where tools are expected

@@ -8,11 +8,28 @@
 namespace glint {
 namespace {
 
-// A partly hidden marker's centroid stays on its disc, and that of a marker merged with another of
-// its size within one radius beside it: beyond both lies another reflector's blob.
-bool lies_beside(const BlobSlopes& blob, const Vector3& marker_m, double radius_m) {
+// From a marker to the nearest point of its blob's ray.
+Vector3 to_ray(const BlobSlopes& blob, const Vector3& marker_m) {
   const Vector3 ray = Vector3(double{blob.x}, double{blob.y}, 1).normalized();
-  return marker_m.cross(ray).squaredNorm() > 4 * radius_m * radius_m;
+  return ray * ray.dot(marker_m) - marker_m;
+}
+
+// A partly hidden marker's centroid stays on its disc, and that of a marker merged with another of
+// its size within one radius beside it: beyond both lies another reflector's blob. What three or
+// more blobs have in common is the lens's error.
+bool is_misassigned(const ToolOutcome& outcome, const Tool& tool, const Pose& T_camera_tool) {
+  std::array<Vector3, k_markers_per_tool_max> shifts;
+  Vector3 sum = Vector3::Zero();
+  std::size_t count = 0;
+  for (std::size_t m = 0; m < outcome.blobs.size(); ++m) {
+    if (((outcome.blob_mask >> m) & 1) == 0) continue;
+    shifts[count] = to_ray(outcome.blobs[m], T_camera_tool * tool.markers_m[m]);
+    sum += shifts[count++];
+  }
+  const Vector3 common = count >= 3 ? Vector3(sum / static_cast<double>(count)) : Vector3::Zero();
+  return std::any_of(shifts.begin(), shifts.begin() + count, [&](const Vector3& shift) {
+    return (shift - common).norm() > 2 * tool.marker_radius_m;
+  });
 }
 
 void state(const Tracker& tracker, int t, const Estimates& estimates, ToolOutcome& outcome) {
@@ -42,11 +59,7 @@ TrackingError error_of(const ToolOutcome& outcome, const Tool& tool, const Pose&
   error.tip_m = (outcome.T_camera_tool * tool.tip_m - T_camera_tool * tool.tip_m).norm();
   error.angle_rad = outcome.T_camera_tool.rotation.angularDistance(T_camera_tool.rotation);
   error.tip_sigma_m = outcome.tip_sigma_m;
-  for (std::size_t m = 0; m < outcome.blobs.size(); ++m) {
-    if (((outcome.blob_mask >> m) & 1) == 0) continue;
-    if (lies_beside(outcome.blobs[m], T_camera_tool * tool.markers_m[m], tool.marker_radius_m))
-      error.misassigned = true;
-  }
+  error.misassigned = is_misassigned(outcome, tool, T_camera_tool);
   return error;
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "kernels/motion/interpolate.hpp"
@@ -22,6 +23,15 @@ void count(std::array<std::uint64_t, N>& bins, double at) {
 bool inside(const Vector3& error, const Matrix3& covariance) {
   const Eigen::LDLT<Matrix3> factor(covariance);
   return factor.info() == Eigen::Success && error.dot(factor.solve(error)) <= k_chi_square_95;
+}
+
+// -ln of the Gaussian density; nothing is added for a covariance that is not positive.
+double log_score(const Vector6& error, const Matrix6& covariance) {
+  const Eigen::LDLT<Matrix6> factor(covariance);
+  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0)) return 0;
+  constexpr double k_two_pi = 2 * std::numbers::pi;
+  return 0.5 * (6 * std::log(k_two_pi) + factor.vectorD().array().log().sum() +
+                error.dot(factor.solve(error)));
 }
 
 }  // namespace
@@ -96,10 +106,16 @@ void OutputFigures::judge(const PoseSample& sample, OutputErrors& errors) {
   errors.inside_position += inside(shift, of_position) ? 1 : 0;
   errors.inside_rotation += inside(turn, of_rotation) ? 1 : 0;
   errors.gross += is_gross({shift.norm(), turn.norm(), std::sqrt(of_position.trace())}) ? 1 : 0;
+  Vector6 error;
+  error << shift, turn;
+  errors.log_score += log_score(error, sample.covariance);
   errors.square_m2 += shift.squaredNorm();
   errors.square_rad2 += turn.squaredNorm();
   errors.stated_m2 += of_position.trace();
   errors.stated_rad2 += of_rotation.trace();
+  const Matrix6 random = sample.covariance - sample.systematic;
+  errors.random_m2 += random.topLeftCorner<3, 3>().trace();
+  errors.random_rad2 += random.bottomRightCorner<3, 3>().trace();
   errors.largest_m = std::max(errors.largest_m, shift.norm());
   count(errors.histogram, shift.norm() / k_error_bin_m);
 }

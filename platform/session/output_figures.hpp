@@ -29,7 +29,9 @@ struct OutputErrors {
   std::uint64_t count = 0, inside_position = 0, inside_rotation = 0;  // the stated 95 % ellipsoid
   std::uint64_t gross = 0;                                            // gross.hpp
   double square_m2 = 0, square_rad2 = 0;                              // sums of squared errors
-  double stated_m2 = 0, stated_rad2 = 0;  // sums of the stated covariances' traces
+  // Sums of the stated covariances' traces, and of their random parts'.
+  double stated_m2 = 0, stated_rad2 = 0, random_m2 = 0, random_rad2 = 0;
+  double log_score = 0;  // sum of -ln of the stated Gaussian density at the truth, in m and rad
   double largest_m = 0;
   std::array<std::uint64_t, k_errors> histogram{};
 };

@@ -70,6 +70,8 @@ NominalMarker nominal_marker(const ToolSet& tools) {
   return nominal;
 }
 
+double square(double value) { return value * value; }
+
 MarkerNoise marker_noise(const Camera& camera) {
   return {camera.range_sigma_m, camera.pixel_sigma_px, camera.model.fx};
 }
@@ -120,6 +122,7 @@ void configure_common(const Cell& cell, AnyTracker& tracker) {
     node.limits = limits;
     node.noise = noise;
     node.correction = cell.correction;
+    node.uncertainty = cell.camera.uncertainty;
   });
   tracker.template node<AnchorHead>().limits = limits;
   tracker.template node<AnchorHead>().reference = cell.reference;
@@ -127,6 +130,7 @@ void configure_common(const Cell& cell, AnyTracker& tracker) {
   tracker.template for_each<FollowMotion>([&](FollowMotion& node) {
     node.limits = limits;
     node.settings.motion = cell.motion;
+    node.settings.rest.correlation = cell.camera.correlation;
   });
   tracker.template node<TrackTools>().settings = track_settings(cell);
   tracker.template node<TrackTools>().noise = noise;
@@ -179,6 +183,9 @@ void configure(const Cell& cell, Output& output) {
   predict.settings.lost_after = cell.lost_after;
   predict.settings.actuation_delay = cell.actuation_delay;
   predict.settings.motion = cell.motion;
+  predict.settings.stamp_sigma_s = cell.camera.uncertainty.stamp_s;
+  predict.settings.robot_covariance.diagonal() << Vector3::Constant(square(cell.robot_sigma_m)),
+      Vector3::Constant(square(cell.robot_sigma_rad));
   predict.limits = limits_of(cell);
   PackCan& pack = output.node<PackCan>();
   pack.settings.format = cell.can.fd ? CanFormat::fd : CanFormat::classic;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "platform/sensors/frame_files.hpp"
+#include "platform/sim/field.hpp"
 #include "platform/sim/scenarios.hpp"
 
 namespace glint {
@@ -16,6 +17,11 @@ sim::Scenario scenario_of(const Cell& cell) {
     scenario =
         sim::trajectory_run(cell.camera, tools, sim::load_trajectory(settings.head_trajectory),
                             sim::load_trajectory(settings.pen_trajectory), settings.pen_scale);
+  } else if (settings.scenario == "field") {
+    const Cell shipped;
+    scenario = sim::field_run(cell.camera, tools,
+                              {cell.T_world_robot, shipped.robot_sigma_m, shipped.robot_sigma_rad},
+                              settings.duration_s, settings.seed);
   } else if (settings.scenario == "still") {
     scenario = sim::still_run(cell.camera, tools);
   } else {

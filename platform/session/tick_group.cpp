@@ -98,6 +98,7 @@ void TickGroup::answer(const Now& now) noexcept {
 }
 
 void TickGroup::offer_samples() noexcept {
+  static_assert(k_output_record_bytes <= k_offered_record_bytes_max);
   std::array<std::uint8_t, k_output_record_bytes> record;
   const std::optional<Time> newest =
       samples_->any_frame ? std::optional(samples_->newest_frame) : std::nullopt;

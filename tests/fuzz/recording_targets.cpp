@@ -51,8 +51,8 @@ void read_message(Bytes bytes) {
       return;
     case 5: {
       const auto output = read_output(message);
-      if (!output || output->record.size() != k_output_record_bytes) return;
-      (void)decode(std::span<const std::uint8_t>(output->record).first<k_output_record_bytes>());
+      if (!output) return;
+      (void)decode(output->record);
       return;
     }
     case 6:

@@ -189,6 +189,48 @@ TEST_F(PredictTools, IsNoSurerThanTheHeadsetItself) {
   EXPECT_GT(at(1000).sigma_position_m, 0.002);
 }
 
+TEST_F(PredictTools, GivesTheSystematicPartBesideTheTotal) {
+  Track& track = estimates_->tracks[0];
+  const double random = at(1000).covariance(2, 2);
+  EXPECT_TRUE(at(1000).systematic.isZero());
+  track.calibration_covariance.diagonal() << 1e-6, 0.5e-6, 1e-6, 0, 4e-6, 0;
+  track.correlated_covariance(1, 1) = 0.5e-6;
+  const PoseSample sample = at(1000);
+  // The tip lies 0.1 m along x: a turn about y moves it along z.
+  EXPECT_NEAR(sample.systematic(2, 2), 1e-6 + 0.01 * 4e-6, 1e-15);
+  EXPECT_NEAR(sample.systematic(0, 0), 1e-6, 1e-15);
+  EXPECT_NEAR(sample.systematic(1, 1), 1e-6, 1e-15);
+  EXPECT_NEAR(sample.covariance(2, 2), random + sample.systematic(2, 2), 1e-15);
+  EXPECT_NEAR(sample.sigma_position_m,
+              std::sqrt(sample.covariance.topLeftCorner<3, 3>().trace() / 3), 1e-15);
+}
+
+TEST_F(PredictTools, CountsTheRobotsPlaceAmongSystematicErrors) {
+  node_.settings.robot_covariance.diagonal() << 1e-6, 1e-6, 1e-6, 0, 0, 1e-6;
+  robot_.T_world_robot.translation = Vector3(0, -1, 0.5);  // 1 m beside the tip's middle
+  robot_.T_world_robot.rotation = Quaternion(std::sqrt(0.5), 0, 0, std::sqrt(0.5));
+  const PoseSample sample = at(1000);
+  ASSERT_EQ(sample.frame, ReferenceFrame::robot);
+  // In the world a turn about z moves the middle along x, 1 m a radian, and the tip 0.1 m along y.
+  EXPECT_NEAR(sample.systematic(1, 1), 1e-6 + 1e-6, 1e-12);
+  EXPECT_NEAR(sample.systematic(0, 0), 1e-6 + 0.01 * 1e-6, 1e-12);
+  EXPECT_NEAR(sample.systematic(2, 2), 1e-6, 1e-12);
+  robot_.state = RegistrationState::none;
+  EXPECT_TRUE(at(1000).systematic.isZero()) << "in the world the robot's place does not count";
+}
+
+TEST_F(PredictTools, CountsTheStampsErrorWhereTheToolMoves) {
+  node_.settings.stamp_sigma_s = 0.002;
+  EXPECT_TRUE(at(1000).systematic.isZero()) << "at rest";
+  estimates_->tracks[0].motion.velocity_m_s = Vector3(0, 0.5, 0);
+  estimates_->tracks[0].motion.angular_velocity_rad_s = Vector3(0, 0, 2);
+  const PoseSample sample = at(1000);
+  const double tip_m_s = 0.5 + 0.1 * 2;
+  EXPECT_NEAR(sample.systematic(1, 1), 0.002 * 0.002 * tip_m_s * tip_m_s, 1e-12);
+  EXPECT_NEAR(sample.systematic(5, 5), 0.002 * 0.002 * 4, 1e-12);
+  EXPECT_NEAR(sample.systematic(0, 0), 0, 1e-15);
+}
+
 TEST_F(PredictTools, TakesTheRobotsFrameFromTheReferenceToolWhereTheCellSaysSo) {
   robot_.in_reference = true;
   robot_.T_world_robot.translation = Vector3(0, 0, 1);

@@ -16,48 +16,6 @@ using test::Random;
 
 class RefinePose : public test::RefinePoseTest {};
 
-// Two tools of other markers in one frame: the camera's bias, already off, is that of the first's.
-TEST_F(RefinePose, TakesEachToolsOwnDepthBiasInPlaceOfTheCameras) {
-  Random random(21);
-  constexpr double k_camera_bias_m = 0.006;
-  Tool spheres = test::five_marker_pen(), discs = spheres;
-  discs.depth_bias = {0.02, 0.03, 0.004, 0.3, 0.9};
-  const Pose truths[] = {test::tilted_pose(spheres, 0.6, k_place, random),
-                         test::tilted_pose(discs, 0.6, -k_place + Vector3(0, 0, 1), random)};
-  add_tool(0, spheres, truths[0], 0, random);
-  add_tool(1, discs, truths[1], 0, random);
-  for (int i = 0; i < 5; ++i) {
-    Marker& marker = marker_of(1, i);
-    marker.peak = static_cast<std::uint16_t>(500 + 400 * i);
-    marker.bias_taken_m = static_cast<float>(k_camera_bias_m);
-    const double surface = marker.surface_range_m;
-    double raw = surface;
-    for (int again = 0; again < 20; ++again) raw = surface + discs.depth_bias.at(raw, marker.peak);
-    marker.surface_range_m = raw - static_cast<double>(marker.bias_taken_m);
-    marker_of(0, i).bias_taken_m = marker.bias_taken_m;
-  }
-  const FittedTools& fitted = run();
-  for (int t = 0; t < 2; ++t) {
-    const FittedTool& found = fitted.tools[static_cast<std::size_t>(t)];
-    ASSERT_EQ(found.reason, Reason::none) << t;
-    EXPECT_LT((found.T_camera_tool.translation - truths[t].translation).norm(), 1e-5) << t;
-  }
-}
-
-// Another tracker's points have no peak: as dimmest of all markers they would stand metres too
-// near.
-TEST_F(RefinePose, TakesNoDepthBiasOffAPointWithoutAnImage) {
-  Random random(22);
-  Tool tool = test::five_marker_pen();
-  tool.depth_bias = {0.02, 0.03, 0.004, 0.3, 0.9};
-  const Pose truth = test::tilted_pose(tool, 0.6, k_place, random);
-  add_tool(0, tool, truth, 0, random);
-  for (int i = 0; i < 5; ++i) marker_of(0, i).peak = 0;
-  const FittedTool& found = run_one();
-  ASSERT_EQ(found.reason, Reason::none);
-  EXPECT_LT((found.T_camera_tool.translation - truth.translation).norm(), 1e-5);
-}
-
 TEST_F(RefinePose, BeatsTheRigidFitOnNoisyMarkersAndSaysHowSureItIs) {
   Random random(1);
   Tool tool = test::five_marker_pen();
@@ -389,20 +347,6 @@ TEST_F(RefinePose, IsLessSureOfMarkersThatAreOffByMoreThanTheirNoise) {
   EXPECT_GT(found.covariance(2, 2), 4 * sure(2, 2));
   const Vector6 error = error_of(found, truth, tool.tip_m);
   EXPECT_LT(error.dot(pose_factor(found.covariance).value.solve(error)), 20);
-}
-
-TEST_F(RefinePose, TakesAMeasuredMeanErrorOffWhereItHolds) {
-  Random random(12);
-  const Tool tool = test::five_marker_pen();
-  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
-  add_tool(0, tool, truth, 0, random);
-  const Pose plain = run_one().T_camera_tool;
-  node_.correction = {
-      CorrectionFrame::camera, Vector3(0.002, 0, 0), Vector3::Zero(), {0, 2}, {-1, 1}, {-1, 1}};
-  const Pose corrected = run_one().T_camera_tool;
-  EXPECT_TRUE((corrected.translation - plain.translation).isApprox(Vector3(0.002, 0, 0), 1e-9));
-  node_.correction.range_m = {1, 2};
-  EXPECT_EQ(run_one().T_camera_tool.translation, plain.translation);
 }
 
 }  // namespace

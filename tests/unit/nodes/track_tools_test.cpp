@@ -209,17 +209,25 @@ TEST(TrackTools, GivesWhatTheHeadsetItselfIsOffByBesideTheMotionsCovariance) {
   const auto followed = std::make_unique<graph::Parts<FollowedTools, k_tool_slices>>();
   (*followed)[0].items[0].reason = Reason::none;
   (*followed)[0].items[0].stands = true;
+  (*followed)[0].items[0].correlated_covariance(2, 2) = 7e-6;
   (*followed)[0].items[0].estimate.pose.translation = {1, 0, 0};
+  (*fitted)[0].tools[0].systematic.calibration.diagonal() << 1e-6, 4e-6, 9e-6, 1e-10, 2e-10, 3e-10;
   Anchor anchor;
   anchor.now.head.valid = true;
+  anchor.now.head.T_world_camera.rotation = Quaternion(std::sqrt(0.5), 0, 0, std::sqrt(0.5));
   anchor.now.lasting.diagonal() << Vector3::Constant(1e-6), Vector3::Constant(4e-6);
   const auto last = std::make_unique<Estimates>(), out = std::make_unique<Estimates>();
   glint::TrackTools node;
   node({}, anchor, tools, *fitted, *followed, graph::Previous<Estimates>(*last), *out);
   EXPECT_NEAR(out->tracks[0].head_covariance(1, 1), 5e-6, 1e-12);
+  EXPECT_EQ(out->tracks[0].correlated_covariance(2, 2), 7e-6);
+  EXPECT_NEAR(out->tracks[0].calibration_covariance(0, 0), 4e-6, 1e-15) << "turned into the world";
+  EXPECT_NEAR(out->tracks[0].calibration_covariance(1, 1), 1e-6, 1e-15);
+  EXPECT_NEAR(out->tracks[0].calibration_covariance(3, 3), 2e-10, 1e-18);
   anchor.now.head.valid = false;
   node({}, anchor, tools, *fitted, *followed, graph::Previous<Estimates>(*last), *out);
   EXPECT_TRUE(out->tracks[0].head_covariance.isZero()) << "in the camera's frame it is none";
+  EXPECT_NEAR(out->tracks[0].calibration_covariance(0, 0), 1e-6, 1e-15);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ constexpr double k_shift_sigma = 0.0005, k_turn_sigma = 0.005;
 struct Window {
   RestWindow at;
   RestSums sums;
-  void add(const UncertainPose& measured) { at.add(measured, RestSettings{}, sums); }
+  void add(const UncertainPose& measured) { at.add(measured, {}, RestSettings{}, sums); }
   void clear() { at.clear(); }
   [[nodiscard]] bool rests() const { return at.rests(); }
   [[nodiscard]] int frames() const { return at.frames(); }
@@ -189,7 +189,8 @@ TEST(RestWindow, TestsItsHalvesAtMostOnceALevel) {
   const auto window = std::make_unique<Window>();
   int most = 0;
   for (int frame = 0; frame < 200; ++frame)
-    most = std::max(most, window->at.add(seen(truth, frame, random), RestSettings{}, window->sums));
+    most = std::max(most,
+                    window->at.add(seen(truth, frame, random), {}, RestSettings{}, window->sums));
   EXPECT_EQ(most, k_rest_levels);
 }
 

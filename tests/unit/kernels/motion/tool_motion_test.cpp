@@ -203,5 +203,47 @@ TEST(ToolMotion, GivesTheSameBitsEverywhere) {
   EXPECT_EQ(hash.value(), 18373310529880203982u);
 }
 
+// Poses at rest whose errors are correlated for 0.5 s and for 20 s: 40 rests of 30 s at 5 Hz. Rest
+// is found, and errors are as large as the stated covariance with its correlated part; without that
+// part they are many times as large.
+TEST(ToolMotion, StatesCorrelatedErrorsBesideItsCovariance) {
+  constexpr double k_fast_m = 0.0004, k_slow_m = 0.0003, k_period_s = 0.2;
+  constexpr CorrelationTimes k_times{0.5, 20};
+  CorrelatedErrors stated;
+  stated.fast.diagonal() << Vector3::Constant(k_fast_m * k_fast_m), Vector3::Zero();
+  stated.slow.diagonal() << Vector3::Constant(k_slow_m * k_slow_m), Vector3::Zero();
+  const double keep_fast = std::exp(-k_period_s / k_times.fast_s);
+  const double keep_slow = std::exp(-k_period_s / k_times.slow_s);
+  test::Random random(5);
+  double with = 0, without = 0;
+  int n = 0, rests = 0;
+  for (int run = 0; run < 40; ++run) {
+    const auto motion = std::make_unique<ToolMotion>();
+    motion->settings.rest.correlation = k_times;
+    Vector3 fast = random.vector(k_fast_m), slow = random.vector(k_slow_m);
+    const Pose truth{random.rotation(), random.vector(0.3)};
+    for (int frame = 0; frame < 150; ++frame) {
+      fast = keep_fast * fast + std::sqrt(1 - keep_fast * keep_fast) * random.vector(k_fast_m);
+      slow = keep_slow * slow + std::sqrt(1 - keep_slow * keep_slow) * random.vector(k_slow_m);
+      UncertainPose measured =
+          test::measured_pose(truth, Time{} + milliseconds(200) * frame, 0.0001, 0.001, random);
+      measured.pose.translation += fast + slow;
+      ASSERT_EQ(motion->update(measured, stated), Reason::none);
+      if (frame < 10) continue;
+      const Matrix6 random_part = pose_of(motion->estimate()).covariance;
+      const Matrix3 total = (random_part + motion->correlated_covariance()).topLeftCorner<3, 3>();
+      const Vector3 error = motion->estimate().pose.translation - truth.translation;
+      with += error.dot(total.inverse() * error) / 3;
+      without += error.dot(random_part.topLeftCorner<3, 3>().inverse() * error) / 3;
+      rests += motion->rests() ? 1 : 0;
+      ++n;
+    }
+  }
+  EXPECT_GT(with / n, 0.7);
+  EXPECT_LT(with / n, 1.3);
+  EXPECT_GT(without / n, 5);
+  EXPECT_GT(rests, 0.95 * n);
+}
+
 }  // namespace
 }  // namespace glint::tool_motion_test

@@ -39,6 +39,7 @@ TEST(OutputRecord, ComesBackBitForBit) {
     EXPECT_EQ(back.value.pose.translation, s.pose.translation);
     EXPECT_EQ(back.value.pose.rotation.coeffs(), s.pose.rotation.coeffs());
     EXPECT_EQ(back.value.covariance, s.covariance);
+    EXPECT_EQ(back.value.systematic, s.systematic);
     EXPECT_EQ(back.value.registration_rms_m, s.registration_rms_m);
   }
 }
@@ -59,6 +60,8 @@ TEST(OutputRecord, HasItsDocumentedBytes) {
   s.pose.translation = Vector3(1, -2, 0.5);
   s.covariance(0, 1) = 1;
   s.registration_rms_m = 2;
+  s.systematic(1, 0) = 1;
+  s.systematic(5, 5) = 2;
   const Record record = encoded(s);
   const std::span<const std::uint8_t> bytes(record);
   EXPECT_EQ(hex_of(bytes.first(32)),
@@ -66,7 +69,7 @@ TEST(OutputRecord, HasItsDocumentedBytes) {
             "FEFFFFFFFFFFFFFF"
             "44332211"
             "88776655"
-            "09A5070102020701");
+            "09A5070102020702");
   EXPECT_EQ(hex_of(bytes.subspan(32, 24)),
             "000000000000F03F"
             "00000000000000C0"
@@ -74,6 +77,8 @@ TEST(OutputRecord, HasItsDocumentedBytes) {
   EXPECT_EQ(hex_of(bytes.subspan(80, 8)), "000000000000F03F");   // rotation's w
   EXPECT_EQ(hex_of(bytes.subspan(144, 8)), "000000000000F03F");  // covariance row 0, column 1
   EXPECT_EQ(hex_of(bytes.subspan(440, 8)), "0000000000000040");
+  EXPECT_EQ(hex_of(bytes.subspan(456, 8)), "000000000000F03F");  // systematic row 1, column 0
+  EXPECT_EQ(hex_of(bytes.subspan(608, 8)), "0000000000000040");  // row 5, column 5
 }
 
 TEST(OutputRecord, ShowsEveryFieldAndOverwritesEveryByte) {
@@ -118,11 +123,26 @@ TEST(OutputRecord, RefusesBytesThatAreNoRecord) {
   EXPECT_TRUE(refused(28, 4));
   EXPECT_TRUE(refused(29, 3));
   EXPECT_TRUE(refused(30, 200));
-  EXPECT_TRUE(refused(31, 2));
+  EXPECT_TRUE(refused(31, 1)) << "layout 1 is shorter";
+  EXPECT_TRUE(refused(31, 3));
+  EXPECT_FALSE(decode(std::span<const std::uint8_t>(good).first(k_output_record_bytes - 8)));
+  EXPECT_FALSE(decode({}));
   Record not_a_number = good;
   not_a_number[38] = 0xF0;
   not_a_number[39] = 0x7F;
   EXPECT_FALSE(decode(not_a_number));
+}
+
+TEST(OutputRecord, OfLayout1HasNoSystematicPart) {
+  std::mt19937 random(33);
+  const PoseSample s = random_sample(random);
+  Record record = encoded(s);
+  record[31] = 1;
+  const auto old = decode(std::span<const std::uint8_t>(record).first(k_output_record_bytes_1));
+  ASSERT_TRUE(old);
+  EXPECT_EQ(old.value.covariance, s.covariance);
+  EXPECT_EQ(old.value.registration_rms_m, s.registration_rms_m);
+  EXPECT_TRUE(old.value.systematic.isZero());
 }
 
 TEST(ExtendedCount, ContinuesACountBeyondTwoToThe32) {

@@ -31,6 +31,10 @@ inline PoseSample random_sample(std::mt19937& random) {
   s.velocity_m_s = vector(3.27);
   s.angular_velocity_rad_s = vector(32.7);
   for (int i = 0; i < 36; ++i) s.covariance(i / 6, i % 6) = 1e-6 * unit(random);
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column <= row; ++column)
+      s.systematic(row, column) = s.systematic(column, row) = 1e-6 * unit(random);
+  }
   s.sigma_position_m = 5e-3 * (1 + unit(random));
   s.sigma_orientation_rad = 0.08 * (1 + unit(random));
   s.registration_rms_m = 6e-3 * (1 + unit(random));

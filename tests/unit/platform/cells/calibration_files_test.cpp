@@ -74,6 +74,20 @@ TEST(CalibrationFiles, GiveACellItsDepthBias) {
   EXPECT_DOUBLE_EQ(cell.camera.depth.bias.range_max_m, 0.9);
 }
 
+TEST(CalibrationFiles, GiveACellTheUncertaintyOfItsRanges) {
+  const std::string bias = "[depth_bias]\noffset_mm = 3\nrange_mm = [250, 900]\n";
+  const auto uncertainty_by = [](const std::string& text) {
+    return cell_with("[camera]\ndepth_bias = \"depth.toml\"\n", {{"camera.depth_bias", text}})
+        .camera.uncertainty;
+  };
+  const CameraUncertainty measured =
+      uncertainty_by("offset_sigma_mm = 0.4\nmm_per_m_sigma = 2.0\n" + bias);
+  EXPECT_NEAR(measured.range_offset_m, std::hypot(0.0004, 0.0005), 1e-12);
+  EXPECT_NEAR(measured.range_scale, std::hypot(0.002, 0.001), 1e-12);
+  const CameraUncertainty unstated = uncertainty_by(bias);
+  EXPECT_EQ(unstated.range_offset_m, CameraUncertainty{}.range_offset_m);
+}
+
 TEST(CalibrationFiles, GiveACellItsMotion) {
   const Cell cell = cell_with("[motion]\nfile = \"motion.toml\"\n", {{"motion.file", k_motion}});
   EXPECT_EQ(cell.motion.linear_noise_m2_s5, 3.5);

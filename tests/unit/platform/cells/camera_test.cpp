@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/angles.hpp"
 #include "kernels/pose/camera_model.hpp"
 #include "tests/unit/platform/cells/complaint.hpp"
 
@@ -48,6 +49,62 @@ TEST(CellCamera, LeavesThePresetsBitsWhereNothingIsStated) {
   EXPECT_EQ(cell.camera.range_sigma_m, preset.range_sigma_m);
   EXPECT_TRUE(cell.camera.estimate_noise);
   EXPECT_EQ(cell.camera.period, preset.period);
+}
+
+TEST(CellCamera, StatesTheUncertaintyOfItsCalibration) {
+  const CameraUncertainty shipped = cell_from_text("[camera]\n", "c").camera.uncertainty;
+  EXPECT_EQ(shipped.principal_point_px, CameraUncertainty{}.principal_point_px);
+  const Cell camera_cell = cell_from_text(
+      "[camera.uncertainty]\nrange_offset_mm = 1\nrange_scale = 0.002\n"
+      "principal_point_px = 0.4\nfocal_scale = 0.0005\nslow_range_mm = 0.3\n"
+      "slow_centroid_px = 0.02\nstamp_ms = 1\nfast_share = 0.3\nfast_s = 0.2\nslow_s = 9\n",
+      "c");
+  const CameraUncertainty& stated = camera_cell.camera.uncertainty;
+  EXPECT_EQ(stated.fast_share, 0.3);
+  EXPECT_EQ(camera_cell.camera.correlation.fast_s, 0.2);
+  EXPECT_EQ(camera_cell.camera.correlation.slow_s, 9);
+  EXPECT_DOUBLE_EQ(stated.range_offset_m, 0.001);
+  EXPECT_DOUBLE_EQ(stated.range_scale, 0.002);
+  EXPECT_DOUBLE_EQ(stated.principal_point_px, 0.4);
+  EXPECT_DOUBLE_EQ(stated.focal_scale, 0.0005);
+  EXPECT_DOUBLE_EQ(stated.slow_range_m, 0.0003);
+  EXPECT_DOUBLE_EQ(stated.slow_centroid_px, 0.02);
+  EXPECT_DOUBLE_EQ(stated.stamp_s, 0.001);
+  EXPECT_THROW(cell_from_text("[camera.uncertainty]\nrange_scale = -1\n", "c"), InputError);
+  EXPECT_THROW(cell_from_text("[camera.uncertainty]\nfocal = 0.1\n", "c"), InputError);
+}
+
+std::vector<float> rays_ahead() {
+  std::vector<float> rays;
+  for (int pixel = 0; pixel < 512 * 512; ++pixel) {
+    const double x = 0.002 * (pixel % 512 - 256), y = 0.002 * (pixel / 512 - 256);
+    const Vector3 ray = Vector3(x, y, 1).normalized();
+    for (int axis = 0; axis < 3; ++axis) rays.push_back(static_cast<float>(ray[axis]));
+  }
+  return rays;
+}
+
+TEST(CellCamera, IsMoreCertainOfADevicesOwnLens) {
+  const auto with_lens_of_its_own = [](const std::string& text) {
+    Cell cell = cell_from_text(text, "c");
+    set_lens(cell, {"lens", rays_ahead(), ""});
+    return cell.camera.uncertainty;
+  };
+  const CameraUncertainty own = with_lens_of_its_own("[camera]\n");
+  EXPECT_DOUBLE_EQ(own.principal_point_px, 0.5);
+  EXPECT_DOUBLE_EQ(own.focal_scale, 0.001);
+  EXPECT_EQ(own.range_offset_m, CameraUncertainty{}.range_offset_m);
+  const CameraUncertainty stated =
+      with_lens_of_its_own("[camera.uncertainty]\nprincipal_point_px = 2\n");
+  EXPECT_DOUBLE_EQ(stated.principal_point_px, 2) << "what the cell states holds";
+}
+
+TEST(CellRobot, StatesTheUncertaintyOfItsPlace) {
+  const Cell cell =
+      cell_from_text("[robot]\nposition_sigma_mm = 1.5\nrotation_sigma_deg = 0.1\n", "c");
+  EXPECT_DOUBLE_EQ(cell.robot_sigma_m, 0.0015);
+  EXPECT_DOUBLE_EQ(cell.robot_sigma_rad, 0.1 * k_radians_per_degree);
+  EXPECT_GT(cell_from_text("[robot]\n", "c").robot_sigma_m, 0.002) << "wide where none is stated";
 }
 
 TEST(CellSimulator, TakesTheMarkersNoise) {

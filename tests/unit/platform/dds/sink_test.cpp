@@ -69,6 +69,25 @@ TEST_F(Sinks, PublishTheCovarianceRowByRow) {
             1u);
 }
 
+TEST_F(Sinks, PublishTheSystematicPartByItself) {
+  DdsSink sink(test_settings());
+  Peer peer(test_settings());
+  const dds_entity_t reader = peer.reader(pose_covariance_type(), pen.pose_systematic,
+                                          Reliability::reliable, Durability::volatile_data, 10);
+  ASSERT_TRUE(peer.meets(sink));
+  sink.start();
+  PoseSample sample = sample_at(3);
+  sample.systematic(0, 1) = 7;
+  sink.offer(sample);
+  EXPECT_EQ(take<PoseCovarianceMessage>(reader, 1,
+                                        [&](const PoseCovarianceMessage& message) {
+                                          expect_pose(message.pose.pose, sample.pose);
+                                          EXPECT_EQ(message.pose.covariance[1], 7.0);
+                                          EXPECT_EQ(message.pose.covariance[35], 0.0);
+                                        }),
+            1u);
+}
+
 TEST_F(Sinks, PublishTheTipAsATransformOfTheFrameThePoseIsIn) {
   DdsSink sink(test_settings());
   Peer peer(test_settings());

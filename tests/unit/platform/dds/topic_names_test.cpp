@@ -9,6 +9,7 @@ TEST(TopicNames, AreWhatRos2Expects) {
   const ToolTopics topics = topics_of("glint", "pen");
   EXPECT_EQ(topics.pose, "rt/glint/pen_pose");
   EXPECT_EQ(topics.pose_covariance, "rt/glint/pen_pose_covariance");
+  EXPECT_EQ(topics.pose_systematic, "rt/glint/pen_pose_systematic");
   EXPECT_EQ(topics.status, "rt/glint/pen_status");
   EXPECT_EQ(topics.tip_frame, "glint_pen_tip");
 }

@@ -73,6 +73,8 @@ TEST_F(WireFormat, NamesAndQualitiesAreThoseOfRos2) {
        DDS_DURABILITY_VOLATILE},
       {pose_covariance_type(), "rt/glint/pen_pose_covariance",
        "geometry_msgs::msg::dds_::PoseWithCovarianceStamped_", DDS_DURABILITY_VOLATILE},
+      {pose_covariance_type(), "rt/glint/pen_pose_systematic",
+       "geometry_msgs::msg::dds_::PoseWithCovarianceStamped_", DDS_DURABILITY_VOLATILE},
       {status_type(), "rt/glint/pen_status", "glint_msgs::msg::dds_::TrackStatus_",
        DDS_DURABILITY_VOLATILE},
       {tf_type(), "rt/tf", "tf2_msgs::msg::dds_::TFMessage_", DDS_DURABILITY_VOLATILE},

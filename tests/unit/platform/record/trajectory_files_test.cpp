@@ -81,7 +81,7 @@ TEST(CsvFile, HasAValueUnderEveryHeading) {
   const auto commas = [](const std::string& line) {
     return std::count(line.begin(), line.end(), ',');
   };
-  EXPECT_EQ(commas(heading), 62);
+  EXPECT_EQ(commas(heading), 98);
   EXPECT_EQ(commas(with_pose), commas(heading));
   EXPECT_EQ(commas(without_pose), commas(heading));
   EXPECT_EQ(with_pose.find("0.020000000,0.009000000,5,1,0,measured,none,none,robot,47,0,0,0.005,"

@@ -121,6 +121,26 @@ TEST(GrossPose, IsMisassignedWhereABlobLiesADiameterBesideItsMarker) {
   EXPECT_TRUE(error_of(outcome, tool, {}).misassigned);
 }
 
+// A lens that is off moves all blobs alike; a wrong assignment moves one against the others.
+TEST(GrossPose, IsNotMisassignedWhereAllBlobsLieBesideTheirMarkersAlike) {
+  Tool tool;
+  tool.marker_count = 4;
+  tool.marker_radius_m = 0.005;
+  ToolOutcome outcome;
+  for (int m = 0; m < 4; ++m) {
+    const auto i = static_cast<std::size_t>(m);
+    tool.markers_m[i] = Vector3(0.04 * m, 0, 0.5);
+    outcome.blobs[i] = {0.08F * static_cast<float>(m) + 0.03F, 0};
+  }
+  outcome.blob_mask = 0b1111;
+  EXPECT_FALSE(error_of(outcome, tool, {}).misassigned);
+  outcome.blobs[2].y = 0.04F;
+  EXPECT_TRUE(error_of(outcome, tool, {}).misassigned);
+  outcome.blobs[2].y = 0;
+  std::swap(outcome.blobs[0], outcome.blobs[1]);
+  EXPECT_TRUE(error_of(outcome, tool, {}).misassigned);
+}
+
 TEST(Accuracy, ReadsTheTipsSigmaAndTheAssignmentOfEachPose) {
   const TemporaryFolder folder;
   const SessionResult run = short_run(short_cell(0.5), folder.path());
@@ -129,7 +149,7 @@ TEST(Accuracy, ReadsTheTipsSigmaAndTheAssignmentOfEachPose) {
     const ToolOutcome& pen = frame.tools[0];
     if (!pen.seen) continue;
     EXPECT_GT(pen.tip_sigma_m, 1e-4);
-    EXPECT_LT(pen.tip_sigma_m, 0.01);
+    EXPECT_LT(pen.tip_sigma_m, 0.02);
     EXPECT_EQ(pen.blob_mask, pen.marker_mask);
   }
   EXPECT_EQ(run.accuracy.gross, 0);

@@ -56,8 +56,7 @@ inline void read_recording(const std::string& file, OverrunLog& log, Duration& u
     } else if (const auto* markers = std::get_if<MarkerFrame>(&*message)) {
       on_frame(markers->sequence);
     } else if (const auto* output = std::get_if<OutputMessage>(&*message)) {
-      const auto sample = decode(std::span<const std::uint8_t, k_output_record_bytes>(
-          output->record.data(), k_output_record_bytes));
+      const auto sample = decode(output->record);
       EXPECT_TRUE(sample);
       EXPECT_TRUE(log.outputs.emplace(sample.value.tick_number, sample.value).second);
     }
