@@ -8,6 +8,7 @@
 #include "platform/experiments/cis_pivot.hpp"
 #include "platform/experiments/clutter_experiment.hpp"
 #include "platform/experiments/f2554.hpp"
+#include "platform/experiments/field_experiment.hpp"
 #include "platform/experiments/map_experiment.hpp"
 #include "platform/experiments/marker_mocap.hpp"
 #include "platform/experiments/motion_experiments.hpp"
@@ -35,6 +36,8 @@ std::span<const CaseExperiment> case_experiments() {
        run_occlusion},
       {"rates", "frames at 45, 5 and 45 Hz, dropped, doubled, late and stamped backwards", false,
        run_rates},
+      {"correlated", "real tools at rest: errors that last, their model and stated covariance",
+       true, run_correlated},
       {"bound", "the pose of one frame beside the best that any estimator could do", false,
        run_bound},
       {"noise", "how often a tool is found, and wrongly, as the range noise grows", false,
@@ -44,6 +47,8 @@ std::span<const CaseExperiment> case_experiments() {
        run_clutter},
       {"acquire", "how soon a tool is found among more bright spots than the cell has blobs for",
        false, run_acquisition},
+      {"field", "devices that differ from what their cells state, judged at the output", false,
+       run_field},
       {"reference", "a robot found in real and simulated depth, from hundreds of rough poses", true,
        run_reference_experiment},
   };

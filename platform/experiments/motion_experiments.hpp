@@ -28,4 +28,7 @@ namespace glint {
 // are as large as foretold, to the tolerances of `occlusion`. A refused frame changes no bit.
 [[nodiscard]] CaseList run_rates(const CaseOptions& options);
 
+// Real tools at rest and series of their noise model: are errors that last as large as stated?
+[[nodiscard]] CaseList run_correlated(const CaseOptions& options);
+
 }  // namespace glint

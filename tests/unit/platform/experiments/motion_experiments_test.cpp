@@ -115,5 +115,16 @@ TEST(MotionExperiments, ForetellTheRealRecordingsAndReturnToThem) {
     EXPECT_EQ(missed_bars(list), 0) << case_table(list);
 }
 
+TEST(MotionExperiments, StateTheErrorsOfRealToolsAtRest) {
+  const char* folder = std::getenv("GLINT_TEST_DATA");
+  const std::string path = std::string(folder ? folder : "") + "/hl2_real";
+  if (!folder || !std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
+  CaseOptions options;
+  options.quick = true;
+  options.data = folder;
+  const CaseList list = run_correlated(options);
+  EXPECT_EQ(missed_bars(list), 0) << case_table(list);
+}
+
 }  // namespace
 }  // namespace glint

@@ -1,0 +1,25 @@
+// How accurate and how honest the output is for devices that differ from what their cells state.
+//
+// Each random seed draws one device, tool, headset and robot (platform/sim/field.hpp) and runs
+// them for 30 s with the shipped settings, uncalibrated. Judged at the output: every tick's pose
+// against truth, in the robot's frame, at the actuation time. A second row judges the same runs
+// without the device's errors, their settings stated as exact: what noise, motion and the
+// headset's drift leave.
+#pragma once
+
+#include <cstdint>
+
+#include "platform/experiments/case_list.hpp"
+#include "platform/session/session.hpp"
+
+namespace glint {
+
+enum class FieldDevice { drawn, exact };
+
+// One random seed's run.
+[[nodiscard]] SessionResult run_field_device(FieldDevice device, std::uint64_t seed,
+                                             double duration_s, const std::string& out);
+
+[[nodiscard]] CaseList run_field(const CaseOptions& options);
+
+}  // namespace glint
