@@ -26,6 +26,10 @@ struct SceneFrame {
   Pose T_camera_world;  // identity for a camera that stands still
   std::string name;     // the depth's file
 
+  // Of each triangle of the model, or of each point of the cloud.
+  [[nodiscard]] std::span<const std::uint16_t> links() const {
+    return cloud.points.empty() ? model.face_links : cloud.point_links;
+  }
   [[nodiscard]] SceneView view() const {
     return {camera, depth_m, mask, model.surface(), T_camera_world, cloud.cloud()};
   }

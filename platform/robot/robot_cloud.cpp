@@ -201,6 +201,7 @@ PosedCloud posed_cloud(const RobotCloud& robot, std::span<const double> position
   out.points.resize(robot.points.size());
   out.normals.resize(robot.points.size());
   out.spacing_m = robot.spacing_m;
+  out.point_links = robot.point_links;
   if (pose_cloud(robot.cloud(), poses, out.points, out.normals) != Reason::none) {
     throw InputError(what + ": the robot's points are of links that it does not have");
   }

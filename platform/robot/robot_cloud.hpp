@@ -29,6 +29,7 @@ struct RobotCloud {
 struct PosedCloud {
   std::vector<Vector3f> points, normals;
   float spacing_m = 0;
+  std::vector<std::uint16_t> point_links{};  // as in RobotCloud
 
   [[nodiscard]] ModelCloud cloud() const { return {points, normals, spacing_m}; }
 };

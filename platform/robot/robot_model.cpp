@@ -244,6 +244,7 @@ PosedSurface posed_surface(const RobotModel& robot, std::span<const double> posi
     for (const Face& f : surface.faces) {
       out.faces.push_back({first + f.a, first + f.b, first + f.c});
     }
+    out.face_links.resize(out.faces.size(), static_cast<std::uint16_t>(surface.link));
   }
   return out;
 }

@@ -1,6 +1,7 @@
 // A robot as its URDF and meshes describe it: joints as a tree, links as triangles.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@ struct LinkSurface {
 struct PosedSurface {
   std::vector<Vector3f> corners;
   std::vector<Face> faces;
+  std::vector<std::uint16_t> face_links{};  // as in LinkPoses; empty: not told apart
 
   [[nodiscard]] Surface surface() const { return {corners, faces}; }
 };

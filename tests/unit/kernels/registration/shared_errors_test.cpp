@@ -1,0 +1,117 @@
+#include "kernels/registration/shared_errors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "kernels/registration/align_model.hpp"
+#include "tests/unit/heap_count.hpp"
+#include "tests/unit/kernels/registration/box_model.hpp"
+
+namespace glint::shared_errors_test {
+namespace {
+
+using test::k_truth;
+
+constexpr int k_width = 320, k_height = 240;
+const double k_gate_m = AlignmentSettings{}.gates[4].gate_m;
+
+// The arm of boxes before nothing, its depth off by a constant and slopes.
+struct BiasedScene {
+  test::Model model;
+  Pinhole camera{k_width, k_height, 300, 300, 160, 120};
+  std::vector<float> depth = std::vector<float>(k_width * k_height);
+  AlignmentScratch scratch;
+
+  explicit BiasedScene(const Vector3& errors_m) {
+    EXPECT_EQ(scratch.prepare(1, k_width * k_height, 64), Reason::none);
+    std::vector<std::int32_t> face(depth.size());
+    std::vector<ProjectedCorner> corners(64);
+    EXPECT_EQ(render_depth({model.corners, model.faces}, k_truth, camera, {depth, face, corners}),
+              Reason::none);
+    for (int i = 0; i < k_width * k_height; ++i) {
+      const double right = (i % k_width + 0.5) / (0.5 * k_width) - 1;
+      const double down = (i / k_width + 0.5) / (0.5 * k_height) - 1;
+      float& z = depth[static_cast<std::size_t>(i)];
+      if (z > 0) z += static_cast<float>(errors_m.dot(Vector3(1, right, down)));
+    }
+  }
+  [[nodiscard]] SceneView view() const {
+    return {camera, depth, {}, {model.corners, model.faces}, {}};
+  }
+};
+
+// The end's error against the one-sigma ellipsoid's matrix: at most 1 where one error of one sigma
+// is all there is.
+double squared_distance(const Vector3& errors_m, double sigma_m) {
+  BiasedScene scene(errors_m);
+  const SceneView one[] = {scene.view()};
+  const ModelAlignment end = align_model(one, k_truth, {}, scene.scratch);
+  EXPECT_EQ(end.reason, Reason::none);
+  const Result<Matrix6> shared =
+      shared_error_covariance(one, end.T_world_base, k_gate_m, {sigma_m, 1e-5}, scene.scratch);
+  EXPECT_EQ(shared.reason, Reason::none);
+  const Quaternion turn = end.T_world_base.rotation * k_truth.rotation.conjugate();
+  Vector6 off;
+  off << end.T_world_base.translation - k_truth.translation,
+      2 * turn.vec() * (turn.w() < 0 ? -1 : 1);
+  // What only the rays' small errors explain is rounding and the second order.
+  const Matrix6 rounding = 1e-7 * Matrix6::Identity();
+  return off.dot((shared.value + rounding).inverse() * off);
+}
+
+TEST(SharedErrors, CoverADepthErrorOfOneSigma) {
+  for (const Vector3& unit : {Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1)}) {
+    const double distance = squared_distance(0.006 * unit, 0.006);
+    EXPECT_GT(distance, 0.6) << unit.transpose();
+    EXPECT_LT(distance, 1.4) << unit.transpose();
+  }
+}
+
+TEST(SharedErrors, MovesTheRobotAlongTheRaysByAConstant) {
+  BiasedScene scene(Vector3::Zero());
+  const SceneView one[] = {scene.view()};
+  const Result<Matrix6> shared =
+      shared_error_covariance(one, k_truth, k_gate_m, {0.006, 0}, scene.scratch);
+  ASSERT_TRUE(shared);
+  EXPECT_GT(std::sqrt(shared.value(2, 2)), 0.004);
+  EXPECT_LT(std::sqrt(shared.value(2, 2)), 0.02);
+}
+
+TEST(SharedErrors, TurnsTheRobotAboutTheCameraWithItsRays) {
+  BiasedScene scene(Vector3::Zero());
+  const SceneView one[] = {scene.view()};
+  const Result<Matrix6> shared =
+      shared_error_covariance(one, k_truth, k_gate_m, {0, 0.003}, scene.scratch);
+  ASSERT_TRUE(shared);
+  const Vector3& t = k_truth.translation;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double lever = Vector3::Unit(axis).cross(t).norm();
+    EXPECT_NEAR(shared.value(3 + axis, 3 + axis), 9e-6, 1e-12);
+    EXPECT_LT(lever, t.norm() + 1e-9);
+  }
+  EXPECT_NEAR((shared.value.topLeftCorner<3, 3>().trace()), 2 * 9e-6 * t.squaredNorm(), 1e-9);
+}
+
+TEST(SharedErrors, TakesNothingFromTheHeap) {
+  BiasedScene scene(Vector3::Zero());
+  const SceneView one[] = {scene.view()};
+  const HeapCount heap;
+  (void)shared_error_covariance(one, k_truth, k_gate_m, {}, scene.scratch);
+  EXPECT_EQ(heap.count(), 0u);
+}
+
+TEST(SharedErrors, StatesWhereNothingIsSeen) {
+  BiasedScene scene(Vector3::Zero());
+  const SceneView one[] = {scene.view()};
+  const Pose far{Quaternion::Identity(), {0, 0, -3}};
+  EXPECT_EQ(shared_error_covariance(one, far, k_gate_m, {}, scene.scratch).reason,
+            Reason::degenerate);
+  AlignmentScratch small;
+  ASSERT_EQ(small.prepare(1, 100, 64), Reason::none);
+  EXPECT_EQ(shared_error_covariance(one, k_truth, k_gate_m, {}, small).reason,
+            Reason::not_prepared);
+}
+
+}  // namespace
+}  // namespace glint::shared_errors_test
