@@ -34,9 +34,11 @@ int run_reference(ReferenceArguments arguments) {
   listener.reset();
   const std::vector<SceneFrame> frames =
       std::visit([&](const auto& any) { return read_scene(arguments.scene, any); }, robot);
-  const Reference reference = find_reference(frames, start, {});
+  const FindReferenceSettings settings = settings_of(arguments);
+  const Reference reference = find_reference(frames, start, settings);
   const ReferenceFacts facts{std::visit([](const auto& any) { return any.name; }, robot),
-                             meshes != nullptr ? meshes->triangles_skipped : 0, frames.size()};
+                             meshes != nullptr ? meshes->triangles_skipped : 0, frames.size(),
+                             settings.range};
   print_reference(reference, facts);
   if (!arguments.exported.empty()) export_model(arguments, *meshes);
   write_json(arguments.json, reference_json(reference, facts));
@@ -75,6 +77,17 @@ void add_reference(CLI::App& app, int& exit_code) {
                    "x,y,z,roll,pitch,yaw of T_camera_base: metres, radians, fixed axes")
       ->delimiter(',')
       ->expected(6);
+  command
+      ->add_option("--search-range", arguments->range,
+                   "M,DEG  largest error of each coordinate and each turn of the rough pose "
+                   "(0.4,40)")
+      ->delimiter(',')
+      ->expected(2);
+  command
+      ->add_option("--depth-bias-mm", arguments->depth_bias_mm,
+                   "standard deviation of the depth error that a whole picture shares")
+      ->check(in_range(0.0, 100.0))
+      ->capture_default_str();
   command
       ->add_option("--listen", arguments->listen_s,
                    "hear over DDS, for at most so many seconds, what is not given: the robot's "

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "kernels/angles.hpp"
 #include "platform/cli/progress.hpp"
 #include "platform/dds/topic_names.hpp"
 #include "platform/input_error.hpp"
@@ -50,6 +51,18 @@ void check_given(const ReferenceArguments& arguments) {
   if (!arguments.exported.empty() && !arguments.model.empty()) {
     throw InputError("--export-model: expected --urdf, not --model: a cloud has no surface");
   }
+}
+
+FindReferenceSettings settings_of(const ReferenceArguments& arguments) {
+  FindReferenceSettings settings;
+  settings.shared_errors.depth_sigma_m = 1e-3 * arguments.depth_bias_mm;
+  if (arguments.range.empty()) return settings;
+  settings.range = {arguments.range[0], arguments.range[1] / k_degrees_per_radian};
+  if (!(settings.range.shift_m > 0 && settings.range.shift_m <= 2) ||
+      !(settings.range.turn_rad > 0 && arguments.range[1] <= 180)) {
+    throw InputError("--search-range: expected metres of (0, 2] and degrees of (0, 180]");
+  }
+  return settings;
 }
 
 std::unique_ptr<ReferenceListener> listener_of(const ReferenceArguments& arguments) {

@@ -19,6 +19,8 @@ struct ReferenceArguments {
   std::string json, model, exported;
   int points = k_robot_cloud_points;
   bool visual = false;
+  std::vector<double> range;  // --search-range
+  double depth_bias_mm = 1e3 * SharedErrors{}.depth_sigma_m;
   double listen_s = 0;
   DdsSettings network;
 
@@ -28,6 +30,9 @@ struct ReferenceArguments {
            scene.camera.empty() && seed.empty();
   }
 };
+
+// The range that is searched, and the declared errors.
+[[nodiscard]] FindReferenceSettings settings_of(const ReferenceArguments& arguments);
 
 using AnyRobot = std::variant<RobotModel, RobotCloud>;
 

@@ -47,9 +47,11 @@ void print_pose(const char* what, const Candidate& c) {
 void print_reference(const Reference& reference, const ReferenceFacts& facts) {
   print_pose("base", reference.found);
   const Matrix6& covariance = reference.found.alignment.covariance;
-  std::printf("sigma      %.2f mm, %.3f deg an axis, but for what whole pictures err by\n",
+  std::printf("sigma      %.2f mm, %.3f deg an axis\n",
               1e3 * std::sqrt(covariance.topLeftCorner<3, 3>().trace() / 3),
               k_degrees_per_radian * std::sqrt(covariance.bottomRightCorner<3, 3>().trace() / 3));
+  std::printf("searched   %.2f m and %.0f deg about the rough pose, %d alignments\n",
+              facts.range.shift_m, k_degrees_per_radian * facts.range.turn_rad, reference.starts);
   for (const Candidate& rival : reference.rivals) print_pose("rival", rival);
   if (facts.triangles_skipped > 0) {
     std::printf("meshes     %d triangles without an area skipped\n", facts.triangles_skipped);
@@ -72,6 +74,8 @@ nlohmann::ordered_json reference_json(const Reference& reference, const Referenc
   json["pairs"] = alignment.pairs;
   json["frames"] = facts.frames;
   json["starts"] = reference.starts;
+  json["search_range"] = {{"shift_m", facts.range.shift_m},
+                          {"turn_deg", k_degrees_per_radian * facts.range.turn_rad}};
   json["robot"] = facts.robot;
   json["triangles_skipped"] = facts.triangles_skipped;
   json["rivals"] = Json::array();

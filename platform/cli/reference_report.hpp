@@ -12,6 +12,7 @@ struct ReferenceFacts {
   std::string robot;
   int triangles_skipped = 0;
   std::size_t frames = 0;
+  SearchRange range;
 };
 
 void print_reference(const Reference& reference, const ReferenceFacts& facts);

@@ -1,33 +1,47 @@
 #include "platform/reference/find_reference.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <span>
 
 #include "kernels/elementary.hpp"
+#include "kernels/registration/judge_links.hpp"
 #include "kernels/registration/patch_covariance.hpp"
 #include "platform/input_error.hpp"
+#include "platform/reference/reference_checks.hpp"
 
 namespace glint {
 namespace {
 
-double angle_between(const Pose& a, const Pose& b) {
-  return 2 * arc_cosine(std::min(1.0, std::abs(a.rotation.dot(b.rotation))));
-}
+constexpr std::size_t k_coarse_ends = 8, k_turned_ends = 3;
+constexpr double k_coarse_apart_m = 0.06;
+// Coarse ends lie some centimetres off: half of the best one's score is worth a closer look.
+constexpr double k_coarse_share = 0.5;
 
 Quaternion turn_about_z(double radians) {
   const SineCosine half = sine_cosine(0.5 * radians);
   return {half.cosine, 0, 0, half.sine};
 }
 
+// Turned about the base's own z by eighths: a robot's base is round, its links are alike from both
+// ends.
+std::vector<Pose> turned_starts(const Pose& from) {
+  std::vector<Pose> starts;
+  for (int eighth = 1; eighth < 8; ++eighth) {
+    starts.push_back(
+        {(from.rotation * turn_about_z(eighth * M_PI / 4)).normalized(), from.translation});
+  }
+  return starts;
+}
+
 class Search {
  public:
   Search(const std::vector<SceneFrame>& frames, const FindReferenceSettings& settings)
-      : settings_(settings) {
+      : frames_(frames), settings_(settings), coarse_(frames) {
     std::size_t corners = 1, pixels = 1;
     for (const SceneFrame& frame : frames) {
       views_.push_back(frame.view());
+      links_.push_back(frame.links());
       corners = std::max({corners, frame.model.corners.size(), frame.cloud.points.size()});
       pixels = std::max(pixels, frame.depth_m.size());
     }
@@ -40,129 +54,131 @@ class Search {
     }
   }
 
-  [[nodiscard]] Candidate whole(const Pose& start) { return run(start, settings_.alignment); }
-
-  // Without the widest gates, which draw a robot to floors and boards that are near it.
-  [[nodiscard]] Candidate narrow(const Pose& start, int gates_skipped) {
+  // Without so many of the widest gates, which draw a robot to floors and boards that are near it.
+  [[nodiscard]] Candidate aligned(const Pose& start, int gates_skipped) {
     AlignmentSettings fewer = settings_.alignment;
     std::rotate(fewer.gates.begin(), fewer.gates.begin() + gates_skipped, fewer.gates.end());
     fewer.gate_count -= gates_skipped;
-    return run(start, fewer);
-  }
-
-  // With an eighth of the points and only the wide gates: enough to see where it leads.
-  [[nodiscard]] Candidate rough(const Pose& start) {
-    AlignmentSettings few;
-    few.gates[0] = {0.15, Matching::plane, 8, 10, false};
-    few.gates[1] = {0.08, Matching::plane, 6, 10, false};
-    few.gate_count = 2;
-    return run(start, few);
-  }
-
-  // As sure as it is where neighbouring pixels err alike; of too few patches as it was.
-  void make_honest(ModelAlignment& alignment) {
-    if (alignment.reason != Reason::none || settings_.alignment.gate_count < 1) return;
-    const auto last = static_cast<std::size_t>(settings_.alignment.gate_count - 1);
-    const Result<Matrix6> covariance = patch_covariance(
-        views_, alignment.T_world_base, settings_.alignment.gates[last].gate_m, scratch_);
-    if (covariance) alignment.covariance = covariance.value;
-  }
-
-  [[nodiscard]] bool same_end(const Pose& a, const Pose& b) const {
-    return (a.translation - b.translation).norm() < settings_.elsewhere_m &&
-           angle_between(a, b) < settings_.elsewhere_rad;
-  }
-
- private:
-  Candidate run(const Pose& start, const AlignmentSettings& alignment) {
     Candidate c;
-    c.alignment = align_model(views_, start, alignment, scratch_);
-    c.judgement = judge_alignment(views_, c.alignment.T_world_base, settings_.judge, scratch_);
+    ++starts_;
+    c.alignment = align_model(views_, start, fewer, scratch_);
+    const Pose& T = c.alignment.T_world_base;
+    c.judgement = judge_alignment(views_, T, settings_.judge, scratch_);
+    const double granted_m = 2 * settings_.shared_errors.depth_sigma_m;
+    c.surface_score = coarse_.score(T, k_end_gate_m);
+    c.surface_score_granted = coarse_.score(T, k_end_gate_m + granted_m);
     return c;
   }
 
+  [[nodiscard]] CoarseSearch& coarse() { return coarse_; }
+  [[nodiscard]] int starts() const { return starts_; }
+
+  // What single links and single pictures say of a pose that all of them together accept.
+  [[nodiscard]] std::string closer_objection(const Pose& T_world_base) {
+    const LinkJudgement links =
+        judge_links(views_, links_, T_world_base, settings_.judge, scratch_);
+    std::string why = link_objection(links, settings_);
+    for (std::size_t v = 0; v < views_.size() && views_.size() > 1 && why.empty(); ++v) {
+      const Judgement picture =
+          judge_alignment(std::span(views_).subspan(v, 1), T_world_base, settings_.judge, scratch_);
+      why = picture_objection(frames_[v].name, picture, settings_);
+    }
+    return why;
+  }
+
+  // The errors that neighbouring pixels share; of too few patches it stays that of independent
+  // noise.
+  void spread_covariance(ModelAlignment& alignment) {
+    if (alignment.reason != Reason::none || settings_.alignment.gate_count < 1) return;
+    const Result<Matrix6> patches =
+        patch_covariance(views_, alignment.T_world_base, gate_m(), scratch_);
+    if (patches) alignment.covariance = patches.value;
+  }
+
+  // The errors that a whole picture shares, and how the ends of single pictures differ.
+  void add_shared_errors(ModelAlignment& alignment) {
+    if (alignment.reason != Reason::none || settings_.alignment.gate_count < 1) return;
+    const Result<Matrix6> shared = shared_error_covariance(views_, alignment.T_world_base, gate_m(),
+                                                           settings_.shared_errors, scratch_);
+    if (shared) alignment.covariance += shared.value;
+    alignment.covariance += scatter_of_pictures(alignment.T_world_base);
+  }
+
+ private:
+  [[nodiscard]] double gate_m() const {
+    return settings_.alignment.gates[static_cast<std::size_t>(settings_.alignment.gate_count - 1)]
+        .gate_m;
+  }
+
+  // Of the mean of single pictures' ends about the end of all: zero for one picture.
+  [[nodiscard]] Matrix6 scatter_of_pictures(const Pose& T_world_base) {
+    Matrix6 sum = Matrix6::Zero();
+    AlignmentSettings last = settings_.alignment;
+    last.gates[0] = last.gates[static_cast<std::size_t>(last.gate_count - 1)];
+    last.gate_count = 1;
+    int count = 0;
+    for (std::size_t v = 0; v < views_.size() && views_.size() > 1; ++v) {
+      const ModelAlignment one =
+          align_model(std::span(views_).subspan(v, 1), T_world_base, last, scratch_);
+      if (one.reason != Reason::none) continue;
+      const Quaternion turn = one.T_world_base.rotation * T_world_base.rotation.conjugate();
+      Vector6 off;
+      off << one.T_world_base.translation - T_world_base.translation,
+          2 * turn.vec() * (turn.w() < 0 ? -1 : 1);
+      sum += off * off.transpose();
+      ++count;
+    }
+    return count > 1 ? Matrix6(sum / (count * (count - 1))) : Matrix6(Matrix6::Zero());
+  }
+
+  const std::vector<SceneFrame>& frames_;
   const FindReferenceSettings& settings_;
+  CoarseSearch coarse_;
   std::vector<SceneView> views_;
+  std::vector<std::span<const std::uint16_t>> links_;
   AlignmentScratch scratch_;
+  int starts_ = 0;
 };
 
-double worth(const Candidate& c) {
-  if (c.alignment.reason != Reason::none) return 0;
-  const Judgement& j = c.judgement;
-  // A pose that hides behind what is in front is not wrong anywhere: it leaves the mask uncovered.
-  const double covered = j.mask_pixels > 0 ? j.mask_share() : 1;
-  return (j.inlier_share() - j.seen_through_share()) * covered;
-}
-
-// Turned about the base's own z by eighths, and shifted along it and across: a robot's base is
-// round, its links are alike from both ends.
-std::vector<Pose> other_starts(const Pose& from) {
-  std::vector<Pose> starts;
-  for (int eighth = 1; eighth < 8; ++eighth) {
-    starts.push_back(
-        {(from.rotation * turn_about_z(eighth * M_PI / 4)).normalized(), from.translation});
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const double side : {-0.25, 0.25}) {
-      starts.push_back(
-          {from.rotation, from.translation + from.rotation * (side * Vector3::Unit(axis))});
+// Ends from the rough pose and about it, the best first.
+std::vector<Candidate> ends_of(Search& search, const Pose& seed,
+                               const FindReferenceSettings& settings) {
+  std::vector<Candidate> ends{search.aligned(seed, 0)};
+  if (!settings.other_starts) return ends;
+  CoarseSearch& coarse = search.coarse();
+  const auto add = [&](const Pose& start, int gates_skipped) {
+    const int skipped = std::clamp(settings.alignment.gate_count - 1, 0, gates_skipped);
+    const Candidate end = search.aligned(start, skipped);
+    const auto same = std::find_if(ends.begin(), ends.end(), [&](const Candidate& other) {
+      return coarse.surface_motion_m(end.alignment.T_world_base, other.alignment.T_world_base) <
+             settings.elsewhere_m;
+    });
+    if (same == ends.end()) {
+      ends.push_back(end);
+    } else if (better(end, *same, settings)) {
+      *same = end;
     }
-  }
-  return starts;
-}
-
-double largest_sigma(const Matrix3& covariance) {
-  return std::sqrt(
-      std::max(0.0, Eigen::SelfAdjointEigenSolver<Matrix3>(covariance).eigenvalues().maxCoeff()));
-}
-
-std::string percent(double share) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%.1f %%", 100 * share);
-  return text;
-}
-
-// Why this is no pose to work with; empty: it is one.
-std::string objection(const Candidate& c, const FindReferenceSettings& settings) {
-  const Judgement& j = c.judgement;
-  if (c.alignment.reason != Reason::none) return "too little of the robot is seen to fix a pose";
-  if (j.visible_share() < settings.visible_share_min) {
-    return "only " + percent(j.visible_share()) + " of the robot could be seen; wanted " +
-           percent(settings.visible_share_min) +
-           (settings.visible_share_min < settings.visible_share_min_alone
-                ? ""
-                : " from one place without a mask");
-  }
-  if (j.inlier_share() < settings.inlier_share_min) {
-    return "only " + percent(j.inlier_share()) + " of the robot lies at the scene; wanted " +
-           percent(settings.inlier_share_min);
-  }
-  if (j.unhidden_seen_through_share() > settings.seen_through_share_max) {
-    return "the scene is seen through " + percent(j.unhidden_seen_through_share()) +
-           " of what is not hidden of the robot; at most " +
-           percent(settings.seen_through_share_max);
-  }
-  if (j.outline_share() < settings.outline_share_min) {
-    return "the scene goes on beside " + percent(1 - j.outline_share()) +
-           " of the robot's outline, as flat things do; at most " +
-           percent(1 - settings.outline_share_min);
-  }
-  if (j.mask_pixels > 0 && j.mask_share() < settings.mask_share_min) {
-    return "the robot covers only " + percent(j.mask_share()) + " of the mask; wanted " +
-           percent(settings.mask_share_min);
-  }
-  const double sigma_m = largest_sigma(c.alignment.covariance.topLeftCorner<3, 3>());
-  const double sigma_rad = largest_sigma(c.alignment.covariance.bottomRightCorner<3, 3>());
-  if (sigma_m > settings.sigma_max_m || sigma_rad > settings.sigma_max_rad) {
-    return "what is seen leaves the pose open along one direction";
-  }
-  return "";
-}
-
-// A pose that something speaks against is worth less than any other.
-bool better(const Candidate& a, const Candidate& b, const FindReferenceSettings& settings) {
-  const bool a_good = objection(a, settings).empty(), b_good = objection(b, settings).empty();
-  return a_good == b_good ? worth(a) > worth(b) : a_good;
+  };
+  const auto add_best = [&](const std::vector<Pose>& starts, std::size_t count) {
+    const std::vector<CoarsePose> best = coarse.best(starts, count, k_coarse_apart_m);
+    for (const CoarsePose& pose : best) {
+      if (pose.score >= k_coarse_share * best[0].score) add(pose.T_world_base, 1);
+    }
+  };
+  add(seed, 2);
+  add_best(spread_poses(seed, settings.range), k_coarse_ends);
+  const auto in_range = [&](const Candidate& end) {
+    return settings.range.holds(seed, end.alignment.T_world_base);
+  };
+  std::erase_if(ends, [&](const Candidate& end) { return !in_range(end); });
+  const auto first = [&](const Candidate& a, const Candidate& b) { return better(a, b, settings); };
+  std::stable_sort(ends.begin(), ends.end(), first);
+  if (ends.empty()) return ends;
+  add_best(turned_starts(ends[0].alignment.T_world_base), k_turned_ends);
+  std::stable_sort(ends.begin(), ends.end(), first);
+  // A turned end beyond the range is a rival at most.
+  std::stable_partition(ends.begin(), ends.end(), in_range);
+  return ends;
 }
 
 // Without a mask, and no camera more than a hand's width from the first.
@@ -199,54 +215,38 @@ Pose pose_of_seed(const std::vector<double>& seed) {
 Reference find_reference(const std::vector<SceneFrame>& frames, const Pose& seed,
                          const FindReferenceSettings& given) {
   FindReferenceSettings settings = given;
-  if (from_one_place(frames)) {
+  const bool alone = from_one_place(frames);
+  if (alone) {
     settings.visible_share_min = std::max(given.visible_share_min, given.visible_share_min_alone);
-    settings.outline_share_min = std::max(given.outline_share_min, given.outline_share_min_alone);
   }
   Search search(frames, settings);
+  const std::vector<Candidate> ends = ends_of(search, seed, settings);
   Reference reference;
-  reference.found = search.whole(seed);
-  reference.starts = 1;
-  for (int skip = 1; settings.other_starts && skip < 3; ++skip) {
-    if (settings.alignment.gate_count <= skip) break;
-    if (objection(reference.found, settings).empty()) break;
-    ++reference.starts;
-    const Candidate narrow = search.narrow(seed, skip);
-    if (better(narrow, reference.found, settings)) reference.found = narrow;
+  if (ends.empty()) {
+    reference.found = search.aligned(seed, 0);
+    reference.why = "no pose of the searched range explains the scene";
+    return reference;
   }
-  if (settings.other_starts) {
-    // About where the first ended if that is any good, else about the seed.
-    const bool good = objection(reference.found, settings).empty();
-    const Pose about = good ? reference.found.alignment.T_world_base : seed;
-    std::vector<Pose> ends;
-    for (const Pose& start : other_starts(about)) {
-      ++reference.starts;
-      const Candidate end = search.rough(start);
-      const Pose& T = end.alignment.T_world_base;
-      const bool known = search.same_end(T, reference.found.alignment.T_world_base) ||
-                         std::any_of(ends.begin(), ends.end(),
-                                     [&](const Pose& e) { return search.same_end(T, e); });
-      // Rough ends lie some centimetres off: half of the first one's worth is worth a closer look.
-      if (known || worth(end) < 0.5 * worth(reference.found)) continue;
-      ends.push_back(T);
-      Candidate rival = search.whole(T);
-      if (search.same_end(rival.alignment.T_world_base, reference.found.alignment.T_world_base)) {
-        continue;
-      }
-      if (better(rival, reference.found, settings)) std::swap(rival, reference.found);
-      reference.rivals.push_back(rival);
-    }
-    std::erase_if(reference.rivals, [&](const Candidate& rival) {
-      return worth(rival) < settings.rival_share * worth(reference.found) ||
-             !objection(rival, settings).empty();
-    });
+  reference.found = ends[0];
+  reference.starts = search.starts();
+  for (std::size_t i = 1; i < ends.size(); ++i) {
+    if (rivals(ends[i], reference.found, settings)) reference.rivals.push_back(ends[i]);
   }
-  search.make_honest(reference.found.alignment);
+  search.spread_covariance(reference.found.alignment);
   reference.why = objection(reference.found, settings);
+  if (reference.why.empty()) {
+    reference.why = search.closer_objection(reference.found.alignment.T_world_base);
+  }
+  search.add_shared_errors(reference.found.alignment);
   if (!reference.why.empty()) return reference;
   if (!reference.rivals.empty()) {
     reference.verdict = ReferenceVerdict::ambiguous;
     reference.why = "another pose explains the scene nearly as well";
+    return reference;
+  }
+  if (alone && !settings.other_starts) {
+    reference.verdict = ReferenceVerdict::ambiguous;
+    reference.why = "one place without a mask, and no rival was searched";
     return reference;
   }
   reference.verdict = ReferenceVerdict::accepted;

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "platform/robot/primitives.hpp"
+#include "tests/unit/platform/reference/post_arm.hpp"
 
 namespace glint {
 namespace {
@@ -67,6 +69,8 @@ TEST(FindReference, CallsAPostThatLooksAlikeFromFourSidesAmbiguous) {
   const Reference r = find_reference(scene_of(post(), k_truth), off(0.02, 0.03), {});
   EXPECT_EQ(r.verdict, ReferenceVerdict::ambiguous) << r.why;
   ASSERT_FALSE(r.rivals.empty());
+  EXPECT_TRUE(SearchRange{}.holds(off(0.02, 0.03), r.found.alignment.T_world_base));
+  EXPECT_FALSE(SearchRange{}.holds(off(0.02, 0.03), r.rivals[0].alignment.T_world_base));
   const double turn = r.rivals[0].alignment.T_world_base.rotation.angularDistance(
       r.found.alignment.T_world_base.rotation);
   EXPECT_NEAR(std::fmod(turn + 0.01, M_PI / 2), 0.01, 0.02);
@@ -125,6 +129,92 @@ TEST(FindReference, WantsAMaskOrASecondPlaceWhereHalfIsHidden) {
   frames[1] = scene_of(arm(), aside * k_truth)[0];
   frames[1].T_camera_world = aside;
   EXPECT_EQ(find_reference(frames, off(0.02, 0.03), {}).verdict, ReferenceVerdict::accepted);
+}
+
+TEST(FindReference, FindsTheRobotFromAFarCornerOfTheRange) {
+  const Pose start{pose_of_seed({0, 0, 0, 0.5, -0.5, 0.4}).rotation * k_truth.rotation,
+                   k_truth.translation + Vector3(0.3, -0.3, 0.3)};
+  const Reference r = find_reference(scene_of(arm(), k_truth), start, {});
+  EXPECT_EQ(r.verdict, ReferenceVerdict::accepted) << r.why;
+  EXPECT_LT((r.found.alignment.T_world_base.translation - k_truth.translation).norm(), 1e-3);
+}
+
+TEST(FindReference, AcceptsNoPoseBeyondTheRange) {
+  FindReferenceSettings settings;
+  settings.range = {0.03, 0.05};
+  const Reference r = find_reference(scene_of(arm(), k_truth), off(0.08, 0.02), settings);
+  EXPECT_EQ(r.verdict, ReferenceVerdict::refused);
+  EXPECT_NE(r.why.find("range"), std::string::npos) << r.why;
+}
+
+TEST(FindReference, CallsOnePictureAmbiguousIfNoRivalWasSearched) {
+  FindReferenceSettings settings;
+  settings.other_starts = false;
+  std::vector<SceneFrame> frames = scene_of(arm(), k_truth);
+  const Reference alone = find_reference(frames, off(0.02, 0.03), settings);
+  EXPECT_EQ(alone.verdict, ReferenceVerdict::ambiguous) << alone.why;
+  for (const float z : frames[0].depth_m) frames[0].mask.push_back(z < 2 ? 1 : 0);
+  const Reference masked = find_reference(frames, off(0.02, 0.03), settings);
+  EXPECT_EQ(masked.verdict, ReferenceVerdict::accepted) << masked.why;
+}
+
+TEST(FindReference, StatesTheErrorsThatAPictureShares) {
+  FindReferenceSettings settings;
+  const std::vector<SceneFrame> frames = scene_of(arm(), k_truth);
+  settings.shared_errors = {0, 0};
+  const Matrix6 without = find_reference(frames, k_truth, settings).found.alignment.covariance;
+  settings.shared_errors.depth_sigma_m = 0.008;
+  const Matrix6 with = find_reference(frames, k_truth, settings).found.alignment.covariance;
+  const auto sigma = [](const Matrix6& c) { return std::sqrt(c.topLeftCorner<3, 3>().trace()); };
+  EXPECT_LT(sigma(without), 0.002);
+  EXPECT_GT(sigma(with), 0.006);
+}
+
+TEST(FindReference, StatesHowFarTheEndsOfItsPicturesLieApart) {
+  FindReferenceSettings settings;
+  settings.shared_errors = {0, 0};
+  std::vector<SceneFrame> frames = scene_of(arm(), k_truth);
+  frames.push_back(frames[0]);
+  const Matrix6 alike = find_reference(frames, k_truth, settings).found.alignment.covariance;
+  for (float& z : frames[1].depth_m) z += 0.02f;
+  const Matrix6 apart = find_reference(frames, k_truth, settings).found.alignment.covariance;
+  const auto sigma = [](const Matrix6& c) { return std::sqrt(c.topLeftCorner<3, 3>().trace()); };
+  EXPECT_LT(sigma(alike), 0.002);
+  EXPECT_GT(sigma(apart), 0.008);
+}
+
+TEST(FindReference, RefusesOtherJointValuesAndNamesTheLink) {
+  const test::Files files;
+  const RobotModel robot = load_robot({files.write("arm.urdf", post_arm_xml()), {}});
+  std::vector<SceneFrame> frames = post_arm_scene(robot, std::array{0.4, 0.02});
+  for (const float z : frames[0].depth_m) frames[0].mask.push_back(z < 2 ? 1 : 0);
+  const Reference right = find_reference(frames, k_post_arm_guess, {});
+  EXPECT_EQ(right.verdict, ReferenceVerdict::accepted) << right.why;
+  frames[0].model = posed_surface(robot, std::array{0.4, 0.14}, "a test");
+  FindReferenceSettings lenient;
+  lenient.inlier_share_min = 0;
+  lenient.seen_through_share_max = 1;
+  lenient.mask_share_min = 0;
+  const Reference slid = find_reference(frames, k_post_arm_guess, lenient);
+  EXPECT_EQ(slid.verdict, ReferenceVerdict::refused);
+  EXPECT_NE(slid.why.find("link 2"), std::string::npos) << slid.why;
+}
+
+TEST(FindReference, RefusesAPictureThatDisagreesWithTheOthers) {
+  std::vector<SceneFrame> frames = scene_of(arm(), k_truth);
+  for (const char* name : {"b", "c", "d", "e", "f"}) {
+    frames.push_back(frames[0]);
+    frames.back().name = name;
+  }
+  Pose elsewhere = k_truth;
+  elsewhere.translation.x() += 0.2;
+  frames[3].depth_m = scene_of(arm(), elsewhere)[0].depth_m;
+  FindReferenceSettings lenient;
+  lenient.inlier_share_min = 0.6;
+  lenient.seen_through_share_max = 0.3;
+  const Reference r = find_reference(frames, k_truth, lenient);
+  EXPECT_EQ(r.verdict, ReferenceVerdict::refused);
+  EXPECT_EQ(r.why.rfind("d: ", 0), 0u) << r.why;
 }
 
 TEST(FindReference, GivesTheSameBitsAgain) {

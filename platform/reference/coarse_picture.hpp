@@ -1,0 +1,26 @@
+// A picture as the coarse search sees it: few points of the robot, cells, normals of the scene.
+#pragma once
+
+#include <vector>
+
+#include "kernels/registration/scene_view.hpp"
+#include "platform/reference/scene.hpp"
+
+namespace glint {
+
+inline constexpr int k_cell_pixels = 8;  // a cell's side
+
+struct CoarsePicture {
+  SceneView view;
+  std::vector<Vector3> points, normals;  // of the robot, base frame
+  std::vector<Vector3f> scene_normals;   // of each pixel, unit length; zero at edges
+  std::vector<int> mask_cells;           // of which the mask covers half
+
+  [[nodiscard]] int cells() const;
+  [[nodiscard]] int cell_of(int pixel) const;
+};
+
+// With so many points, spread evenly over the robot's surface. Borrows the frame's memory.
+[[nodiscard]] CoarsePicture coarse_picture(const SceneFrame& frame, int points);
+
+}  // namespace glint
