@@ -10,6 +10,7 @@
 #include "platform/experiments/case_experiments.hpp"
 #include "platform/experiments/experiment.hpp"
 #include "platform/experiments/experiment_report.hpp"
+#include "platform/in_range.hpp"
 #include "platform/printable.hpp"
 
 namespace glint {
@@ -19,6 +20,7 @@ struct ExperimentArguments {
   std::string json, out = "out", data;
   bool quick = false;
   std::uint64_t seed = 1;
+  int tries = 0;
 };
 using Arguments = std::shared_ptr<ExperimentArguments>;
 
@@ -43,8 +45,12 @@ int run_published(ExperimentKind kind, const ExperimentArguments& arguments) {
 
 int run_cases(const CaseExperiment& experiment, const ExperimentArguments& arguments) {
   Progress progress(std::string("experiment ") + experiment.name);
-  CaseOptions options{arguments.quick, arguments.seed, arguments.out, arguments.data,
-                      [&](int done, int all) { progress.show(done, all); }};
+  CaseOptions options{arguments.quick,
+                      arguments.seed,
+                      arguments.out,
+                      arguments.data,
+                      [&](int done, int all) { progress.show(done, all); },
+                      arguments.tries};
   make_folder(options.out);
   const CaseList list = experiment.run(options);
   progress.clear();
@@ -58,7 +64,8 @@ CLI::App& add_one(CLI::App& command, const std::string& name, const char* what,
                   const Arguments& arguments) {
   CLI::App* sub = command.add_subcommand(name, what);
   sub->add_flag("--quick", arguments->quick, "few samples: to see that it works");
-  sub->add_option("--seed", arguments->seed, "of the random numbers")->capture_default_str();
+  sub->add_option("--random-seed,--seed", arguments->seed, "of the random numbers")
+      ->capture_default_str();
   sub->add_option("--json", arguments->json, "write the figures here");
   sub->add_option("--out", arguments->out, "folder of the plots")->capture_default_str();
   sub->footer("Example: glint experiment " + name + " --json " + name + ".json");
@@ -91,6 +98,12 @@ void add_experiment(CLI::App& app, int& exit_code) {
     if (experiment.wants_data) {
       sub.add_option("--data", arguments->data, "folder of the recordings")->required();
       sub.footer(std::string("Example: glint experiment ") + experiment.name + " --data DIR");
+    }
+    if (experiment.counts_tries) {
+      sub.add_option("--tries", arguments->tries,
+                     "tries in all classes together, in place of the other cases; finished ones "
+                     "are in --out and not run again")
+          ->check(in_range(1, 1'000'000));
     }
     sub.callback(
         [&experiment, arguments, &exit_code] { exit_code = run_cases(experiment, *arguments); });

@@ -50,7 +50,7 @@ std::span<const CaseExperiment> case_experiments() {
       {"field", "devices that differ from what their cells state, judged at the output", false,
        run_field},
       {"reference", "a robot found in real and simulated depth, from hundreds of rough poses", true,
-       run_reference_experiment},
+       run_reference_experiment, true},
   };
   return k_experiments;
 }

@@ -13,6 +13,7 @@ struct CaseExperiment {
   const char* what;         // one line of help
   bool wants_data = false;  // works on recordings: --data DIR
   CaseList (*run)(const CaseOptions& options) = nullptr;
+  bool counts_tries = false;  // takes --tries N
 };
 
 [[nodiscard]] std::span<const CaseExperiment> case_experiments();

@@ -50,6 +50,7 @@ struct CaseOptions {
   std::string data;         // folder of recordings; empty: none given
   // Called now and then with samples done and in all; may be empty.
   std::function<void(int done, int total)> progress;
+  int tries = 0;  // of an experiment that counts tries; 0: its other cases
 };
 
 // Figures that miss their bar.

@@ -5,6 +5,7 @@
 
 #include "kernels/angles.hpp"
 #include "kernels/elementary.hpp"
+#include "platform/experiments/reference_tries.hpp"
 #include "platform/experiments/robot_scenes.hpp"
 #include "platform/reference/find_reference.hpp"
 #include "platform/robot/sample_robot.hpp"
@@ -33,18 +34,6 @@ double median(std::vector<double> values) {
   if (values.empty()) return std::nan("");
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
-}
-
-// Each coordinate within +-shift_m and, about fixed axes, +-degrees of the true one.
-Pose seed_about(const Pose& truth, double shift_m, double degrees, std::uint64_t seed,
-                std::uint64_t number) {
-  const sim::RandomKey key{seed, sim::Stream::reference, number};
-  const auto draw = [&](std::uint64_t i) { return 2 * sim::uniform(key, i) - 1; };
-  const double radians = degrees / k_degrees_per_radian;
-  const Pose turn =
-      pose_of_seed({0, 0, 0, radians * draw(3), radians * draw(4), radians * draw(5)});
-  return {(turn.rotation * truth.rotation).normalized(),
-          truth.translation + shift_m * Vector3(draw(0), draw(1), draw(2))};
 }
 
 // Ends beside the best known pose, and what the verdicts said of them.
@@ -197,7 +186,7 @@ class Experiment {
     for (int i = 0; i < seeds_; ++i) {
       const auto number = static_cast<std::uint64_t>(i);
       const SimulatedScene scene = simulate_scene(robot, settings, options_.seed, number);
-      const Pose start = seed_about(scene.T_world_base, 0.4, 40, options_.seed, number);
+      const Pose start = start_about(scene.T_world_base, 0.4, 40, options_.seed, number);
       tally.add(find_reference(scene.frames, start, {}), scene.T_world_base);
     }
     add("ur5 straight up, seeds +-40 cm, 40 deg", seeds_, tally.verdicts());
@@ -230,7 +219,7 @@ class Experiment {
       for (SceneFrame& frame : scene.frames) {
         if (cloud != nullptr) frame.cloud = posed_cloud(*cloud, scene.positions, name);
       }
-      const Pose start = seed_about(scene.T_world_base, 0.1, 10, options_.seed, instance);
+      const Pose start = start_about(scene.T_world_base, 0.1, 10, options_.seed, instance);
       tally.add(find_reference(scene.frames, start, {}), scene.T_world_base);
     }
     // One view without a mask is refused where half is hidden, right or not.
@@ -251,8 +240,8 @@ class Experiment {
   }
 
   [[nodiscard]] Pose seed(double shift_m, double degrees, int number) const {
-    return seed_about(scan_.published, shift_m, degrees, options_.seed,
-                      static_cast<std::uint64_t>(number));
+    return start_about(scan_.published, shift_m, degrees, options_.seed,
+                       static_cast<std::uint64_t>(number));
   }
 
   void add(const std::string& name, int n, std::vector<Figure> figures) {
@@ -269,6 +258,8 @@ class Experiment {
 
 }  // namespace
 
-CaseList run_reference_experiment(const CaseOptions& options) { return Experiment(options).run(); }
+CaseList run_reference_experiment(const CaseOptions& options) {
+  return options.tries > 0 ? run_reference_tries(options) : Experiment(options).run();
+}
 
 }  // namespace glint

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <numbers>
 
+#include "kernels/angles.hpp"
 #include "kernels/elementary.hpp"
 #include "kernels/registration/render_depth.hpp"
 #include "platform/input_error.hpp"
+#include "platform/reference/find_reference.hpp"
 #include "platform/sensors/npy.hpp"
 #include "platform/sim/random.hpp"
 
@@ -150,6 +152,10 @@ SimulatedScene simulate_scene(const RobotModel& robot, const SimulationSettings&
   const Pinhole camera{320, 288, 252, 252, 160, 144};
   const double azimuth = draw(-std::numbers::pi, std::numbers::pi), elevation = draw(0.2, 0.8);
 
+  const double bias = draw(-settings.depth_bias_m, settings.depth_bias_m);
+  const double right = draw(-settings.depth_slope_m, settings.depth_slope_m);
+  const double down = draw(-settings.depth_slope_m, settings.depth_slope_m);
+
   SimulatedScene scene;
   Pose T_base_first;
   for (int v = 0; v < settings.views; ++v) {
@@ -176,8 +182,11 @@ SimulatedScene simulate_scene(const RobotModel& robot, const SimulationSettings&
                                16 * instance + static_cast<std::uint64_t>(v)};
     for (std::size_t i = 0; i < picture.z.size(); ++i) {
       const double z = static_cast<double>(picture.z[i]);
-      frame.depth_m.push_back(
-          static_cast<float>(z * (1 + settings.noise * sim::gaussian(noise, i))));
+      const int x = static_cast<int>(i) % camera.width, y = static_cast<int>(i) / camera.width;
+      const double shared =
+          bias + right * ((x + 0.5) / camera.cx - 1) + down * ((y + 0.5) / camera.cy - 1);
+      frame.depth_m.push_back(static_cast<float>(
+          z > 0 ? z * (1 + settings.noise * sim::gaussian(noise, i)) + shared : 0));
       const bool on = picture.face[i] >= 0 && picture.face[i] < robots_faces;
       if (settings.mask) frame.mask.push_back(on ? 1 : 0);
     }
@@ -186,6 +195,17 @@ SimulatedScene simulate_scene(const RobotModel& robot, const SimulationSettings&
   scene.T_world_base = T_base_first.inverse();
   scene.positions = positions;
   return scene;
+}
+
+Pose start_about(const Pose& truth, double shift_m, double degrees, std::uint64_t seed,
+                 std::uint64_t number) {
+  const sim::RandomKey key{seed, sim::Stream::reference, number};
+  const auto draw = [&](std::uint64_t i) { return 2 * sim::uniform(key, i) - 1; };
+  const double radians = degrees / k_degrees_per_radian;
+  const Pose turn =
+      pose_of_seed({0, 0, 0, radians * draw(3), radians * draw(4), radians * draw(5)});
+  return {(turn.rotation * truth.rotation).normalized(),
+          truth.translation + shift_m * Vector3(draw(0), draw(1), draw(2))};
 }
 
 }  // namespace glint

@@ -2,6 +2,7 @@
 // truth.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,8 @@ struct SimulationSettings {
   bool half_hidden = true;
   double distance_m = 1.2;
   double noise = 0.01;            // of the depth, independent from pixel to pixel
+  double depth_bias_m = 0;        // a constant, and slopes along both sides of the picture ..
+  double depth_slope_m = 0;       // .. at its edges, each within these, shared by all views
   std::vector<double> positions;  // of the joints; empty: random
 };
 // Robot on a floor before a wall; the instance chooses all that is
@@ -40,5 +43,9 @@ struct SimulationSettings {
 [[nodiscard]] SimulatedScene simulate_scene(const RobotModel& robot,
                                             const SimulationSettings& settings, std::uint64_t seed,
                                             std::uint64_t instance);
+
+// Each coordinate within +-shift_m and, about fixed axes, +-degrees of the true one.
+[[nodiscard]] Pose start_about(const Pose& truth, double shift_m, double degrees,
+                               std::uint64_t seed, std::uint64_t number);
 
 }  // namespace glint
