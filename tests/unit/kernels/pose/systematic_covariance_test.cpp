@@ -101,9 +101,10 @@ std::vector<View> views() {
   Random random(17);
   for (int i = 0; i < 12; ++i) {
     const Tool tool = i % 3 == 0 ? test::flat_tool() : test::random_tool(random, 3 + i % 5);
-    const Vector3 place(random.within(-0.25, 0.25), random.within(-0.25, 0.25),
-                        random.within(0.35, 0.7));
-    all.push_back({tool, test::tilted_pose(tool, random.within(0.4, 1.2), place, random)});
+    const double x = random.within(-0.25, 0.25), y = random.within(-0.25, 0.25);
+    const Vector3 place(x, y, random.within(0.35, 0.7));
+    const double tilt_rad = random.within(0.4, 1.2);
+    all.push_back({tool, test::tilted_pose(tool, tilt_rad, place, random)});
   }
   return all;
 }
@@ -183,7 +184,7 @@ TEST(SystematicCovariance, GivesTheSameBitsEverywhere) {
       hash.add(found.correlated.slow(i / 6, i % 6));
     }
   }
-  EXPECT_EQ(hash.value(), 8644430598927261923u);
+  EXPECT_EQ(hash.value(), 7973526635860453269u);
 }
 
 }  // namespace

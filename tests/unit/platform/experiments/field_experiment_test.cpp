@@ -14,11 +14,11 @@ OutputErrors measured_errors(const SessionResult& run) {
 // One device, by what its cell states of it and as if it were exact: the errors are larger, and the
 // stated covariance holds them.
 TEST(Field, StatesTheErrorsOfADeviceThatIsNotWhatItsCellStates) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const OutputErrors drawn =
-      measured_errors(run_field_device(FieldDevice::drawn, 12, 8, folder.path()));
+      measured_errors(run_field_device(FieldDevice::drawn, 12, 8, folder.path("")));
   const OutputErrors exact =
-      measured_errors(run_field_device(FieldDevice::exact, 12, 8, folder.path()));
+      measured_errors(run_field_device(FieldDevice::exact, 12, 8, folder.path("")));
   ASSERT_GT(drawn.count, 500u);
   EXPECT_GT(drawn.square_m2 / static_cast<double>(drawn.count),
             2 * exact.square_m2 / static_cast<double>(exact.count));
