@@ -70,8 +70,8 @@ TEST(CellCamera, StatesTheUncertaintyOfItsCalibration) {
   EXPECT_DOUBLE_EQ(stated.slow_range_m, 0.0003);
   EXPECT_DOUBLE_EQ(stated.slow_centroid_px, 0.02);
   EXPECT_DOUBLE_EQ(stated.stamp_s, 0.001);
-  EXPECT_THROW(cell_from_text("[camera.uncertainty]\nrange_scale = -1\n", "c"), InputError);
-  EXPECT_THROW(cell_from_text("[camera.uncertainty]\nfocal = 0.1\n", "c"), InputError);
+  EXPECT_THROW((void)cell_from_text("[camera.uncertainty]\nrange_scale = -1\n", "c"), InputError);
+  EXPECT_THROW((void)cell_from_text("[camera.uncertainty]\nfocal = 0.1\n", "c"), InputError);
 }
 
 std::vector<float> rays_ahead() {
