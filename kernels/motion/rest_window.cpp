@@ -100,6 +100,10 @@ double RestWindow::seconds_of(int frames, const RestSums& sums) const {
   return (sum_before(0, sums).time - sum_before(frames - 1, sums).time).seconds();
 }
 
+Matrix6 RestWindow::correlated(const RestSums& sums) const noexcept {
+  return of_mean(correlated_, times_, rests() ? seconds_of(frames_, sums) : 0.0);
+}
+
 Pose RestWindow::placed(const Vector6& place) const {
   return {(from_rotation_vector(place.tail<3>()) * anchor_.rotation).normalized(),
           anchor_.translation + place.head<3>()};

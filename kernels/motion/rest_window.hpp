@@ -84,9 +84,7 @@ class RestWindow {
   // At the newest frame's time. Meaningless if frames() < 2.
   [[nodiscard]] Rest rest(const RestSums& sums) const noexcept GLINT_NONBLOCKING;
   // The correlated errors' covariance: of the mean at rest, else of the newest pose.
-  [[nodiscard]] Matrix6 correlated(const RestSums& sums) const noexcept GLINT_NONBLOCKING {
-    return of_mean(correlated_, times_, rests() ? seconds_of(frames_, sums) : 0.0);
-  }
+  [[nodiscard]] Matrix6 correlated(const RestSums& sums) const noexcept GLINT_NONBLOCKING;
 
  private:
   using Sum = RestSums::Sum;
