@@ -28,10 +28,10 @@ namespace glint {
 // device that was not calibrated, with the lens of another unit.
 struct CameraUncertainty {
   double range_offset_m = 0.006;
-  double range_scale = 0.01;      // 20 mm steps of two HoloLens 2 measured 20.3 to 20.5 mm
+  double range_scale = 0.01;      // a HoloLens 2 measured 20 mm steps as 20.3 to 20.5 mm
   double principal_point_px = 3;  // an axis; two HoloLens 2 differ by 5.5 px
   double focal_scale = 0.003;
-  // Of each marker, correlated: two tools at rest before a HoloLens 2, 120 s, four markers each.
+  // Of each marker, correlated: two tools at rest before a HoloLens 2, 120 s, as of four markers.
   double slow_range_m = 0.0007;
   double slow_centroid_px = 0.05;  // an axis
   double fast_share = 0.6;  // of these two variances: correlated for CorrelationTimes::fast_s

@@ -249,10 +249,18 @@ CameraUncertainty marker_errors_of(const NoiseCalibration& noise, const Cell& ce
   for (Eigen::Index k = 0; k < 6; ++k) {
     const AxisNoise& axis = noise.axes[static_cast<std::size_t>(k)];
     const double variance = axis.fast * axis.fast + axis.slow * axis.slow;
+    if (!(variance > 0)) {  // white alone: no marker error may act on this axis
+      rows.row(k).setZero();
+      ones(k) = 0;
+      continue;
+    }
     rows.row(k) << of_range(k) / variance, of_centroid(k) / variance, 0;
     fast += axis.fast * axis.fast / variance;
     all += 1;
   }
+  CameraUncertainty none = camera.uncertainty;
+  none.slow_range_m = none.slow_centroid_px = 0;
+  if (all == 0) return none;
   const Fit fit = non_negative(rows, ones);
   CameraUncertainty errors = camera.uncertainty;
   errors.slow_range_m = 0.001 * std::sqrt(fit.variances(0));

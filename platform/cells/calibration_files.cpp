@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "kernels/angles.hpp"
 #include "kernels/elementary.hpp"
@@ -81,12 +82,21 @@ DepthBias depth_bias_of(const NamedFile& file) {
 
 void read_range_uncertainty(const NamedFile& file, CameraUncertainty& uncertainty) {
   const toml::table root = parse_toml(file.text, file.path);
-  const auto offset_mm = root["offset_sigma_mm"].value<double>();
-  const auto per_metre_mm = root["mm_per_m_sigma"].value<double>();
-  if (!offset_mm || !per_metre_mm || !(*offset_mm >= 0) || !(*per_metre_mm >= 0)) return;
+  if (!root.contains("offset_sigma_mm") && !root.contains("mm_per_m_sigma")) return;
+  const auto sigma = [&](const char* key) {
+    const std::optional<double> found = root[key].value<double>();
+    if (!found || !(*found >= 0)) {
+      complain(file.path, 1,
+               std::string(key) +
+                   " is missing or no standard deviation; expected a "
+                   "number of 0 or more beside the other one");
+    }
+    return *found;
+  };
+  const double offset_mm = sigma("offset_sigma_mm"), per_metre_mm = sigma("mm_per_m_sigma");
   uncertainty.range_offset_m =
-      std::hypot(1e-3 * *offset_mm, k_lens_scale * DepthBias::k_reference_m);
-  uncertainty.range_scale = std::hypot(1e-3 * *per_metre_mm, k_lens_scale);
+      std::hypot(1e-3 * offset_mm, k_lens_scale * DepthBias::k_reference_m);
+  uncertainty.range_scale = std::hypot(1e-3 * per_metre_mm, k_lens_scale);
 }
 
 CameraModel lens_of(const NamedFile& file, const CameraModel& camera) {

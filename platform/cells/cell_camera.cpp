@@ -53,7 +53,7 @@ Duration duration_of(TomlReader& reader, const char* key, Duration preset, doubl
   return ms == preset_ms ? preset : from_ms(ms);
 }
 
-// A device's own lens is better known than another unit's: pixels, and a ratio.
+// The uncertainty of a device's own lens, smaller than another unit's: pixels, and a ratio.
 constexpr double k_own_principal_point_px = 0.5, k_own_focal_scale = 0.001;
 
 void use_own_lens(Cell& cell) {

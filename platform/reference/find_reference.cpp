@@ -73,7 +73,7 @@ class Search {
   [[nodiscard]] CoarseSearch& coarse() { return coarse_; }
   [[nodiscard]] int starts() const { return starts_; }
 
-  // What single links and single pictures say of a pose that all of them together accept.
+  // Why a single link or picture refuses a pose that all of them together accept; empty: none does.
   [[nodiscard]] std::string closer_objection(const Pose& T_world_base) {
     const LinkJudgement links =
         judge_links(views_, links_, T_world_base, settings_.judge, scratch_);

@@ -1,5 +1,5 @@
 // What a real device and its markers differ by from what their calibration states: errors that a
-// tracker does not know and that do not average out over frames.
+// tracker is not given and that do not average out over frames.
 //
 // Sources: HoloLens 2 units: their markers' ranges, their tools at rest (kernels/pose/
 //          systematic_covariance.hpp has the figures);

@@ -89,7 +89,7 @@ TEST(Noise, OfTwoBodiesIsThatOfTheirRelativePose) {
     EXPECT_LT((pose.pose.translation - Vector3(0.1, 0, 0.5)).norm(), 0.005);
 }
 
-// The pose errors that known errors of markers make lead back to these.
+// Marker errors are recovered from the pose errors that they cause.
 TEST(Noise, GivesTheErrorsOfEachMarker) {
   const Cell cell = default_cell();
   const Tool& tool = cell.tools.items[0];
@@ -123,6 +123,13 @@ TEST(Noise, GivesTheErrorsOfEachMarker) {
   EXPECT_NEAR(found.slow_centroid_px, 0.08, 1e-4);
   EXPECT_NEAR(found.fast_share, 0.3, 1e-9);
   EXPECT_EQ(found.principal_point_px, cell.camera.uncertainty.principal_point_px);
+  // White noise alone leaves no marker error, and no number that is none.
+  const CameraUncertainty white = marker_errors_of({}, cell, tool, T_camera_tool);
+  EXPECT_EQ(white.slow_range_m, 0);
+  EXPECT_EQ(white.slow_centroid_px, 0);
+  EXPECT_EQ(white.fast_share, cell.camera.uncertainty.fast_share);
+  noise.axes[2] = {0.001, 0, 0};
+  EXPECT_TRUE(std::isfinite(marker_errors_of(noise, cell, tool, T_camera_tool).slow_range_m));
 }
 
 }  // namespace

@@ -84,8 +84,26 @@ TEST(CalibrationFiles, GiveACellTheUncertaintyOfItsRanges) {
       uncertainty_by("offset_sigma_mm = 0.4\nmm_per_m_sigma = 2.0\n" + bias);
   EXPECT_NEAR(measured.range_offset_m, std::hypot(0.0004, 0.0005), 1e-12);
   EXPECT_NEAR(measured.range_scale, std::hypot(0.002, 0.001), 1e-12);
+  EXPECT_THROW((void)uncertainty_by("offset_sigma_mm = -1\nmm_per_m_sigma = 2\n" + bias),
+               InputError);
+  EXPECT_THROW((void)uncertainty_by("offset_sigma_mm = 1\n" + bias), InputError);
   const CameraUncertainty unstated = uncertainty_by(bias);
   EXPECT_EQ(unstated.range_offset_m, CameraUncertainty{}.range_offset_m);
+}
+
+TEST(CalibrationFiles, GiveACellItsMarkersCorrelatedErrors) {
+  const Cell cell = cell_with("[camera]\nuncertainty = \"noise.toml\"\n",
+                              {{"camera.uncertainty",
+                                "poses = 900\n[uncertainty]\nslow_range_mm = 0.2\n"
+                                "slow_centroid_px = 0.01\nfast_share = 0.7\nfast_s = 0.4\n"
+                                "slow_s = 30\n"}});
+  EXPECT_DOUBLE_EQ(cell.camera.uncertainty.slow_range_m, 0.0002);
+  EXPECT_DOUBLE_EQ(cell.camera.uncertainty.fast_share, 0.7);
+  EXPECT_DOUBLE_EQ(cell.camera.correlation.slow_s, 30);
+  EXPECT_EQ(cell.camera.uncertainty.range_offset_m, CameraUncertainty{}.range_offset_m);
+  EXPECT_THROW((void)cell_with("[camera]\nuncertainty = \"noise.toml\"\n",
+                               {{"camera.uncertainty", "poses = 900\n"}}),
+               InputError);
 }
 
 TEST(CalibrationFiles, GiveACellItsMotion) {
