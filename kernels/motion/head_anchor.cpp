@@ -10,7 +10,8 @@
 namespace glint {
 namespace {
 
-constexpr double k_long_s = 1e6;  // beyond any correlation
+constexpr double k_long_s = 1e6;    // beyond any correlation
+constexpr double k_jitter_s = 0.1;  // what is faster counts as the error's jitter
 
 // A shift and a rotation about `pivot`.
 Pose motion_about(const Vector3& pivot, const Vector6& error) {
@@ -51,25 +52,28 @@ Pose HeadAnchor::corrected(const Pose& T_world_camera) const noexcept {
   return motion_about(T_world_body_.translation, error_).inverse() * T_world_camera;
 }
 
-// Smoothed as the error itself is, and by direction: what the error jitters by between two frames
-// would else count as speed, several times the headset's own.
+// The error's own jitter between two frames would count as speed, several times the headset's: the
+// velocity is smoothed first. Its length is smoothed as the error itself is: a head that moves to
+// and fro has no mean velocity, but a speed.
 void HeadAnchor::observe_speed(const HeadPose& head, const HeadNoise& noise) {
   const StampedPose here{head.time, head.T_world_camera};
   const Velocity velocity = has_head_ ? velocity_between(head_, here) : Velocity{};
-  const double seconds = has_head_ ? (head.time - head_.time).seconds() : 0;
-  const double follow = 1 - kept_over(seconds > 0 ? seconds : 0, noise.motion_correlation_s);
-  velocity_.linear_m_s += follow * (velocity.linear_m_s - velocity_.linear_m_s);
-  velocity_.angular_rad_s += follow * (velocity.angular_rad_s - velocity_.angular_rad_s);
+  const double seconds = has_head_ ? std::max((head.time - head_.time).seconds(), 0.0) : 0;
+  const double smooth = 1 - kept_over(seconds, std::min(k_jitter_s, noise.motion_correlation_s));
+  velocity_.linear_m_s += smooth * (velocity.linear_m_s - velocity_.linear_m_s);
+  velocity_.angular_rad_s += smooth * (velocity.angular_rad_s - velocity_.angular_rad_s);
+  const double follow = 1 - kept_over(seconds, noise.motion_correlation_s);
+  speed_m_s_ += follow * (velocity_.linear_m_s.norm() - speed_m_s_);
+  turn_rad_s_ += follow * (velocity_.angular_rad_s.norm() - turn_rad_s_);
 }
 
 void HeadAnchor::walk_on(const Pose& T_world_camera, double seconds, const HeadNoise& noise) {
   const Vector3 pivot = T_world_camera * Vector3(0, 0, noise.pivot_m);
   const Vector3 lever = T_world_body_.translation - pivot;
-  const double speed_m_s = velocity_.linear_m_s.norm(), turn_rad_s = velocity_.angular_rad_s.norm();
   const double moving_position =
-      noise.position_per_speed_s * speed_m_s + noise.position_per_turn_m * turn_rad_s;
+      noise.position_per_speed_s * speed_m_s_ + noise.position_per_turn_m * turn_rad_s_;
   const double moving_angle =
-      noise.angle_per_speed_s_m * speed_m_s + noise.angle_per_turn_s * turn_rad_s;
+      noise.angle_per_speed_s_m * speed_m_s_ + noise.angle_per_turn_s * turn_rad_s_;
   const Matrix6 resting = spread(noise.rest_position_m, noise.rest_angle_rad, lever);
   const Matrix6 moving = spread(moving_position, moving_angle, lever);
   const double all = resting.trace() + moving.trace();
@@ -153,7 +157,7 @@ AnchoredHead HeadAnchor::update(const HeadPose& head, const UncertainPose* body,
   out.moved_along = out.corrected && unseen_ > 0;
   if (out.moved_along)
     out.moved = motion_about(T_world_body_.translation, error_).inverse() * before;
-  out.in_gap = known() && (unseen_ > 0 || !out.corrected);
+  out.in_gap = unseen_ > 0 || !out.corrected;
   if (out.in_gap) out.stepped = step_;
   unseen_ = out.corrected ? 0 : unseen_ + 1;
   out.pivot_m = T_world_body_.translation;

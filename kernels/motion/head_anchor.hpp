@@ -94,8 +94,9 @@ class HeadAnchor {
   Matrix6 uncorrected_ = Matrix6::Zero();  // what covariance_ grows to
   Matrix6 step_ = Matrix6::Zero();         // by how much it grew since the frame before
   bool has_head_ = false;
-  StampedPose head_;   // as the headset gave it
-  Velocity velocity_;  // of the head, smoothed
+  StampedPose head_;                       // as the headset gave it
+  Velocity velocity_;                      // of the head, smoothed over k_jitter_s
+  double speed_m_s_ = 0, turn_rad_s_ = 0;  // its lengths, smoothed over motion_correlation_s
 };
 
 }  // namespace glint

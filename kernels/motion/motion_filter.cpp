@@ -162,8 +162,8 @@ Correction correct_by_pose(MotionState& state, const UncertainPose& measured) no
   const Vector6 innovation = pose_difference(measured.pose, state.pose);
   Correction correction = correct<6>(state, ph, s, innovation);
   if (correction.reason != Reason::none) return correction;
-  correction.linear_chi_square =
-      Cholesky<3>(s.topLeftCorner<3, 3>()).squared_length(innovation.head<3>());
+  correction.linear_whitened = Cholesky<3>(s.topLeftCorner<3, 3>()).forward(innovation.head<3>());
+  correction.linear_chi_square = correction.linear_whitened.squaredNorm();
   correction.angular_chi_square =
       Cholesky<3>(s.bottomRightCorner<3, 3>()).squared_length(innovation.tail<3>());
   return correction;

@@ -39,9 +39,10 @@ struct NoiseScale {
 
 struct Correction {
   Reason reason = Reason::none;
-  double chi_square = 0;          // of the whole innovation
-  double linear_chi_square = 0;   // of its first three, alone
-  double angular_chi_square = 0;  // of its last three, alone; 0 for a point
+  double chi_square = 0;                      // of the whole innovation
+  double linear_chi_square = 0;               // of its first three, alone
+  double angular_chi_square = 0;              // of its last three, alone; 0 for a point
+  Vector3 linear_whitened = Vector3::Zero();  // its first three, of unit variance; 0 for a point
 };
 
 [[nodiscard]] MotionState start_motion(const UncertainPose& first,

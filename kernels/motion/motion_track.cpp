@@ -28,6 +28,15 @@ double moved(double scale, double chi_square, double frames, const AdaptationSet
                     settings.ceiling);
 }
 
+// Successive innovations are independent where the split between motion and loosening is right; a
+// loosening that is too large leaves to it what the velocity should follow, and they go on alike.
+double moved_by_correlation(double scale, double correlation, double frames,
+                            const AdaptationSettings& settings) {
+  const double most = settings.innovation_max;
+  const double step = std::clamp(correlation, -most, most) * frames / settings.frames;
+  return std::clamp(scale * (1 - step), settings.floor, settings.ceiling);
+}
+
 void add_pose_covariance(const Matrix6& added, MotionCovariance& covariance) {
   for (const auto& [row, from] : {std::pair{k_position, 0}, {k_rotation, 3}}) {
     for (const auto& [column, to] : {std::pair{k_position, 0}, {k_rotation, 3}})
@@ -56,13 +65,21 @@ MotionUpdate MotionTrack::update(const UncertainPose& measured, const Correlated
   if (done.reason == Reason::none && !usable(measured)) done.reason = Reason::out_of_range;
   if (done.reason != Reason::none) return done;
   if (known_ && measured.time - state_.time > settings.gap_max) forget();
+  const double loosened = loosened_.topLeftCorner<3, 3>().trace();
   loosened_.setZero();
   done.rest_tests = rest_.add(measured, correlated, settings.rest, sums);
-  double frames = 1;
+  double frames = 1, of_motion = 1;
   if (known_) {
     frames = std::min((measured.time - state_.time).seconds() / k_frame_s, k_frames_most);
     propagate(state_, measured.time, settings.motion, scale_);
+    const double expected = state_.covariance.block<3, 3>(k_position, k_position).trace() +
+                            measured.covariance.topLeftCorner<3, 3>().trace();
     correction_ = correct_by_pose(state_, measured);
+    const double share = loosened / expected;
+    const double along = correction_.linear_whitened.dot(innovation_) / k_point_axes;
+    loosening_ = moved_by_correlation(loosening_, share * along, frames, settings.loosening);
+    innovation_ = correction_.linear_whitened;
+    of_motion = 1 - share;
   }
   if (!known_ || correction_.reason != Reason::none) {
     // The first, or a covariance that rounding has worn out.
@@ -70,10 +87,14 @@ MotionUpdate MotionTrack::update(const UncertainPose& measured, const Correlated
     state_ = start_motion(measured, settings.motion);
     scale_ = briskest_ = {};
     correction_ = {};
+    loosening_ = 1;
+    innovation_.setZero();
     posed_ = measured.time;
     return done;
   }
-  scale_.linear = moved(scale_.linear, correction_.linear_chi_square, frames, settings.linear);
+  // An innovation that is the loosening's does not show how brisk the motion is.
+  scale_.linear =
+      moved(scale_.linear, correction_.linear_chi_square, of_motion * frames, settings.linear);
   scale_.angular = moved(scale_.angular, correction_.angular_chi_square, frames, settings.angular);
   posed_ = measured.time;
   const double faded = 1 - 1 / settings.briskest_frames;
@@ -122,8 +143,8 @@ void MotionTrack::move(const Pose& moved) noexcept {
 }
 
 void MotionTrack::loosen(const Matrix6& covariance) noexcept {
-  add_pose_covariance(covariance, state_.covariance);
-  loosened_ += covariance;
+  add_pose_covariance(loosening_ * covariance, state_.covariance);
+  loosened_ += loosening_ * covariance;
 }
 
 Matrix6 MotionTrack::correlated_covariance(const RestSums& sums) const noexcept {

@@ -36,7 +36,8 @@ struct ToolMotionSettings {
   // back. Then counts the briskest that it was, fading over this many frames, times a factor.
   double partial_noise = 2;
   double briskest_frames = 1000;
-  Duration gap_max = milliseconds(1000);  // after a longer silence it starts anew
+  AdaptationSettings loosening{15, 0.01, 10, 1};  // of what loosen() adds
+  Duration gap_max = milliseconds(1000);          // after a longer silence it starts anew
 };
 
 struct MotionUpdate {
@@ -89,7 +90,9 @@ class MotionTrack {
   MotionState state_;
   Time posed_;  // the newest pose: since then markers alone hold it
   NoiseScale scale_, briskest_;
-  Matrix6 loosened_ = Matrix6::Zero();  // since the newest pose
+  Matrix6 loosened_ = Matrix6::Zero();    // since the newest pose
+  double loosening_ = 1;                  // what was declared of it counts by this factor
+  Vector3 innovation_ = Vector3::Zero();  // of the newest pose, of unit variance
   RestWindow rest_;
   Correction correction_;
 };

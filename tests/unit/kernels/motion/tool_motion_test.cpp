@@ -88,6 +88,44 @@ TEST(ToolMotion, RefusesWhatIsNoPose) {
   EXPECT_EQ(tool.motion->estimate().covariance, before.covariance);
 }
 
+// The rms error of a prediction one frame ahead of a tool that swings, in a world that jitters by
+// `jitter_m` a frame; declared: 10 mm.
+double foretold_within(double jitter_m, bool loosened) {
+  Followed tool;
+  constexpr double k_declared_m = 0.01, k_rad_s = 6;
+  const Vector3 middle = tool.truth.translation;
+  Matrix6 step = Matrix6::Zero();
+  step.diagonal().head<3>().setConstant(k_declared_m * k_declared_m);
+  Vector3 world = Vector3::Zero();
+  double squares = 0;
+  constexpr int k_frames = 900, k_first = 100;
+  MotionTrack track;
+  ToolMotionSettings settings;
+  auto sums = std::make_unique<RestSums>();
+  for (int frame = 0; frame < k_frames; ++frame) {
+    const double t = (test::frame_time(frame) - Time{}).seconds();
+    world += tool.random.vector(jitter_m);
+    tool.truth.translation = middle + world + Vector3(0.2 * std::sin(k_rad_s * t), 0, 0);
+    if (loosened && frame > 0) track.loosen(step);
+    if (frame > k_first) {
+      MotionState ahead = track.estimate(*sums);
+      propagate(ahead, test::frame_time(frame), settings.motion, track.noise_scale());
+      squares += (ahead.pose.translation - tool.truth.translation).squaredNorm();
+    }
+    EXPECT_EQ(track.update(seen(tool.truth, frame, tool.random), {}, settings, *sums).reason,
+              Reason::none);
+  }
+  return std::sqrt(squares / (k_frames - k_first - 1));
+}
+
+TEST(ToolMotion, LearnsHowMuchOfADeclaredJitterThereIs) {
+  const double quiet = foretold_within(0, false);
+  EXPECT_LT(foretold_within(0, true), 1.6 * quiet);
+  const double least = std::sqrt(3.0) * 0.01;  // the newest step is foretold by none
+  EXPECT_LT(foretold_within(0.01, true), 1.2 * least);
+  EXPECT_GT(foretold_within(0.01, false), 1.25 * least);
+}
+
 TEST(ToolMotion, StartsAnewAfterALongSilence) {
   Followed tool;
   tool.rest(50);
