@@ -27,6 +27,12 @@ bool area_fits(const Marker& marker, double range_m, const Tool& tool,
   return area <= expected * settings.area_factor + k_area_slack_px;
 }
 
+bool range_fits(double range_m, const CorrespondSettings& settings) {
+  if (settings.range_max_m <= 0) return true;
+  return range_m * k_range_margin >= settings.range_min_m &&
+         range_m <= settings.range_max_m * k_range_margin;
+}
+
 // By tool marker: is `point` within each of the two gates of where it is predicted?
 struct NearMask {
   unsigned near = 0, nearest = 0;
@@ -70,7 +76,7 @@ int select_candidates(const Markers& markers, const Tool& tool, const Correspond
     const double range = centre_range_m(marker, tool);
     const Vector3 point = marker.ray * range;
     if (!(range > 0) || !std::isfinite(point.sum())) continue;
-    if (!area_fits(marker, range, tool, settings)) continue;
+    if (!range_fits(range, settings) || !area_fits(marker, range, tool, settings)) continue;
     const double across = settings.focal_px > 0
                               ? range * settings.pixel_sigma_px / settings.focal_px
                               : settings.range_sigma_m;

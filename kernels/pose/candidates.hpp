@@ -1,8 +1,8 @@
 // The markers that could belong to one tool, as points.
 //
-// What:     leaves out markers without depth and those whose area cannot be the tool's marker at
-//           that range; with a prediction, says which of them lie near which predicted marker, and
-//           puts those that lie near any of them first.
+// What:     leaves out markers without depth, those out of range, and those whose area cannot be
+//           the tool's marker at that range; with a prediction, says which of them lie near which
+//           predicted marker, and puts those that lie near any of them first.
 // Cost:     one pass over the markers, for each of them one over the tool's markers.
 // Worst:    every marker is a candidate.
 // Accuracy: exact.

@@ -281,6 +281,26 @@ TEST(Correspond, LeavesOutMarkersWithoutDepthOrOfAnImpossibleSize) {
   EXPECT_EQ(labelings_of(large, pen, ahat()).items[0].count, 5) << "the border cuts it";
 }
 
+// A small spot on a hand 0.26 m away is as large as a marker one wrap of the ranges behind it.
+TEST(Correspond, LeavesOutMarkersBeyondTheExpectedRange) {
+  const Tool pen = test::five_marker_pen();
+  CorrespondSettings settings = ahat();
+  settings.range_min_m = 0.15;
+  settings.range_max_m = 1.0;
+  const auto found_at = [&](double range_m) {
+    std::vector<Vector3> points;
+    for (int i = 0; i < pen.marker_count; ++i)
+      points.push_back(pen.markers_m[static_cast<std::size_t>(i)] + Vector3(0, 0, range_m));
+    return labelings_of(centres(pen, points), pen, settings);
+  };
+  EXPECT_EQ(found_at(0.6).reason, Reason::none);
+  EXPECT_EQ(found_at(1.31).reason, Reason::too_few_markers);
+  settings.range_max_m = 1.5;
+  EXPECT_EQ(found_at(1.31).reason, Reason::none);
+  settings.range_min_m = 0.8;
+  EXPECT_EQ(found_at(0.3).reason, Reason::too_few_markers);
+}
+
 TEST(Correspond, GivesTheSameBitsEverywhere) {
   Random random(13);
   test::BitHash hash;
