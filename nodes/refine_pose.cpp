@@ -104,17 +104,18 @@ struct FittedLabeling {
   RefinedPose pose;
 };
 
-// Both minima, the better one first. Returns how many there are.
-std::size_t add_readings(const RefinedPose& pose, int labeling, std::span<PoseReading> out) {
+// Both minima, the better one first, with chi-square by the largest noise that there may be.
+// Returns how many there are.
+std::size_t add_readings(const RefinedPose& pose, int labeling, double doubt,
+                         std::span<PoseReading> out) {
   const double cost = pose.left_out >= 0 ? k_left_out_cost : 0;
-  const double most = chi_square_limit(pose.degrees_of_freedom);
-  const double first = pose.chi_square, second = first + pose.other.delta_chi_square;
-  out[0] = {pose.T_camera_tool, pose.covariance, cost + first,
-            pose.surprise,      first <= most,   labeling};
+  const double most = (cost + chi_square_limit(pose.degrees_of_freedom)) / doubt;
+  const double first = (cost + pose.chi_square) / doubt;
+  out[0] = {pose.T_camera_tool, pose.covariance, first, pose.surprise, most, labeling};
   if (!pose.other.exists) return 1;
   const OtherMinimum& other = pose.other;
-  out[1] = {other.T_camera_tool, other.covariance, cost + second,
-            other.surprise,      second <= most,   labeling};
+  const double second = first + other.delta_chi_square / doubt;
+  out[1] = {other.T_camera_tool, other.covariance, second, other.surprise, most, labeling};
   return 2;
 }
 
@@ -126,7 +127,7 @@ bool is_fitted(const RefinedPose& pose) {
 
 void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& labeling,
                      const Labeling& rival, const Prediction& prediction, const MarkerNoise& now,
-                     FittedTool& out) noexcept {
+                     double doubt, FittedTool& out) noexcept {
   std::array<FittedLabeling, 2> fits;
   fits[0].seen = weigh(tool, markers_within(tool, limits), markers, labeling, now);
   out.reason = fits[0].seen.reason;
@@ -153,7 +154,7 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
     counts_[3] += fitted.pose.work.steps;
     counts_[4] += fitted.pose.work.marker_steps;
     if (is_fitted(fitted.pose))
-      count += add_readings(fitted.pose, k, std::span(readings).subspan(count));
+      count += add_readings(fitted.pose, k, doubt, std::span(readings).subspan(count));
   }
   if (count == 0) {
     out.reason = fits[0].pose.reason;
@@ -164,7 +165,7 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
   const PoseReading& reading = readings[static_cast<std::size_t>(chosen.index)];
   const FittedLabeling& best = fits[static_cast<std::size_t>(reading.labeling)];
   const RefinedPose& pose = best.pose;
-  const double chi_square = reading.chi_square - (pose.left_out >= 0 ? k_left_out_cost : 0);
+  const double chi_square = doubt * reading.chi_square - (pose.left_out >= 0 ? k_left_out_cost : 0);
   out.odds = chosen.odds;
   out.turned = chosen.turned;
   out.by_rival = reading.labeling == 1;
@@ -220,12 +221,14 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
   if (out.reason != Reason::none) return;
   double growth = stretched ? chi_square / pose.degrees_of_freedom : 1.0;
   const bool weak = stretched || pose.left_out >= 0 || kept.whole_count() <= k_agree_by_chance_most;
-  // Markers and motion may each pass their own test and fail together. Few markers agree by chance:
-  // they do not end a motion whose odds are settled.
+  // Markers and motion may each pass their own test and fail together. Four markers, of which some
+  // are half hidden, agree by chance as well: one frame of them does not end a motion whose odds
+  // are settled.
   const bool contradicts =
       out.tells_near && !shallow &&
       agreed.chi_square > growth * chi_square_limit(3 * static_cast<int>(kept.count));
-  const bool by_chance = weak && chosen.unexpected && prediction.odds >= k_odds_least;
+  const bool by_chance = chosen.unexpected && prediction.odds >= k_odds_least &&
+                         (weak || kept.count <= k_agree_by_chance_most + 1);
   if (contradicts || by_chance) {
     out.reason = Reason::bad_fit;
     return;
@@ -271,7 +274,8 @@ void RefinePose::operator()(const FrameVerdict& verdict, const Markers& markers,
     out.reason = verdict.usable() ? assignment.reason[i] : verdict.reason;
     if (out.reason == Reason::none)
       fit(set.items[i], markers, assignment.labeling[i], assignment.rival[i], predictions.tools[i],
-          noise_now(predictions.noise, noise), out);
+          noise_now(predictions.noise, noise),
+          estimate_noise ? variance_doubt(predictions.noise, noise) : 1.0, out);
   }
 }
 

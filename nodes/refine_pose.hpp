@@ -42,8 +42,9 @@ struct RefinePose {
   }
   [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
 
-  RefineSettings settings;    // at most the default's steps are taken: worst() counts on these
-  MarkerNoise noise;          // declared: until residuals show it
+  RefineSettings settings;  // at most the default's steps are taken: worst() counts on these
+  MarkerNoise noise;        // declared: until residuals show it
+  bool estimate_noise = true;
   BiasCorrection correction;  // of every tool, where it holds; none unless a cell names one
   CameraUncertainty uncertainty;
   Limits limits;
@@ -70,7 +71,7 @@ struct RefinePose {
   }
   void fit(const Tool& tool, const Markers& markers, const Labeling& labeling,
            const Labeling& rival, const Prediction& prediction, const MarkerNoise& now,
-           FittedTool& out) noexcept GLINT_NONBLOCKING;
+           double doubt, FittedTool& out) noexcept GLINT_NONBLOCKING;
 
   graph::LoopCounts counts_;
 };

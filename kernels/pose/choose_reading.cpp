@@ -13,15 +13,19 @@ bool are_apart(const Pose& one, const Pose& other, const Vector3& tip_m) noexcep
 ChosenReading choose_reading(std::span<const PoseReading> readings, double odds_before,
                              const Vector3& tip_m) noexcept {
   double surprise_most = k_followed_surprise_most;
-  bool follows = false;
+  const PoseReading* followed = nullptr;
   for (const PoseReading& reading : readings) {
-    if (!reading.explained || reading.surprise > surprise_most) continue;
+    const bool expected = reading.surprise > 0;
+    if (!expected || reading.surprise > surprise_most) continue;
     surprise_most = reading.surprise;
-    follows = true;
+    followed = &reading;
   }
   surprise_most += odds_before;
   const auto misfit = [&](const PoseReading& reading) {
-    return reading.chi_square + std::min(reading.surprise, surprise_most);
+    const double chi_square = &reading == followed
+                                  ? std::min(reading.chi_square, reading.explained_most)
+                                  : reading.chi_square;
+    return chi_square + std::min(reading.surprise, surprise_most);
   };
   std::size_t best = 0;
   for (std::size_t i = 1; i < readings.size(); ++i) {
@@ -30,8 +34,8 @@ ChosenReading choose_reading(std::span<const PoseReading> readings, double odds_
   ChosenReading chosen;
   chosen.index = static_cast<int>(best);
   const bool elsewhere = readings[best].surprise > surprise_most;
-  chosen.turned = elsewhere && follows;
-  chosen.unexpected = elsewhere && !follows;
+  chosen.turned = elsewhere && followed != nullptr;
+  chosen.unexpected = elsewhere && followed == nullptr;
   bool alone = true;
   double ahead = k_odds_most;
   for (const PoseReading& reading : readings) {

@@ -24,7 +24,8 @@ namespace glint {
 // Readings whose tip or rotation differ by less are one pose with an error: half of what is gross.
 inline constexpr double k_readings_apart_m = 0.010;
 inline constexpr double k_readings_apart_dot = 0.997888;  // of quaternions: 0.13 rad
-// The reading that was followed has no more surprise than this, and the noise explains it.
+// The reading that was followed has no more surprise than this. Where the noise does not explain
+// it, a hidden part of a marker may: its chi-square counts no more than the noise explains.
 inline constexpr double k_followed_surprise_most = 40;
 // Where a frame shows no other reading, that speaks for the pose, but not much: the true one may be
 // among those that were not looked at.
@@ -34,9 +35,9 @@ struct PoseReading {
   Pose T_camera_tool;
   Matrix6 covariance = Matrix6::Zero();
   double chi_square = 0;
-  double surprise = 0;    // 0 where nothing was expected
-  bool explained = true;  // by the noise
-  int labeling = 0;       // which one it is of
+  double surprise = 0;                          // 0 where nothing was expected
+  double explained_most = k_no_surprise_known;  // the largest chi-square that the noise explains
+  int labeling = 0;                             // which one it is of
 };
 
 struct ChosenReading {

@@ -49,14 +49,30 @@ double variance_of(double sigma) { return sigma * sigma; }
 // The variance of all ranges or pixels; the declared one is worth some residuals.
 double update(const ResidualSum& newest, double declared, double least, double most, bool known,
               ResidualSum& sum) {
-  if (!known) sum = {k_noise_declared_worth * declared, k_noise_declared_worth};
+  if (!known)
+    sum = {k_noise_declared_worth * declared, k_noise_declared_worth, k_noise_declared_worth};
   const double kept = std::max(0.0, 1 - newest.freedom / k_noise_memory);
   sum.squares = kept * sum.squares + newest.squares;
   sum.freedom = kept * sum.freedom + newest.freedom;
+  sum.declared *= kept;
   return std::clamp(sum.squares / sum.freedom, least, most);
 }
 
+// The estimate beside one that begins with the largest variance.
+double doubt_of(const ResidualSum& sum, double sigma, double declared_sigma) {
+  const double open = k_noise_open_worth * sum.declared / k_noise_declared_worth;
+  const double seen = sum.freedom - sum.declared;
+  const double largest = k_noise_variance_open * variance_of(declared_sigma) / variance_of(sigma);
+  return std::max(1.0, (seen + open * largest) / (seen + open));
+}
+
 }  // namespace
+
+double variance_doubt(const NoiseEstimate& estimate, const MarkerNoise& declared) noexcept {
+  if (!estimate.known) return k_noise_variance_open;
+  return std::max(doubt_of(estimate.sums.range, estimate.range_sigma_m, declared.range_sigma_m),
+                  doubt_of(estimate.sums.pixel, estimate.pixel_sigma_px, declared.pixel_sigma_px));
+}
 
 MarkerResiduals residuals_of(std::span<const WeightedMarker> markers,
                              std::span<const MarkerVariance> variances, const Pose& T_camera_tool,

@@ -27,8 +27,9 @@ namespace glint {
 
 // Of ranges in m^2, of pixels in px^2.
 struct ResidualSum {
-  double squares = 0;  // beyond what the markers' own variances explain; may be negative
-  double freedom = 0;  // how many residuals that is worth
+  double squares = 0;   // beyond what the markers' own variances explain; may be negative
+  double freedom = 0;   // how many residuals that is worth
+  double declared = 0;  // of these, the declared noise's
 };
 struct MarkerResiduals {
   ResidualSum range, pixel;
@@ -54,6 +55,16 @@ struct NoiseEstimate {
   double range_sigma_m = 0, pixel_sigma_px = 0;  // by them
   bool known = false;                            // false: no residual yet
 };
+
+// Before there are residuals the variances may be larger than declared by this factor: published
+// HoloLens-class range noise is 1.5 to 5 mm. That counts as so many residuals at most.
+inline constexpr double k_noise_variance_open = 10;
+inline constexpr double k_noise_open_worth = 3;
+
+// By how much the variances may exceed the estimate: k_noise_variance_open before there are
+// residuals, 1 after k_noise_memory.
+[[nodiscard]] double variance_doubt(const NoiseEstimate& estimate,
+                                    const MarkerNoise& declared) noexcept GLINT_NONBLOCKING;
 
 // The declared noise until there are residuals.
 [[nodiscard]] inline MarkerNoise noise_now(const NoiseEstimate& estimate,

@@ -83,6 +83,8 @@ CorrespondSettings correspond_settings(const Cell& cell) {
   settings.range_sigma_m = cell.camera.range_sigma_m;
   settings.pixel_sigma_px = cell.camera.pixel_sigma_px;
   settings.focal_px = cell.camera.model.fx;
+  settings.range_min_m = cell.camera.range_min_m;
+  settings.range_max_m = cell.camera.range_max_m;
   // A smaller labeling is of use only where another tool may hold the missing marker.
   settings.fewer_kept = cell.tools.count > 1 ? 1 : 0;
   return settings;
@@ -121,6 +123,7 @@ void configure_common(const Cell& cell, AnyTracker& tracker) {
   tracker.template for_each<RefinePose>([&](RefinePose& node) {
     node.limits = limits;
     node.noise = noise;
+    node.estimate_noise = cell.camera.estimate_noise;
     node.correction = cell.correction;
     node.uncertainty = cell.camera.uncertainty;
   });

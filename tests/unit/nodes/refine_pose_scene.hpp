@@ -18,6 +18,7 @@ class RefinePoseTest : public testing::Test {
  protected:
   RefinePoseTest() {
     node_.noise = {k_range_sigma_m, k_pixel_sigma_px, 253};
+    node_.estimate_noise = false;
     world_->assignment.reason.fill(Reason::too_few_markers);
   }
 

@@ -274,6 +274,26 @@ TEST_F(RefinePose, IsAmbiguousWhereTheMirroredPoseIsNearlyAsLikelyUntilTheMotion
   EXPECT_GT(apart, 0.5 * k_trials);
 }
 
+// Three markers, 14 degrees from face-on: 3 mm of noise rule the mirrored pose out, 9 mm do not.
+TEST_F(RefinePose, IsAmbiguousUntilTheNoiseIsKnown) {
+  Random random(24);
+  const Tool tool = test::flat_tool();
+  node_.noise.range_sigma_m = 0.003;
+  int at_first = 0, later = 0;
+  constexpr int k_trials = 100;
+  for (int trial = 0; trial < k_trials; ++trial) {
+    start_over();
+    add_tool(0, tool, test::tilted_pose(tool, 0.25, k_place, random), 1, random);
+    forget(0, 3);
+    later += run_one().ambiguous() ? 1 : 0;
+    node_.estimate_noise = true;
+    at_first += run_one().ambiguous() ? 1 : 0;
+    node_.estimate_noise = false;
+  }
+  EXPECT_LT(later, 0.15 * k_trials);
+  EXPECT_GT(at_first, 0.4 * k_trials);
+}
+
 // All four markers whole, but their likeliest pose is surer than their ranges.
 TEST_F(RefinePose, StatesOfAFlatToolFaceOnWhatItsRangesShow) {
   Random random(23);

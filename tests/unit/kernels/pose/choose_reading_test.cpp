@@ -60,16 +60,22 @@ TEST(ChooseReading, GathersEvidenceUpToABound) {
   EXPECT_DOUBLE_EQ(odds, k_odds_most);
 }
 
-TEST(ChooseReading, IsUnexpectedWhereTheFollowedReadingIsMissingOrNotExplained) {
-  PoseReading torn = reading_of(0, 300, 5);
-  torn.explained = false;
+TEST(ChooseReading, IsUnexpectedWhereTheFollowedReadingIsMissing) {
   const ChosenReading missing = chosen_of({reading_of(0.7, 3, 2500)});
-  const ChosenReading chosen = chosen_of({torn, reading_of(0.7, 3, 2500)});
-  for (const ChosenReading& one : {missing, chosen}) {
-    EXPECT_TRUE(one.unexpected);
-    EXPECT_FALSE(one.turned);
-  }
-  EXPECT_EQ(chosen.index, 1);
+  EXPECT_TRUE(missing.unexpected);
+  EXPECT_FALSE(missing.turned);
+}
+
+TEST(ChooseReading, CountsOfAFollowedReadingNoMoreThanTheNoiseExplains) {
+  PoseReading torn = reading_of(0, 300, 5);
+  torn.explained_most = 20;
+  const ChosenReading settled = chosen_of({torn, reading_of(0.7, 3, 2500)});
+  EXPECT_EQ(settled.index, 0);
+  EXPECT_DOUBLE_EQ(settled.odds, (3 + 5 + 40) - (20 + 5));
+  const ChosenReading doubtful = chosen_of({torn, reading_of(0.7, 3, 2500)}, 5);
+  EXPECT_EQ(doubtful.index, 1) << "the other one by 12";
+  EXPECT_TRUE(doubtful.turned);
+  EXPECT_DOUBLE_EQ(doubtful.odds, 12);
 }
 
 TEST(ChooseReading, WithoutAnotherReadingIsSurerFrameByFrame) {

@@ -111,6 +111,23 @@ TEST_F(NoiseEstimateTest, StaysWithinItsLimits) {
   EXPECT_EQ(loud.pixel_sigma_px, k_pixel_sigma_most_px);
 }
 
+// Five times the declared sigma is found from the same residuals as the declared one.
+TEST_F(NoiseEstimateTest, DoubtsTheDeclaredNoiseUntilThereAreResiduals) {
+  EXPECT_EQ(variance_doubt({}, k_declared), k_noise_variance_open);
+  const MarkerNoise loud{5 * k_declared.range_sigma_m, 5 * k_declared.pixel_sigma_px};
+  for (const MarkerNoise& truth : {k_declared, loud}) {
+    double doubt = k_noise_variance_open;
+    for (const int frames : {1, 5, 30, 900}) {
+      const NoiseEstimate found = after(frames, test::flat_tool(), truth, {}, 9);
+      const double now = variance_doubt(found, k_declared);
+      EXPECT_GE(now, 1);
+      EXPECT_LE(now, 1.3 * doubt) << frames;
+      doubt = now;
+    }
+    EXPECT_NEAR(doubt, 1, 0.01);
+  }
+}
+
 TEST_F(NoiseEstimateTest, LearnsNothingFromMarkersThatFixNoPose) {
   const std::vector<WeightedMarker> one(1);
   const MarkerResiduals found =
