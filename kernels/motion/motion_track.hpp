@@ -2,7 +2,8 @@
 //
 // What:     a Kalman filter under damped accelerations whose process noise follows the innovations,
 //           not below a floor; as long as the rest window holds, its mean is the pose and the tool
-//           stands still, or drifts as its halves say.
+//           stands still, or drifts as its halves say. What loosen() adds counts by a factor that
+//           follows the correlation of successive innovations.
 // Cost:     propagate + correct + rest window: 11 us a measured pose.
 // Worst:    a full rest window; nothing else depends on the input.
 // Accuracy: by simulation: `glint experiment rest | lag | sine | prediction | occlusion`.
