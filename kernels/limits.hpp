@@ -4,8 +4,8 @@
 
 namespace glint {
 
-inline constexpr int k_width_max = 512;  // AHAT: 512 x 512
-inline constexpr int k_height_max = 512;
+inline constexpr int k_width_max = 1024;  // Azure Kinect, wide: 1024 x 1024
+inline constexpr int k_height_max = 1024;
 inline constexpr int k_tools_max = 16;
 inline constexpr int k_markers_per_tool_max = 8;
 inline constexpr int k_blobs_max = 256;

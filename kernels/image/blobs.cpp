@@ -36,19 +36,19 @@ void judge_candidates(const Frame& frame, const BlobSettings& settings, BlobScra
 // Sorts the candidates by rows: top first, then left first, then by their first run. A key has its
 // box's corner above its place in the list.
 void sort_by_rows(BlobScratch& scratch, int candidates) {
-  static_assert(k_width_max <= 1 << 9 && k_height_max <= 1 << 9 && k_blobs_max <= 1 << 14);
+  static_assert(k_width_max <= 1 << 10 && k_height_max <= 1 << 10 && k_blobs_max <= 1 << 12);
   std::array<std::uint32_t, k_blobs_max> keys, spare;
   std::array<Index, k_blobs_max> unsorted;
   for (int i = 0; i < candidates; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const Component& component = scratch.components[scratch.candidate[at]];
-    keys[at] = static_cast<std::uint32_t>(component.y0) << 23 |
-               static_cast<std::uint32_t>(component.x0) << 14 | static_cast<std::uint32_t>(i);
+    keys[at] = static_cast<std::uint32_t>(component.y0) << 22 |
+               static_cast<std::uint32_t>(component.x0) << 12 | static_cast<std::uint32_t>(i);
     unsorted[at] = scratch.candidate[at];
   }
   merge_sort(keys, spare, candidates);
   for (std::size_t i = 0; i < static_cast<std::size_t>(candidates); ++i) {
-    scratch.candidate[i] = unsorted[keys[i] & ((1u << 14) - 1)];
+    scratch.candidate[i] = unsorted[keys[i] & ((1u << 12) - 1)];
   }
 }
 

@@ -69,7 +69,7 @@ Centroid binary(const ImageView<Pixel>& image, const BlobScratch& scratch,
 // plain(): the plain mean, for a blob that is no brighter than what surrounds it.
 template <class Plain>
 Centroid from_sums(const GrownSums& total, const Component& component, Plain plain) {
-  // (I - dark / dark_pixels), times dark_pixels: at most 65535 * 64^2 * 64^2 * 1024 < 2^51.
+  // (I - dark / dark_pixels), times dark_pixels: at most 65535 * 64^2 * 64^2 * 2048 < 2^52.
   const std::int64_t n = std::max<std::int64_t>(total.dark_pixels, 1);
   const std::int64_t weight = total.weight * n - total.dark * total.pixels;
   Centroid out;

@@ -11,40 +11,40 @@
 namespace glint {
 namespace {
 
-// In half pixels: a middle is from 0 to 1024, so that none is further from a prediction than 1536.
-constexpr int k_nearest = -512, k_farthest = 1536;
-constexpr std::int32_t k_too_far = 1 << 23;
-static_assert(2 * std::max(k_width_max, k_height_max) - k_nearest <= 1536);
-static_assert(2 * 1536 * 1536 < k_too_far);
-constexpr int k_at_once = 16;  // distances compared in one round
+// In half pixels. A middle is inside the frame, a prediction at most a quarter of it outside.
+constexpr int k_frame = 2 * std::max(k_width_max, k_height_max);
+constexpr int k_nearest = -k_frame / 4, k_farthest = k_frame + k_frame / 4;
+static_assert(k_farthest <= INT16_MAX && 2 * k_farthest * k_farthest < 1 << 24);
+constexpr std::int32_t k_far = (1 << 23) - 1;  // squared: what is further apart counts as this
+constexpr int k_at_once = 16;                  // distances compared in one round
 // Each step of misfit doubles a distance, which is squared.
 constexpr int k_bits_a_misfit = 2;
 constexpr std::int32_t k_last = INT32_MAX;
-static_assert((std::int64_t{2} * 1536 * 1536 << k_bits_a_misfit * k_misfit_max) + 1 < k_last);
+static_assert((std::int64_t{k_far} << k_bits_a_misfit * k_misfit_max) + 1 < k_last);
 constexpr std::uint8_t k_stays = 0x80;  // in the place of a misfit: kept already
 
-// The smaller of numbers up to k_too_far: in the place of a float's fraction they are in the order
-// of the floats, for which every x86-64 has an instruction that chooses.
+// The smallest of k_far and numbers below 2^24. Added to the bits of 2^23 they are floats in the
+// same order, for which every x86-64 has an instruction that chooses.
 class Least {
  public:
   void see(Sums other) {
 #ifdef GLINT_SSE2
-    least_ = _mm_min_ps(least_, reinterpret_cast<__m128>(other | k_exponent));
+    least_ = _mm_min_ps(least_, reinterpret_cast<__m128>(other + k_exponent));
 #else
     least_ = other < least_ ? other : least_;
 #endif
   }
 #ifdef GLINT_SSE2
-  [[nodiscard]] Sums value() const { return reinterpret_cast<Sums>(least_) ^ k_exponent; }
+  [[nodiscard]] Sums value() const { return reinterpret_cast<Sums>(least_) - k_exponent; }
 
  private:
   static constexpr Sums k_exponent = Sums{} + 0x4B000000;  // of 2^23
-  __m128 least_ = reinterpret_cast<__m128>((Sums{} + k_too_far) | k_exponent);
+  __m128 least_ = reinterpret_cast<__m128>((Sums{} + k_far) + k_exponent);
 #else
   [[nodiscard]] Sums value() const { return least_; }
 
  private:
-  Sums least_ = Sums{} + k_too_far;
+  Sums least_ = Sums{} + k_far;
 #endif
 };
 

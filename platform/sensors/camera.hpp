@@ -45,7 +45,9 @@ struct Camera {
 [[nodiscard]] Camera hololens2_ahat();
 
 // HoloLens 2 long throw: 320 x 288, radial; no lens and no threshold of its own.
-// Azure Kinect and Femto Bolt, binned: 512 x 512 wide, 320 x 288 narrow; z depth; neither, too.
+// Azure Kinect and Femto Bolt: 1024 x 1024 wide, 640 x 576 narrow, binned 512 x 512 and 320 x 288;
+// z depth; neither, too.
+// Magic Leap 2: 544 x 480, its short range, radial; neither, too.
 // generic: z depth in millimetres, 16 bits; the cell has to state its size as well.
 [[nodiscard]] std::optional<Camera> camera_named(std::string_view name);
 // "hololens2_ahat, hololens1_short_throw, ...".

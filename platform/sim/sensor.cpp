@@ -1,5 +1,6 @@
 #include "platform/sim/sensor.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernels/limits.hpp"
@@ -9,6 +10,7 @@ namespace glint::sim {
 namespace {
 
 constexpr int k_table_starts = 1 << 16;  // 256 kB: stays in the second-level cache
+constexpr int k_table_row = 512;         // of it, at least: the same table for every smaller camera
 
 float lesser(float a, float b) { return a < b ? a : b; }
 float greater(float a, float b) { return a > b ? a : b; }
@@ -66,7 +68,8 @@ Sensor::Sensor(const Camera& camera, const NoiseSettings& noise, std::uint64_t s
     : camera_(camera),
       noise_(noise),
       seed_(seed),
-      table_(gaussian_table({seed, Stream::noise_table}, k_table_starts + k_width_max)) {}
+      table_(gaussian_table({seed, Stream::noise_table},
+                            k_table_starts + std::max(k_table_row, camera.model.width))) {}
 
 void Sensor::expose(const Planes& planes, const LensRays& rays, std::uint64_t sequence,
                     FrameBuffer& out) const {

@@ -1,5 +1,5 @@
 // Two chains with budgets and a board that prices them: the tick takes 1,000 ns, the frame's nodes
-// at the largest limits 2,621 ns (262,144 pixels at 10 ps) and 1,600 ns (16 tools at 100 ns).
+// at k_limits 2,621 ns (262,144 pixels at 10 ps) and 1,600 ns (16 tools at 100 ns).
 #pragma once
 
 #include "schedules/fits.hpp"
@@ -35,6 +35,7 @@ struct Send {
   void operator()(const Now&, Sent&) noexcept {}
 };
 
+inline constexpr Limits k_limits{.width = 512, .height = 512};
 inline constexpr std::array<KernelCost, 3> k_costs = {{
     {"FindSpots", {"call", "pixels"}, {0, 10}},
     {"FitSpots", {"call", "tools"}, {0, 100'000}},

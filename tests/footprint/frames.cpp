@@ -15,13 +15,13 @@ constexpr std::uint32_t k_worst_every = 128;
 constexpr std::uint16_t k_bright = 4000;
 constexpr std::uint16_t k_half_a_metre = 500;  // depth in millimetres
 
-PlayedFrame painted(const std::function<bool(int x, int y)>& bright) {
+PlayedFrame painted(const CameraModel& camera, const std::function<bool(int x, int y)>& bright) {
   PlayedFrame frame;
   FrameBuffer& pixels = frame.pixels;
-  pixels.width = k_width_max;
-  pixels.height = k_height_max;
-  for (int y = 0; y < k_height_max; ++y) {
-    for (int x = 0; x < k_width_max; ++x) {
+  pixels.width = camera.width;
+  pixels.height = camera.height;
+  for (int y = 0; y < camera.height; ++y) {
+    for (int x = 0; x < camera.width; ++x) {
       pixels.reflectivity_16.push_back(bright(x, y) ? k_bright : 0);
       pixels.depth.push_back(k_half_a_metre);
     }
@@ -48,11 +48,12 @@ Play make_play() {
     simulator.render(i, rendered);
     play.crowd.push_back({rendered.pixels, rendered.head});
   }
+  const CameraModel& camera = play.cell.camera.model;
   // One run every second pixel; all of it bright; nothing; discs enough to fill every blob.
-  play.worst.push_back(painted([](int x, int y) { return (x + y) % 2 == 0; }));
-  play.worst.push_back(painted([](int, int) { return true; }));
-  play.worst.push_back(painted([](int, int) { return false; }));
-  play.worst.push_back(painted([](int x, int y) {
+  play.worst.push_back(painted(camera, [](int x, int y) { return (x + y) % 2 == 0; }));
+  play.worst.push_back(painted(camera, [](int, int) { return true; }));
+  play.worst.push_back(painted(camera, [](int, int) { return false; }));
+  play.worst.push_back(painted(camera, [](int x, int y) {
     const int dx = x % 24 - 12, dy = y % 24 - 12;
     return dx * dx + dy * dy <= 36;
   }));

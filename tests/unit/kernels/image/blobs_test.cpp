@@ -274,6 +274,27 @@ TEST(Blobs, ComeByRowsThenFromLeft) {
   EXPECT_EQ(find(Picture(8, 8)).count, 0);
 }
 
+// Of the largest frame: each corner, and what lies beside and beneath the middle.
+TEST(Blobs, ComeByRowsThenFromLeftInTheLargestFrame) {
+  Finder find;
+  find.bands = 2;
+  Picture wide(k_width_max, k_height_max);
+  const std::vector<std::pair<int, int>> places = {// row, column
+                                                   {0, 0},      {0, 511},  {0, 513},
+                                                   {0, 1023},   {511, 3},  {513, 1},
+                                                   {513, 1020}, {1023, 0}, {1023, 1023}};
+  for (const auto& [y, x] : places) wide(x, y) = 1000;
+  const Blobs& blobs = find(wide);
+  ASSERT_EQ(blobs.count, static_cast<int>(places.size()));
+  for (int i = 0; i < blobs.count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    EXPECT_EQ(blobs.items[at].y0, places[at].first);
+    EXPECT_EQ(blobs.items[at].x0, places[at].second);
+    EXPECT_EQ(blobs.items[at].centroid_px,
+              Vector2(places[at].second + 0.5, places[at].first + 0.5));
+  }
+}
+
 TEST(Blobs, SayThatAnotherLiesTwoPixelsBesideThem) {
   for (const int gap : {1, 2, 3}) {
     Picture p(60, 40);

@@ -44,13 +44,13 @@ struct Candidates {
     return {0.5 * (c.x0 + c.x1), 0.5 * (c.y0 + c.y1)};
   }
 
-  // A plain sort by the distance of the box's middle in whole half pixels, doubled by each step of
-  // misfit, then by place.
+  // A plain sort by the distance of the box's middle in whole half pixels, alike beyond 2^23 - 1
+  // squared, doubled by each step of misfit, then by place.
   [[nodiscard]] std::vector<int> sorted(const std::vector<Vector2>& predicted_px, int kept) const {
     std::vector<long> distance;
     for (int i = 0; i < count; ++i) {
       const Component& c = scratch->components[static_cast<std::size_t>(i)];
-      long least = std::numeric_limits<long>::max();
+      long least = (1 << 23) - 1;
       for (const Vector2& p : predicted_px) {
         const long dx = c.x0 + c.x1 - static_cast<long>(2 * p.x());
         const long dy = c.y0 + c.y1 - static_cast<long>(2 * p.y());
@@ -75,7 +75,8 @@ TEST(NearestKept, AreThoseOfAPlainSort) {
   const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
   for (int round = 0; round < 300; ++round) {
     Candidates candidates;
-    const int field = round % 3 == 0 ? 20 : 500;  // a small one has many equal distances
+    // A small one has many equal distances, a large one some that are alike.
+    const int field = round % 3 == 0 ? 20 : round % 3 == 1 ? 500 : 1010;
     const int count = 2 + below(600);
     for (int i = 0; i < count; ++i) {
       const int x = below(field), y = below(field), misfit = round % 2 * below(5);
@@ -184,6 +185,11 @@ TEST(NearestKept, AreInOrderAtTheLargestDistance) {
   Candidates candidates;
   for (int i = 0; i < 6; ++i) candidates.add(511 - i, 511);
   EXPECT_EQ(candidates.keep({{-1e5, -1e5}}, 2), (std::vector<int>{4, 5}));
+  Candidates wide;
+  for (int i = 0; i < 6; ++i) wide.add(1023 - i, 1023, 1, 1, k_misfit_max);
+  wide.add(1, 1, 1, 1, k_misfit_max);
+  EXPECT_EQ(wide.keep({{1e5, 1e5}}, 6), (std::vector<int>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(wide.keep({{-1e5, -1e5}}, 1), (std::vector<int>{6}));
 }
 
 TEST(NearestKept, LookAtNoMorePredictionsThanToolsHaveMarkers) {

@@ -31,7 +31,7 @@ TEST(SizeGate, IsWideOpenForNonsense) {
   for (const SizeGate& gate : {size_gate(0, 0.2, 1, 253), size_gate(0.006, 0, 1, 253),
                                size_gate(0.006, 1, 0.2, 253), size_gate(NAN, 0.2, 1, 253)}) {
     EXPECT_EQ(gate.min_area_px, 1u);
-    EXPECT_EQ(gate.max_area_px, 512u * 512u);
+    EXPECT_EQ(gate.max_area_px, 1024u * 1024u);
   }
 }
 

@@ -109,7 +109,7 @@ TEST_F(FrameLoopFile, NamesTheByteThatIsWrong) {
       refused_with(0, 'X'),
       file_ + ":byte 0: no loop of frames; expected GLNTLOOP, as glint_board_frames writes it");
   EXPECT_EQ(refused_with(8, 2), file_ + ":byte 8: layout 2; expected 1");
-  EXPECT_EQ(refused_with(13, 9), file_ + ":byte 12: width 2309; expected 1 to 512");
+  EXPECT_EQ(refused_with(13, 9), file_ + ":byte 12: width 2309; expected 1 to 1024");
   EXPECT_EQ(refused_with(20, 12), file_ + ":byte 20: bits 12; expected 8 or 16");
   EXPECT_NE(refused_with(28, 4).find("bytes for 4 frames"), std::string::npos);
 }

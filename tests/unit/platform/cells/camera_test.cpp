@@ -155,7 +155,7 @@ TEST(CellCamera, RefusesWhatNoCameraHas) {
         std::pair{"[camera]\nreflectivity_bits = 8\n", "threshold"},
         std::pair{"[camera]\ndepth = \"planar\"\n", "radial"},
         std::pair{"[camera]\nrange_mm = [900, 200]\n", "no range"},
-        std::pair{"[camera]\nwidth = 640\n", "512"},
+        std::pair{"[camera]\nwidth = 1025\n", "1024"},
         std::pair{"[camera]\nperiod_ms = 0\n", "period_ms"}}) {
     EXPECT_NE(complaint_about(text).find(part), std::string::npos) << text << complaint_about(text);
   }

@@ -107,14 +107,16 @@ TEST(Cameras, AreNamedAndHaveALensOrNone) {
     EXPECT_TRUE(has_lens(*camera_named(name))) << name;
     EXPECT_GT(camera_named(name)->threshold, 0) << name;
   }
-  for (const char* name : {"hololens2_long_throw", "azure_kinect_wfov_binned",
-                           "azure_kinect_nfov_binned", "generic"}) {
+  for (const char* name :
+       {"hololens2_long_throw", "azure_kinect_wfov_binned", "azure_kinect_nfov_binned",
+        "azure_kinect_wfov", "azure_kinect_nfov", "magic_leap2", "generic"}) {
     EXPECT_FALSE(has_lens(*camera_named(name))) << name;
     EXPECT_EQ(camera_named(name)->threshold, 0) << name;
     EXPECT_NE(camera_names().find(name), std::string::npos);
   }
   EXPECT_EQ(camera_named("azure_kinect_nfov_binned")->depth.kind, DepthKind::z);
   EXPECT_EQ(camera_named("hololens2_long_throw")->depth.kind, DepthKind::radial);
+  EXPECT_EQ(camera_named("magic_leap2")->depth.kind, DepthKind::radial);
 }
 
 // A camera without a lens of its own gets a place for the search to begin.

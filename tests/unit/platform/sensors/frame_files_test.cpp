@@ -88,7 +88,7 @@ TEST(FrameFiles, RefusePicturesThatAreNotSixteenBitPgm) {
       {"P2 2 1 65535 1 2", "does not begin with P5"},
       {"P5 2 1 255 ab", "255; expected a maxval for 16 bits"},
       {"P5 2 1 70000 abcd", "70000; expected a maxval"},
-      {"P5 513 1 65535 ", "513; expected a width from 1 to 512"},
+      {"P5 1025 1 65535 ", "1025; expected a width from 1 to 1024"},
       {"P5 0 1 65535 ", "0; expected a width"},
       {"P5 2 x", "no number; expected a height"},
       {"P5 2 1 65535 abc", "3 bytes of pixels; expected 4"},
