@@ -7,8 +7,8 @@
 #include "platform/boards/worst_frames.hpp"
 #include "platform/exit_code.hpp"
 #include "platform/input_error.hpp"
-#include "platform/session/scenario_of.hpp"
 #include "platform/sim/simulator.hpp"
+#include "platform/sources/scenario_of.hpp"
 
 namespace glint {
 namespace {

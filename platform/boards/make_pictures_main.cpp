@@ -8,7 +8,7 @@
 #include "platform/exit_code.hpp"
 #include "platform/input_error.hpp"
 #include "platform/sensors/npy.hpp"
-#include "platform/session/scenario_of.hpp"
+#include "platform/sources/scenario_of.hpp"
 
 namespace glint {
 namespace {

@@ -12,9 +12,9 @@
 #include "platform/cells/tool_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/session/frame_source.hpp"
-#include "platform/session/recorded_frames.hpp"
-#include "platform/session/replay_points.hpp"
 #include "platform/sim/trajectory.hpp"
+#include "platform/tools/recorded_frames.hpp"
+#include "platform/tools/replay_points.hpp"
 
 namespace glint {
 namespace {

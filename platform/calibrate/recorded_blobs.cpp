@@ -8,8 +8,8 @@
 #include "platform/input_error.hpp"
 #include "platform/record/recording_reader.hpp"
 #include "platform/session/recorded_cell.hpp"
-#include "platform/session/recorded_frames.hpp"
 #include "platform/sources/open_source.hpp"
+#include "platform/tools/recorded_frames.hpp"
 
 namespace glint {
 namespace {

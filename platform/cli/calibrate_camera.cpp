@@ -13,8 +13,8 @@
 #include "platform/input_error.hpp"
 #include "platform/sensors/camera.hpp"
 #include "platform/sensors/npy.hpp"
-#include "platform/session/recorded_frames.hpp"
 #include "platform/sources/open_source.hpp"
+#include "platform/tools/recorded_frames.hpp"
 
 namespace glint {
 namespace {

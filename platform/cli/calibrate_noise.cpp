@@ -9,7 +9,7 @@
 #include "platform/cli/output_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/report/plots.hpp"
-#include "platform/session/recorded_frames.hpp"
+#include "platform/tools/recorded_frames.hpp"
 
 namespace glint {
 namespace {

@@ -14,7 +14,7 @@
 #include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
 #include "platform/session/frame_source.hpp"
-#include "platform/session/recorded_frames.hpp"
+#include "platform/tools/recorded_frames.hpp"
 
 namespace glint {
 namespace {

@@ -16,8 +16,8 @@
 #include "platform/input_error.hpp"
 #include "platform/part_file.hpp"
 #include "platform/printable.hpp"
-#include "platform/session/frame_export.hpp"
 #include "platform/sources/open_source.hpp"
+#include "platform/tools/frame_export.hpp"
 
 namespace glint {
 namespace {

@@ -23,10 +23,10 @@
 #include "platform/printable.hpp"
 #include "platform/report/picture.hpp"
 #include "platform/sensors/frame_files.hpp"
-#include "platform/session/diagnosis.hpp"
 #include "platform/session/pipeline.hpp"
-#include "platform/session/recorded_frames.hpp"
 #include "platform/sources/open_source.hpp"
+#include "platform/tools/diagnosis.hpp"
+#include "platform/tools/recorded_frames.hpp"
 
 namespace glint {
 namespace {

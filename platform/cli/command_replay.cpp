@@ -12,9 +12,9 @@
 #include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
-#include "platform/session/label_path.hpp"
 #include "platform/session/replay.hpp"
-#include "platform/session/replay_points.hpp"
+#include "platform/tools/label_path.hpp"
+#include "platform/tools/replay_points.hpp"
 
 namespace glint {
 namespace {

@@ -28,11 +28,11 @@
 #include "platform/programming/key_buttons.hpp"
 #include "platform/programming/key_terminal.hpp"
 #include "platform/session/node_probe.hpp"
-#include "platform/session/recorded_frames.hpp"
 #include "platform/session/simulated_run.hpp"
 #include "platform/sources/open_live_source.hpp"
 #include "platform/sources/open_source.hpp"
 #include "platform/stop_signals.hpp"
+#include "platform/tools/recorded_frames.hpp"
 
 namespace glint {
 namespace {
@@ -148,6 +148,10 @@ int run(const RunArguments& arguments) {
 // The options that both commands have.
 void add_common(CLI::App& command, RunArguments& arguments) {
   add_cell_option(command, arguments.config);
+  command
+      .add_option("--duration", arguments.duration_s,
+                  "seconds, instead of the cell's or of all recorded frames")
+      ->check(in_range(0.1, 3600.0));
   command.add_option("--out", arguments.out, "folder of all files written")->capture_default_str();
   command.add_option("--json", arguments.json, "write the table's figures here");
   command.add_option("--can", arguments.can, "log:FILE or socketcan:IF, instead of the cell's");
@@ -176,8 +180,6 @@ void add_run(CLI::App& app, int& exit_code) {
       "Tools that this sensor cannot tell apart are refused; of those that it may confuse, and of\n"
       "a tool's markers that may pass for others of its own, the table warns: `this cell`.");
   add_common(*command, *arguments);
-  command->add_option("--duration", arguments->duration_s, "seconds, instead of the cell's")
-      ->check(in_range(0.1, 3600.0));
   command->add_option("--board", arguments->board, "costs: a built-in board or a board file");
   command->add_option("--plan", arguments->plan, "who runs what: of `glint budget schedule`");
   command

@@ -18,8 +18,8 @@
 #include "platform/record/trajectory_files.hpp"
 #include "platform/sensors/frame_files.hpp"
 #include "platform/session/recorded_cell.hpp"
-#include "platform/session/scenario_of.hpp"
 #include "platform/sim/simulator.hpp"
+#include "platform/sources/scenario_of.hpp"
 
 namespace glint {
 namespace {

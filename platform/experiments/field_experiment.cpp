@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "kernels/angles.hpp"
-#include "platform/session/scenario_of.hpp"
 #include "platform/session/simulated_run.hpp"
+#include "platform/sources/scenario_of.hpp"
 
 namespace glint {
 namespace {

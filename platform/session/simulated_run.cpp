@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "platform/mapping/depth_png.hpp"
-#include "platform/session/scenario_of.hpp"
-#include "platform/session/seed_method.hpp"
-#include "platform/session/simulated_source.hpp"
+#include "platform/seed/seed_method.hpp"
+#include "platform/sources/scenario_of.hpp"
+#include "platform/sources/simulated_source.hpp"
 
 namespace glint {
 

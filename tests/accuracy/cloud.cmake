@@ -4,5 +4,5 @@ glint_test(test_smoothing_accuracy smoothing_test.cpp LIBS glint_kernels LABELS 
 if(NOT GLINT_BOARD_ONLY)
   glint_test(glint_accuracy_test probe_points_test.cpp robot_cloud_test.cpp
     ../unit/platform/mapping/map_halves_test.cpp
-    LIBS glint_experiments glint_mapping glint_session LABELS accuracy)
+    LIBS glint_experiments glint_mapping glint_session glint_tools LABELS accuracy)
 endif()

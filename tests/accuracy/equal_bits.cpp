@@ -10,8 +10,8 @@
 
 #include "platform/record/sha256.hpp"
 #include "platform/session/replay.hpp"
-#include "platform/session/scenario_of.hpp"
 #include "platform/sim/simulator.hpp"
+#include "platform/sources/scenario_of.hpp"
 
 namespace glint {
 namespace {

@@ -16,7 +16,7 @@
 #include "kernels/pose/rigid_fit.hpp"
 #include "platform/sensors/c3d_reader.hpp"
 #include "platform/sensors/points_csv.hpp"
-#include "platform/session/replay_points.hpp"
+#include "platform/tools/replay_points.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
 
 namespace glint {

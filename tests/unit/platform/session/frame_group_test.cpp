@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "nodes/overrun_effects.hpp"
-#include "platform/session/scenario_of.hpp"
 #include "platform/sim/simulator.hpp"
+#include "platform/sources/scenario_of.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
 
 namespace glint {

@@ -7,7 +7,7 @@
 
 #include "platform/session/release_order.hpp"
 #include "platform/session/session_groups.hpp"
-#include "platform/session/simulated_source.hpp"
+#include "platform/sources/simulated_source.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
 
 namespace glint {

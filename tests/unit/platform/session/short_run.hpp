@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <string>
 
-#include "platform/session/scenario_of.hpp"
 #include "platform/session/simulated_run.hpp"
+#include "platform/sources/scenario_of.hpp"
 
 namespace glint {
 

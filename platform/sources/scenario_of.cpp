@@ -1,4 +1,4 @@
-#include "platform/session/scenario_of.hpp"
+#include "platform/sources/scenario_of.hpp"
 
 #include <vector>
 

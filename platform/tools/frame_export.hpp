@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kernels/wire/pose_sample.hpp"
-#include "platform/session/recorded_frames.hpp"
+#include "platform/tools/recorded_frames.hpp"
 
 namespace glint {
 

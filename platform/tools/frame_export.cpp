@@ -1,4 +1,4 @@
-#include "platform/session/frame_export.hpp"
+#include "platform/tools/frame_export.hpp"
 
 #include <cstdint>
 #include <map>
@@ -7,8 +7,8 @@
 #include "kernels/pose/lever_arm.hpp"
 #include "platform/input_error.hpp"
 #include "platform/record/trajectory_files.hpp"
-#include "platform/session/scenario_of.hpp"
 #include "platform/sim/simulator.hpp"
+#include "platform/sources/scenario_of.hpp"
 
 namespace glint {
 namespace {

@@ -1,4 +1,4 @@
-#include "platform/session/replay_points.hpp"
+#include "platform/tools/replay_points.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -7,7 +7,7 @@
 #include "kernels/pose/correspond.hpp"
 #include "platform/cells/tool_file.hpp"
 #include "platform/sensors/points_csv.hpp"
-#include "platform/session/label_path.hpp"
+#include "platform/tools/label_path.hpp"
 
 namespace glint {
 namespace {

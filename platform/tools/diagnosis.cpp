@@ -1,4 +1,4 @@
-#include "platform/session/diagnosis.hpp"
+#include "platform/tools/diagnosis.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,6 @@
-#include "platform/session/seed_method.hpp"
+#include "platform/seed/seed_method.hpp"
+
+#include "platform/session/choices.hpp"
 
 namespace glint {
 namespace {
@@ -34,8 +36,7 @@ SeedMethod::SeedMethod(const Cell& cell) : seed_(cell.camera, cell.tools.items[0
 }
 
 const Estimates& SeedMethod::process(const ArrivedFrame& arrived) {
-  FrameStamp stamp{arrived.frame.mid_exposure, arrived.frame.arrival, arrived.frame.sequence,
-                   Reason::none};
+  const FrameStamp stamp = overrun_stamp(arrived.frame);
   FrameVerdict verdict;
   check_(stamp, verdict);
 

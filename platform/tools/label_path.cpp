@@ -1,4 +1,4 @@
-#include "platform/session/label_path.hpp"
+#include "platform/tools/label_path.hpp"
 
 #include <algorithm>
 #include <array>

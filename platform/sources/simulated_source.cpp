@@ -1,4 +1,4 @@
-#include "platform/session/simulated_source.hpp"
+#include "platform/sources/simulated_source.hpp"
 
 #include <algorithm>
 #include <chrono>

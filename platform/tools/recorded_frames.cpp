@@ -1,4 +1,4 @@
-#include "platform/session/recorded_frames.hpp"
+#include "platform/tools/recorded_frames.hpp"
 
 #include <algorithm>
 #include <cstdint>
