@@ -30,6 +30,7 @@ struct StampFrame {
 
   void operator()(const Frame& frame, FrameStamp& stamp) const noexcept {
     stamp.mid_exposure = frame.mid_exposure;
+    stamp.sigma = frame.stamp_sigma;
     stamp.arrival = frame.arrival;
     stamp.sequence = frame.sequence;
     const bool plane_there =

@@ -81,7 +81,9 @@ void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& es
                          track.head_covariance;
     Vector6 twist;
     twist << moving.velocity_m_s, moving.angular_velocity_rad_s;
-    const double stamp_s2 = settings.stamp_sigma_s * settings.stamp_sigma_s;
+    const double clock_s = track.stamp_sigma.seconds();
+    const double stamp_s2 = settings.stamp_sigma_s * settings.stamp_sigma_s + clock_s * clock_s;
+    sample.age_sigma_s = std::sqrt(stamp_s2);
     Matrix6 systematic = track.calibration_covariance + track.correlated_covariance +
                          stamp_s2 * twist.lazyProduct(twist.transpose());
     sample.frame = track.base;

@@ -30,7 +30,7 @@ struct PredictSettings {
   Duration actuation_delay = {};               // the pose is for tick + this
   MotionSettings motion;                       // as those that the estimates were followed with
   Matrix6 robot_covariance = Matrix6::Zero();  // of T_world_robot, about its base
-  double stamp_sigma_s = 0;                    // of a frame's mid-exposure
+  double stamp_sigma_s = 0;                    // of a frame's mid-exposure, beside the frame's own
 };
 
 struct PredictTools {

@@ -30,6 +30,7 @@ inline constexpr int k_tools_per_slice = (k_tools_max + k_tool_slices - 1) / k_t
 // What is known of a frame without its pixels.
 struct FrameStamp {
   Time mid_exposure;
+  Duration sigma;  // of mid_exposure, as the frame states it
   Time arrival;
   std::uint64_t sequence = 0;
   Reason reason = Reason::none;  // frame_invalid: wrong size, or a plane is missing
@@ -180,6 +181,7 @@ struct Track {
   ReferenceFrame base = ReferenceFrame::camera;
   std::uint8_t marker_mask = 0;
   std::uint64_t frame_sequence = 0;
+  Duration stamp_sigma;          // of newest.time, as the frame stated it
   std::uint32_t identity = 0;    // of the tool that it is of
   double rms_m = 0;              // of the newest that three markers or more gave
   StampedPose newest, previous;  // T_base_tool

@@ -36,6 +36,7 @@ void accept(const FittedTool& found, const FollowedTool& followed, const Tool& t
   track.reason = Reason::none;
   track.marker_mask = found.marker_mask;
   track.frame_sequence = stamp.sequence;
+  track.stamp_sigma = stamp.sigma;
   track.rms_m = found.rms_m;
   track.T_camera_tool = head.valid ? head.T_world_camera.inverse() * pose : pose;
   track.motion = followed.estimate;
@@ -79,6 +80,7 @@ void accept_few(const FollowedTool& followed, const Tool& tool, const FrameStamp
   track.newest = {stamp.mid_exposure, pose};
   track.marker_mask = followed.few_mask;
   track.frame_sequence = stamp.sequence;
+  track.stamp_sigma = stamp.sigma;
   track.T_camera_tool = head.valid ? head.T_world_camera.inverse() * pose : pose;
   track.head_covariance = Matrix6::Zero();
   if (head.valid) track.head_covariance = anchored.lasting_at(track.motion.pose.translation);

@@ -22,8 +22,9 @@ struct ImageView {
 // Exactly one of the two reflectivity planes is set; depth may be absent. Depth is in the sensor's
 // raw unit (DepthSettings says what that is); 0 means that the pixel has none.
 struct Frame {
-  Time mid_exposure;  // what every measurement's time means
-  Time arrival;       // the last byte in memory; only for latency figures
+  Time mid_exposure;     // what every measurement's time means
+  Duration stamp_sigma;  // of it, by the estimate of the device's clock; 0: stamped by this clock
+  Time arrival;          // the last byte in memory; only for latency figures
   std::uint64_t sequence = 0;
   ImageView<std::uint8_t> reflectivity_8;
   ImageView<std::uint16_t> reflectivity_16;

@@ -38,6 +38,7 @@ struct PoseSample {
   double sigma_position_m = 0;           // an axis: root of a third of the block's trace
   double sigma_orientation_rad = 0;      // likewise
   double registration_rms_m = 0;
+  double age_sigma_s = 0;  // of `measurement`; no part of the output record
 
   [[nodiscard]] bool has_pose() const {
     return state == TrackState::predicted || state == TrackState::measured;

@@ -107,7 +107,10 @@ ordered_json by_rate(const OutputByRate& rates, std::size_t tool, Duration perio
          {"measured", share(figures.measured, figures.ticks)},
          {"predicted", share(figures.predicted, figures.ticks)},
          {"lost", share(figures.ticks - figures.measured - figures.predicted, figures.ticks)},
-         {"age_ms", {{"p50", quantile(figures.ages, 0.5)}, {"p99", quantile(figures.ages, 0.99)}}},
+         {"age_ms",
+          {{"p50", quantile(figures.ages, 0.5)},
+           {"p99", quantile(figures.ages, 0.99)},
+           {"sigma_max", figures.largest_age_sigma_s * 1e3}}},
          {"errors_measured", errors_of(figures.of_measured)},
          {"errors_predicted", errors_of(figures.of_predicted)}});
   }
@@ -116,10 +119,12 @@ ordered_json by_rate(const OutputByRate& rates, std::size_t tool, Duration perio
 
 std::string rate_text(const ordered_json& rate) {
   char text[256];
-  std::snprintf(text, sizeof text, "measured %s, predicted %s, lost %s; age p50 %.0f, p99 %.0f ms",
+  std::snprintf(text, sizeof text,
+                "measured %s, predicted %s, lost %s; age p50 %.0f, p99 %.0f, sigma <= %.1f ms",
                 percent(rate.at("measured")).c_str(), percent(rate.at("predicted")).c_str(),
                 percent(rate.at("lost")).c_str(), rate.at("age_ms").at("p50").get<double>(),
-                rate.at("age_ms").at("p99").get<double>());
+                rate.at("age_ms").at("p99").get<double>(),
+                rate.at("age_ms").at("sigma_max").get<double>());
   return text;
 }
 

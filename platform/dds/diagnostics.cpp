@@ -42,7 +42,10 @@ void Diagnostics::add(std::string_view tool, const PoseSample& sample, const Sin
   };
   value("state", state.text);
   value("reason", std::string(name_of(sample.reason)));
-  if (sample.has_pose()) value("age_ms", std::to_string(sample.age().seconds() * 1e3));
+  if (sample.has_pose()) {
+    value("age_ms", std::to_string(sample.age().seconds() * 1e3));
+    value("age_sigma_ms", std::to_string(sample.age_sigma_s * 1e3));
+  }
   value("tick", std::to_string(sample.tick_number));
   value("frame", std::to_string(sample.frame_sequence));
   value("offered", std::to_string(figures.offered));

@@ -63,7 +63,7 @@ class MotionWay {
 
   void frame(const sim::FrameTiming& timing, const Pose& truth, RatesTally& tally) {
     FrameVerdict verdict;
-    check_({timing.mid_exposure, timing.arrival, timing.sequence + 1, Reason::none}, verdict);
+    check_({timing.mid_exposure, {}, timing.arrival, timing.sequence + 1, Reason::none}, verdict);
     ++(verdict.usable() ? tally.accepted : tally.refused);
     Result<UncertainPose> measured =
         measure(camera_, model_, truth, {1, run_.seed, run_.run}, timing.sequence);
@@ -131,8 +131,8 @@ class GraphWay {
       (void)view_->add(camera_, tool_, place, i, SightNoise{}, numbers);
     }
     const PoseSample before = sample(next_tick);
-    tracker_->input<FrameStamp>() = {timing.mid_exposure, timing.arrival, timing.sequence + 1,
-                                     Reason::none};
+    tracker_->input<FrameStamp>() = {
+        timing.mid_exposure, {}, timing.arrival, timing.sequence + 1, Reason::none};
     tracker_->input<Markers>() = view_->markers;
     tracker_->activate();
     const Estimates& estimates = tracker_->output<Estimates>();

@@ -14,6 +14,7 @@ FrameLayout without_rectangles(const Frame& frame) noexcept {
   constexpr int k_size_max = 65535;
   FrameLayout layout;
   layout.mid_exposure = frame.mid_exposure;
+  layout.stamp_sigma = frame.stamp_sigma;
   layout.arrival = frame.arrival;
   layout.sequence = frame.sequence;
   const int width = frame.width();

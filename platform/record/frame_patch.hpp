@@ -16,6 +16,7 @@ inline constexpr int k_patch_rectangles_max = k_tools_max;
 // Everything of a frame but its pixels.
 struct FrameLayout {
   Time mid_exposure;
+  Duration stamp_sigma;
   Time arrival;
   std::uint64_t sequence = 0;
   std::uint16_t width = 0;

@@ -78,6 +78,8 @@ std::optional<FrameMessage> read_frame(MessageBytes bytes, const ImageRows& refl
     const auto far = from.get_bytes();
     if (from.failed() || !put_rectangle(bright, far, roi, shape, frame.pixels)) return std::nullopt;
   }
+  if (!from.at_end()) frame.stamp_sigma.nanoseconds = from.get<std::int64_t>();  // none: older
+  if (from.failed()) return std::nullopt;
   if (in_images) {
     const Roi all{0, 0, shape.width, shape.height};
     const auto far = shape.has_depth ? std::span(depth.rows) : std::span<const std::uint8_t>();

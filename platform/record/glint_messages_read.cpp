@@ -61,6 +61,9 @@ std::optional<MarkerFrame> read_markers(MessageBytes bytes) {
   if (from.at_end()) return frame;  // and from before markers could be incomplete
   frame.markers.incomplete = static_cast<Reason>(from.get<std::uint8_t>());
   if (from.failed() || frame.markers.incomplete > k_last_reason) return std::nullopt;
+  if (from.at_end()) return frame;  // and from before a stamp stated its sigma
+  frame.stamp_sigma.nanoseconds = from.get<std::int64_t>();
+  if (from.failed()) return std::nullopt;
   return frame;
 }
 

@@ -38,6 +38,7 @@ void write_message(CdrWriter& to, const FramePatch& patch, PixelPlace place, Dur
     to.put_bytes(patch.pixels.subspan(at + reflectivity, depth));
     at += reflectivity + depth;
   }
+  to.put(layout.stamp_sigma.nanoseconds);
 }
 
 void write_message(CdrWriter& to, const HeadPose& pose, Duration unix_offset) {
@@ -83,6 +84,7 @@ void write_message(CdrWriter& to, const MarkerFrame& frame, Duration unix_offset
     to.put(marker.peak);
   }
   to.put(static_cast<std::uint8_t>(frame.markers.incomplete));
+  to.put(frame.stamp_sigma.nanoseconds);
 }
 
 void write_message(CdrWriter& to, const ChoiceRecord& choice, Duration unix_offset) {
@@ -150,6 +152,7 @@ void write_output_message(CdrWriter& to, const PoseSample& sample,
   to.put(sample.sigma_position_m);
   to.put(sample.sigma_orientation_rad);
   to.put_bytes(record);
+  to.put(sample.age_sigma_s);
 }
 
 }  // namespace glint

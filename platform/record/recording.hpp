@@ -60,6 +60,7 @@ struct DroppedInput {
 // A frame without pixels: its stamp and the candidate markers found in it (level blobs).
 struct MarkerFrame {
   Time mid_exposure;
+  Duration stamp_sigma;
   Time arrival;
   std::uint64_t sequence = 0;
   Reason reason = Reason::none;  // frame_invalid: its pixels were unusable
@@ -69,10 +70,15 @@ struct MarkerFrame {
 // What the reader gives back. Pixels outside the recorded rectangles are 0.
 struct FrameMessage {
   Time mid_exposure;
+  Duration stamp_sigma;
   Time arrival;
   std::uint64_t sequence = 0;
   FrameBuffer pixels;
-  [[nodiscard]] Frame view() const { return pixels.view(mid_exposure, arrival, sequence); }
+  [[nodiscard]] Frame view() const {
+    Frame frame = pixels.view(mid_exposure, arrival, sequence);
+    frame.stamp_sigma = stamp_sigma;
+    return frame;
+  }
 };
 
 // One tool at one tick: the bytes that output_sha256 is taken over.

@@ -48,7 +48,8 @@ constexpr std::array k_definitions{
                "uint16 width\nuint16 height\n"
                "uint8 reflectivity_bits  # 8, 16, or 0 for none\nbool has_depth\n"
                "bool pixels_in_images    # the two Image messages before this one are its pixels\n"
-               "glint_msgs/PixelRectangle[] rectangles  # everywhere else: not recorded\n"},
+               "glint_msgs/PixelRectangle[] rectangles  # everywhere else: not recorded\n"
+               "int64 stamp_sigma_ns  # of mid_exposure_ns; older recordings have none\n"},
     Definition{"glint_msgs/HeadPose",
                "std_msgs/Header header\nint64 time_ns\nbool valid\n"
                "geometry_msgs/Pose pose  # of the camera in the world\n"},
@@ -71,7 +72,8 @@ constexpr std::array k_definitions{
                "glint_msgs/MarkerSigma[] sigmas  # of the same; older recordings have none\n"
                "glint_msgs/MarkerTurn[] turns    # of the same; older recordings have none\n"
                "glint_msgs/MarkerDepth[] depths  # of the same; older recordings have none\n"
-               "uint8 incomplete  # why markers may be missing; older recordings have none\n"},
+               "uint8 incomplete  # why markers may be missing; older recordings have none\n"
+               "int64 stamp_sigma_ns  # of mid_exposure_ns; older recordings have none\n"},
     Definition{"glint_msgs/Choice",
                "std_msgs/Header header\nint64 nominal_ns\nuint64 activation\nuint8 group\n"
                "uint8 overrun  # 0: none; else 1 noticed ahead, 2 missed; plus 4 times the policy\n"
@@ -85,7 +87,8 @@ constexpr std::array k_definitions{
                "int64 tick_ns\nint64 measurement_ns\nuint32 tick_number\nuint32 frame_sequence\n"
                "uint8 tool\nuint8 state\nuint8 reason\nuint8 marker_mask\n"
                "float64 age_s\nfloat64 sigma_position_m\nfloat64 sigma_orientation_rad\n"
-               "uint8[] record  # the bytes that output_sha256 is taken over\n"},
+               "uint8[] record  # the bytes that output_sha256 is taken over\n"
+               "float64 age_sigma_s  # older recordings have none\n"},
     Definition{"glint_msgs/Dropped",
                "std_msgs/Header header\nint64 mid_exposure_ns\nint64 arrival_ns\n"
                "uint32 sequence\nuint8 reason\n"},

@@ -16,7 +16,8 @@ void ClockMap::begin(Time stamp, Time arrival) noexcept {
   base_ = arrival - stamp;
   bins_ = {};
   slope_ = height_s_ = middle_s_ = 0;
-  sigma_ = {};
+  scatter_s_ = 0;
+  mapped_ = 0;
   refused_in_row_ = 0;
 }
 
@@ -39,6 +40,7 @@ std::optional<Time> ClockMap::map(Time stamp, Time arrival) noexcept {
     return map(stamp, arrival);
   }
   refused_in_row_ = 0;
+  ++mapped_;
   const auto number = static_cast<std::int64_t>(std::floor(x / k_bin.seconds()));
   Bin& bin = bins_[static_cast<std::size_t>((number % k_bins + k_bins) % k_bins)];
   const double expected = slope_ * (x - bin.x_s);  // by the drift, since the least of this bin
@@ -78,7 +80,13 @@ void ClockMap::fit() noexcept {
     least = std::min(least, off);
   }
   height_s_ += least;  // no delay is less than the earliest
-  sigma_ = from_seconds(std::sqrt(square / (n - 1)));
+  scatter_s_ = std::sqrt(square / (n - 1));
+}
+
+Duration ClockMap::uncertainty() const noexcept {
+  const double above =
+      k_delay_sigma.seconds() / static_cast<double>(std::max<std::int64_t>(mapped_, 1));
+  return from_seconds(std::hypot(scatter_s_, above));
 }
 
 }  // namespace glint

@@ -29,7 +29,8 @@ class ClockMap {
   static constexpr Duration k_bin = milliseconds(1000);
   static constexpr Duration k_step = milliseconds(200);
   static constexpr int k_agreeing = 8;
-  static constexpr double k_drift_max = 500e-6;  // of crystals: tens of ppm
+  static constexpr Duration k_delay_sigma = milliseconds(5);  // beyond the earliest
+  static constexpr double k_drift_max = 500e-6;               // of crystals: tens of ppm
 
   // `earliest_delay`: from the stamp to the arrival, as the sensor declares it.
   explicit ClockMap(Duration earliest_delay) : earliest_delay_(earliest_delay) {}
@@ -38,9 +39,9 @@ class ClockMap {
   [[nodiscard]] std::optional<Time> map(Time stamp, Time arrival) noexcept;
 
   [[nodiscard]] double drift() const noexcept { return slope_; }  // device seconds gained a second
-  // One sigma of what map() returns, from the scatter of the least delays; 0 until two bins are
-  // full.
-  [[nodiscard]] Duration uncertainty() const noexcept { return sigma_; }
+  // One sigma of what map() returned last: the scatter of the seconds' least delays, and an n-th of
+  // k_delay_sigma, by which the least of n delays lies above the earliest.
+  [[nodiscard]] Duration uncertainty() const noexcept;
   [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
   [[nodiscard]] std::uint64_t restarts() const noexcept { return restarts_; }
 
@@ -59,7 +60,8 @@ class ClockMap {
   Duration base_;  // arrival - stamp at the origin
   std::array<Bin, k_bins> bins_{};
   double slope_ = 0, height_s_ = 0, middle_s_ = 0;  // y = height + slope (x - middle)
-  Duration sigma_;
+  double scatter_s_ = 0;     // of the bins' least differences about the line
+  std::int64_t mapped_ = 0;  // stamps since the beginning
   std::uint64_t refused_ = 0, restarts_ = 0;
   int refused_in_row_ = 0;
   Duration refused_difference_;

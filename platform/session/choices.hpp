@@ -26,7 +26,7 @@ using OverrunNotes = graph::Ring<OverrunNote, 64>;
 
 // What is known of a frame without looking at it; in a run and in its replay alike.
 [[nodiscard]] inline FrameStamp overrun_stamp(const Frame& frame) {
-  return {frame.mid_exposure, frame.arrival, frame.sequence, Reason::none};
+  return {frame.mid_exposure, frame.stamp_sigma, frame.arrival, frame.sequence, Reason::none};
 }
 
 [[nodiscard]] inline ChoiceRecord as_record(const graph::Choice& choice,

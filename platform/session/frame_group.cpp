@@ -147,6 +147,7 @@ void FrameGroupOf<G>::record(const ArrivedFrame& arrived) noexcept {
                              ran(k_locate_rois) ? tracker_->template token<Rois>() : Rois{});
     MarkerFrame markers;
     markers.mid_exposure = arrived.frame.mid_exposure;
+    markers.stamp_sigma = arrived.frame.stamp_sigma;
     markers.arrival = arrived.frame.arrival;
     markers.sequence = arrived.frame.sequence;
     markers.reason = tracker_->template token<FrameStamp>().reason;

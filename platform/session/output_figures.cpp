@@ -73,6 +73,7 @@ void OutputFigures::add(const PoseSample& sample, std::optional<Time> newest_fra
   figures.predicted += sample.state == TrackState::predicted ? 1 : 0;
   if (!sample.has_pose()) return;
   count(figures.ages, sample.age().seconds() * 1e3);
+  figures.largest_age_sigma_s = std::max(figures.largest_age_sigma_s, sample.age_sigma_s);
   judge(sample, sample.state == TrackState::measured ? figures.of_measured : figures.of_predicted);
 }
 

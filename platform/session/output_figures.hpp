@@ -39,6 +39,7 @@ struct OutputErrors {
 struct RateFigures {
   std::uint64_t ticks = 0, measured = 0, predicted = 0;  // the others had no pose
   std::array<std::uint64_t, k_ages> ages{};              // of poses
+  double largest_age_sigma_s = 0;
   OutputErrors of_measured, of_predicted;
 };
 

@@ -128,7 +128,10 @@ class RecordedOrder {
   }
   void on(MarkerFrame& markers) {
     if (keeps_frames(reader_.level())) return;
-    hold({{markers.mid_exposure, markers.arrival, markers.sequence, {}}, markers, {}, {}});
+    hold({{markers.mid_exposure, markers.stamp_sigma, markers.arrival, markers.sequence, {}},
+          markers,
+          {},
+          {}});
   }
   void on(OutputMessage& output) { on_output_(output); }
   void on(RobotFrameRecord& frame) {

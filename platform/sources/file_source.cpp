@@ -19,8 +19,12 @@ std::string size_text(int width, int height) {
 
 }  // namespace
 
-FileSource::FileSource(std::unique_ptr<FrameReader> reader, const Camera& camera)
-    : reader_(std::move(reader)), camera_(camera), slots_(k_slots), gate_(camera.period) {
+FileSource::FileSource(std::unique_ptr<FrameReader> reader, const Camera& camera, Duration duration)
+    : reader_(std::move(reader)),
+      camera_(camera),
+      duration_(duration),
+      slots_(k_slots),
+      gate_(camera.period) {
   Slot& first = slot_of(0);
   if (!reader_->next(first.frame)) {
     std::string why;
@@ -85,7 +89,7 @@ bool FileSource::read_usable(Slot& slot) {
     }
     if (!gate_.take(slot.frame.mid_exposure)) continue;
     put_in_session_time(slot);
-    return true;
+    return duration_ == Duration{} || slot.arrival < Time{} + duration_;
   }
   return false;
 }
@@ -151,6 +155,7 @@ bool FileSource::wait(ArrivedFrame& arrived) {
   }
   newest_delivered_ = arrival;
   arrived.frame = slot.frame.pixels.view(slot.frame.mid_exposure, arrival, slot.sequence);
+  arrived.frame.stamp_sigma = slot.frame.stamp_sigma;
   arrived.head = slot.frame.head;
   arrived.slot = static_cast<int>(delivered_ % slots_.size());
   ++delivered_;

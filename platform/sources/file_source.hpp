@@ -20,9 +20,10 @@ namespace glint {
 
 class FileSource final : public FrameSource {
  public:
-  // Starts to read. Throws InputError if the first frame cannot be read, or is not of `camera`'s
-  // size and bits, or has no depth.
-  FileSource(std::unique_ptr<FrameReader> reader, const Camera& camera);
+  // Starts to read. `duration`: frames that arrive later in the session are left out; 0: none is.
+  // Throws InputError if the first frame cannot be read, or is not of `camera`'s size and bits, or
+  // has no depth.
+  FileSource(std::unique_ptr<FrameReader> reader, const Camera& camera, Duration duration = {});
   ~FileSource() override;
   FileSource(const FileSource&) = delete;
   FileSource& operator=(const FileSource&) = delete;
@@ -55,6 +56,7 @@ class FileSource final : public FrameSource {
 
   std::unique_ptr<FrameReader> reader_;
   Camera camera_;
+  Duration duration_;
   SourceClock clock_;
   std::vector<Slot> slots_;
   Release is_free_, is_read_;  // once for each slot

@@ -18,6 +18,7 @@ namespace glint {
 struct ReadFrame {
   FrameBuffer pixels;
   Time mid_exposure;
+  Duration stamp_sigma;                   // of it, beside the cell's; 0: the format states none
   std::optional<Time> arrival;            // last byte in memory; nothing: as the camera declares
   std::optional<std::uint64_t> sequence;  // nothing: counted by the source
   HeadPose head;                          // not valid: the format has none for this frame

@@ -74,10 +74,10 @@ static inline int glint_frames_connect(struct glint_frames* f, const char* path,
   struct cmsghdr* head = CMSG_FIRSTHDR(&message);
   head->cmsg_len = CMSG_LEN(sizeof memory), head->cmsg_level = SOL_SOCKET, head->cmsg_type = SCM_RIGHTS;
   memcpy(CMSG_DATA(head), &memory, sizeof memory);
-  const int sent = sendmsg(f->socket_fd, &message, MSG_NOSIGNAL) == (ssize_t)sizeof hello;
-  close(memory);
-  if (!sent || recv(f->socket_fd, &reply, sizeof reply, 0) != (ssize_t)sizeof reply)
-    return glint_frames_fail(f, "Glint does not answer");
+  ssize_t got = sendmsg(f->socket_fd, &message, MSG_NOSIGNAL);
+  close(memory); /* refused before the hello: sending fails, a reset hides the reply once */
+  for (int i = 0; i < 2 && got != (ssize_t)sizeof reply; ++i) got = recv(f->socket_fd, &reply, sizeof reply, 0);
+  if (got != (ssize_t)sizeof reply) return glint_frames_fail(f, "Glint does not answer");
   return reply.refused[0] == 0 ? 0 : glint_frames_fail(f, reply.refused);
 }
 static inline uint16_t* glint_frames_begin(struct glint_frames* f) {

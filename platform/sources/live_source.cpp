@@ -50,6 +50,7 @@ bool LiveSource::wait(ArrivedFrame& arrived) {
   const std::uint64_t number = delivered_++;
   const Slot& slot = slots_[number % k_live_frames];
   arrived.frame = slot.pixels.view(slot.mid_exposure, slot.arrival, number);
+  arrived.frame.stamp_sigma = slot.stamp_sigma;
   arrived.head = slot.head;
   arrived.slot = static_cast<int>(number % k_live_frames);
   return true;
@@ -97,6 +98,7 @@ LiveSource::Slot* LiveSource::room() {
 void LiveSource::publish(Time mid_exposure, Time arrival, const HeadPose& head) {
   Slot& slot = slots_[written_ % k_live_frames];
   slot.mid_exposure = mid_exposure;
+  slot.stamp_sigma = map_->uncertainty();
   slot.arrival = session_time(arrival);
   slot.head = head.valid ? head : HeadPose{};
   check_head_pose(slot.head);

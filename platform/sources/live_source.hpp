@@ -43,6 +43,7 @@ class LiveSource : public FrameSource {
   struct Slot {
     FrameBuffer pixels;
     Time mid_exposure, arrival;
+    Duration stamp_sigma;
     HeadPose head;
   };
   [[nodiscard]] const Camera& camera() const { return camera_; }

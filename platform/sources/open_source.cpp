@@ -140,7 +140,7 @@ std::unique_ptr<FrameSource> open_source(Cell& cell, ReadTolerance tolerance, Li
     if (auto lens = reader->lens()) set_lens(cell, std::move(*lens));
   }
   require_lens(cell);
-  return std::make_unique<FileSource>(std::move(reader), cell.camera);
+  return std::make_unique<FileSource>(std::move(reader), cell.camera, live.duration);
 }
 
 }  // namespace glint

@@ -17,8 +17,9 @@ namespace glint {
 // The kind of what stands at a path; empty: none of them.
 [[nodiscard]] std::string kind_at(const std::string& path);
 
-// What `[source]` names, for frames of the cell's camera; null for the simulator. The cell takes
-// the lens that is recorded with the frames where it names none. Throws InputError: an unknown
+// What `[source]` names, for frames of the cell's camera; null for the simulator. `live.duration`
+// holds for recorded frames, too. The cell takes the lens that is recorded with the frames where it
+// names none. Throws InputError: an unknown
 // kind, no path, no lens, a live kind for a run in order, and what the kind's reader and FileSource
 // throw.
 [[nodiscard]] std::unique_ptr<FrameSource> open_source(Cell& cell, ReadTolerance tolerance = {},

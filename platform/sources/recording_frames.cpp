@@ -25,6 +25,7 @@ bool RecordingFrames::next(ReadFrame& frame) {
     if (found == nullptr) continue;
     frame.pixels = std::move(found->pixels);
     frame.mid_exposure = found->mid_exposure;
+    frame.stamp_sigma = found->stamp_sigma;
     frame.arrival = found->arrival;
     frame.sequence = found->sequence;
     frame.head = head_.time == found->mid_exposure ? head_ : HeadPose{};

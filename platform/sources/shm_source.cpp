@@ -24,6 +24,8 @@ namespace {
 
 constexpr std::uint32_t k_slots_max = 64;  // of a producer
 
+constexpr Duration k_hello_within = milliseconds(1000);
+
 constexpr std::int64_t k_stamp_max_ns = 4'000'000'000'000'000'000;  // differences of two fit
 
 class Descriptor {
@@ -113,6 +115,7 @@ int descriptor_in(msghdr& message) {
 struct ShmSource::Producer {
   Descriptor socket;
   std::optional<Mapping> memory;  // nothing: before its hello
+  Time connected;
   std::uint32_t slots = 0;
   std::uint64_t slot_bytes = 0;
   std::optional<std::uint64_t> sequence;  // of the newest frame
@@ -147,8 +150,12 @@ void ShmSource::run() noexcept {
   while (!stop_) {
     pollfd waited[2] = {{listener_, POLLIN, 0},
                         {producer ? producer->socket.get() : -1, POLLIN, 0}};
-    if (::poll(waited, 2, static_cast<int>(k_live_poll.nanoseconds / 1'000'000)) <= 0) continue;
+    (void)::poll(waited, 2, static_cast<int>(k_live_poll.nanoseconds / 1'000'000));
     if (waited[1].revents != 0) read_message(producer);
+    if (producer && !producer->memory && monotonic_now() - producer->connected > k_hello_within) {
+      refuse_producer("no hello within a second", producer->socket.get());
+      producer.reset();
+    }
     if (waited[0].revents != 0) accept_producer(producer);
   }
 }
@@ -156,16 +163,18 @@ void ShmSource::run() noexcept {
 void ShmSource::accept_producer(std::optional<Producer>& producer) {
   Descriptor socket(::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
   if (socket.get() < 0) return;
-  if (producer) {
-    glint_frames_reply reply{};
-    std::snprintf(reply.refused, sizeof reply.refused, "another producer is connected");
-    (void)::send(socket.get(), &reply, sizeof reply, MSG_NOSIGNAL);
-    ++refused_;
-    if (first_refusal_.empty()) first_refusal_ = reply.refused;
-    return;
-  }
+  if (producer) return refuse_producer("another producer is connected", socket.get());
   producer.emplace();
   producer->socket = std::move(socket);
+  producer->connected = monotonic_now();
+}
+
+void ShmSource::refuse_producer(const std::string& why, int socket) {
+  glint_frames_reply reply{};
+  std::snprintf(reply.refused, sizeof reply.refused, "%s", why.c_str());
+  (void)::send(socket, &reply, sizeof reply, MSG_NOSIGNAL);
+  ++refused_;
+  if (first_refusal_.empty()) first_refusal_ = reply.refused;
 }
 
 // A hello first, frames after it; whatever else ends the connection.
@@ -194,10 +203,8 @@ void ShmSource::read_message(std::optional<Producer>& producer) {
   }
   glint_frames_hello hello{};
   std::memcpy(&hello, bytes, std::min<std::size_t>(sizeof hello, static_cast<std::size_t>(got)));
-  glint_frames_reply reply{};
-  const auto refuse = [&](const std::string& why) {
-    std::snprintf(reply.refused, sizeof reply.refused, "%s", why.c_str());
-  };
+  std::string refusal;
+  const auto refuse = [&](std::string why) { refusal = std::move(why); };
   const auto width = static_cast<std::uint32_t>(camera().model.width);
   const auto height = static_cast<std::uint32_t>(camera().model.height);
   const auto bits = static_cast<std::uint32_t>(camera().reflectivity_bits);
@@ -228,13 +235,13 @@ void ShmSource::read_message(std::optional<Producer>& producer) {
   }
   producer->slots = hello.slots;
   producer->slot_bytes = hello.slot_bytes;
-  (void)::send(producer->socket.get(), &reply, sizeof reply, MSG_NOSIGNAL);
-  if (reply.refused[0] != 0) {
-    ++refused_;
-    if (first_refusal_.empty()) first_refusal_ = reply.refused;
+  if (!refusal.empty()) {
+    refuse_producer(refusal, producer->socket.get());
     producer.reset();
     return;
   }
+  const glint_frames_reply welcome{};
+  (void)::send(producer->socket.get(), &welcome, sizeof welcome, MSG_NOSIGNAL);
   ++connected_;
   restart_clock();
   newest_stamp_ = {INT64_MIN};

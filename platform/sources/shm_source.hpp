@@ -29,6 +29,7 @@ class ShmSource final : public LiveSource {
 
   void run() noexcept;
   void accept_producer(std::optional<Producer>& producer);
+  void refuse_producer(const std::string& why, int socket);
   void read_message(std::optional<Producer>& producer);
   void take_frame(Producer& producer, const void* message);
   [[nodiscard]] bool copy_pixels(const Producer& producer, std::uint32_t slot, Slot& to) const;

@@ -22,8 +22,18 @@ class Producer:
         self.socket.settimeout(WAIT_S)
         self.socket.connect(str(path))
         hello = struct.pack("<8sIIIIQ", magic, width, 512, 16, slots, self.slot_bytes)
-        socket.send_fds(self.socket, [hello], [self.memory])
-        self.refused = self.socket.recv(256).split(b"\0")[0].decode()
+        reply = b""
+        # Who is refused before its hello gets errors first.
+        for step in (lambda: socket.send_fds(self.socket, [hello], [self.memory]),
+                     lambda: self.socket.recv(256), lambda: self.socket.recv(256)):
+            try:
+                got = step()
+            except (BrokenPipeError, ConnectionResetError):
+                continue
+            if isinstance(got, bytes):
+                reply = got
+                break
+        self.refused = reply.split(b"\0")[0].decode()
 
     def write(self, slot, writes, planes):
         os.pwrite(self.memory, struct.pack("<Q", writes) + bytes(56) + planes,

@@ -229,6 +229,12 @@ TEST_F(PredictTools, CountsTheStampsErrorWhereTheToolMoves) {
   EXPECT_NEAR(sample.systematic(1, 1), 0.002 * 0.002 * tip_m_s * tip_m_s, 1e-12);
   EXPECT_NEAR(sample.systematic(5, 5), 0.002 * 0.002 * 4, 1e-12);
   EXPECT_NEAR(sample.systematic(0, 0), 0, 1e-15);
+  EXPECT_NEAR(sample.age_sigma_s, 0.002, 1e-12);
+  // A frame may state an error of its own clock.
+  estimates_->tracks[0].stamp_sigma = milliseconds(3);
+  const PoseSample other = at(1000);
+  EXPECT_NEAR(other.age_sigma_s, std::sqrt(13e-6), 1e-12);
+  EXPECT_NEAR(other.systematic(1, 1), 13e-6 * tip_m_s * tip_m_s, 1e-12);
 }
 
 TEST_F(PredictTools, TakesTheRobotsFrameFromTheReferenceToolWhereTheCellSaysSo) {

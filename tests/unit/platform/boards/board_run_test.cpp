@@ -12,8 +12,8 @@
 #include "platform/boards/worst_frames.hpp"
 #include "platform/input_error.hpp"
 #include "platform/session/replay.hpp"
-#include "platform/session/scenario_of.hpp"
 #include "platform/sim/simulator.hpp"
+#include "platform/sources/scenario_of.hpp"
 #include "tests/unit/platform/session/followed_robot.hpp"
 
 namespace glint::board_run_test {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "platform/robot/primitives.hpp"
-#include "platform/session/scenario_of.hpp"
+#include "platform/sources/scenario_of.hpp"
 
 namespace glint {
 namespace {

@@ -89,7 +89,8 @@ void add_frame(Sample& sample, const FrameBuffer& buffer, const FrameLayout& lay
                  {"reflectivity_bits", 16},
                  {"has_depth", true},
                  {"pixels_in_images", level == RecordingLevel::full},
-                 {"rectangles", rectangles}});
+                 {"rectangles", rectangles},
+                 {"stamp_sigma_ns", number(layout.stamp_sigma.nanoseconds)}});
 }
 
 void add_markers(Sample& sample, const MarkerFrame& frame) {
@@ -121,7 +122,8 @@ void add_markers(Sample& sample, const MarkerFrame& frame) {
                  {"sigmas", sigmas},
                  {"turns", turns},
                  {"depths", depths},
-                 {"incomplete", static_cast<int>(frame.markers.incomplete)}});
+                 {"incomplete", static_cast<int>(frame.markers.incomplete)},
+                 {"stamp_sigma_ns", number(frame.stamp_sigma.nanoseconds)}});
 }
 
 void add_inputs(Sample& sample) {
@@ -205,7 +207,8 @@ void add_output(Sample& sample, const PoseSample& output) {
                  {"age_s", output.age().seconds()},
                  {"sigma_position_m", output.sigma_position_m},
                  {"sigma_orientation_rad", output.sigma_orientation_rad},
-                 {"record", record}});
+                 {"record", record},
+                 {"age_sigma_s", output.age_sigma_s}});
   if (!output.has_pose()) return;
   const json pose = {{"position", xyz(output.pose.translation)},
                      {"orientation", xyzw(output.pose.rotation)}};

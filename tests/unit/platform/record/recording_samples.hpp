@@ -64,6 +64,7 @@ inline HeadPose sample_head_pose(int i) {
 inline MarkerFrame sample_markers(int count) {
   MarkerFrame frame;
   frame.mid_exposure = {5'000};
+  frame.stamp_sigma = {123'456};
   frame.arrival = {9'000'000};
   frame.sequence = 77;
   frame.reason = Reason::frame_invalid;
@@ -112,6 +113,7 @@ inline PoseSample sample_output(std::uint32_t tick, TrackState state = TrackStat
   for (int i = 0; i < 36; ++i) sample.covariance(i / 6, i % 6) = 1e-6 * (i + 1);
   sample.sigma_position_m = 0.0015;
   sample.sigma_orientation_rad = 0.004;
+  sample.age_sigma_s = 0.002;
   return sample;
 }
 

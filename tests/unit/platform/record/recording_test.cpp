@@ -41,7 +41,8 @@ void write_frame(RecordingWriter& writer, const FrameBuffer& buffer, const Frame
 RecordingOutcome write_sample(const std::string& path, RecordingLevel level, int bits = 16) {
   RecordingWriter writer(path, sample_info(level));
   const FrameBuffer buffer = sample_frame(40, 30, bits);
-  const Frame frame = buffer.view({100}, {200}, 9);
+  Frame frame = buffer.view({100}, {200}, 9);
+  frame.stamp_sigma = {55};
   const Rois rois{{Roi{4, 5, 12, 9}, Roi{30, 20, 38, 29}}, 2};
   writer.write_choice(sample_choice(1));
   write_frame(writer, buffer, whole_frame_layout(frame));
@@ -258,6 +259,7 @@ TEST(Recording, GivesBackEveryPixelOfAWholeFrame) {
       const auto frame = std::get<FrameMessage>(reader.next().value());
       const FrameBuffer expected = sample_frame(40, 30, bits);
       EXPECT_EQ(frame.mid_exposure, Time{100});
+      EXPECT_EQ(frame.view().stamp_sigma, Duration{55});
       EXPECT_EQ(frame.arrival, Time{200});
       EXPECT_EQ(frame.pixels.width, 40);
       EXPECT_EQ(frame.pixels.height, 30);
@@ -294,6 +296,7 @@ TEST(Recording, GivesBackMarkersAtLevelBlobs) {
   const auto& read = std::get<MarkerFrame>(messages[1]);
   const MarkerFrame wrote = sample_markers(3);
   EXPECT_EQ(read.mid_exposure, wrote.mid_exposure);
+  EXPECT_EQ(read.stamp_sigma, wrote.stamp_sigma);
   EXPECT_EQ(read.arrival, wrote.arrival);
   EXPECT_EQ(read.sequence, wrote.sequence);
   EXPECT_EQ(read.reason, wrote.reason);
@@ -317,15 +320,19 @@ TEST(Recording, GivesBackMarkersAtLevelBlobs) {
   EXPECT_EQ(read.markers.incomplete, Reason::blobs_full);
 }
 
-// A message as it was written before markers could be incomplete, and before they had what a tool's
-// own depth bias needs, turns, and sigmas: its last fields left out.
+// A message as it was written before a stamp had a sigma, before markers could be incomplete, and
+// before they had what a tool's own depth bias needs, turns, and sigmas: its last fields left out.
 TEST(Recording, ReadsMarkersOfOlderRecordings) {
   CdrWriter writer;
   write_message(writer, sample_markers(3), {});
   // Its number and three a marker, after a byte that fills up to it; its number and six a marker,
   // with four bytes between; its number and a float and two bytes a marker, filled up but the last.
   const std::size_t sigmas = 1 + 4 + 3 * 3 * 4, turns = 4 + 4 + 3 * 6 * 8, depths = 4 + 2 * 8 + 6;
-  const auto with_incomplete = writer.bytes();
+  // Five bytes that fill up to eight more.
+  const std::size_t stamp = 5 + 8;
+  const auto with_stamp = writer.bytes();
+  EXPECT_FALSE(read_markers(with_stamp.first(with_stamp.size() - 1)));
+  const auto with_incomplete = with_stamp.first(with_stamp.size() - stamp);
   const auto message = with_incomplete.first(with_incomplete.size() - 1);
   const auto complete = read_markers(message);
   ASSERT_TRUE(complete);

@@ -23,6 +23,7 @@ struct Stream {
 struct Outcome {
   double rms_ms = 0;
   std::vector<double> errors_ms;  // of what was mapped, in order
+  std::vector<double> sigmas_ms;  // as stated with each
 };
 
 // Frames exposed at a steady rate by the device's clock, delivered late by the jitter.
@@ -42,6 +43,7 @@ Outcome run(const Stream& stream, ClockMap& map, std::uint64_t seed) {
     if (!mapped) continue;
     EXPECT_LE(*mapped, arrival);
     outcome.errors_ms.push_back((*mapped - exposed).seconds() * 1e3);
+    outcome.sigmas_ms.push_back(map.uncertainty().seconds() * 1e3);
     squares += outcome.errors_ms.back() * outcome.errors_ms.back();
   }
   outcome.rms_ms = std::sqrt(squares / static_cast<double>(outcome.errors_ms.size()));
@@ -76,6 +78,32 @@ TEST(ClockMap, FollowsOffsetAndDriftUnderJitter) {
   }
 }
 
+// From the first stamp on. A drift leaves one error for seconds, so that the share is of all runs.
+TEST(ClockMap, StatesHowFarAStampMayBeOff) {
+  double inside = 0, all = 0, squares = 0, stated = 0;
+  for (const double rate : {45.0, 15.0, 5.0}) {
+    for (const auto& jitter : {uniform_5_ms, half_normal_5_ms}) {
+      for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        ClockMap map(k_delay);
+        Stream stream;
+        stream.rate = rate;
+        stream.drift = seed % 2 == 0 ? 50e-6 : -20e-6;
+        stream.jitter_s = jitter;
+        const Outcome outcome = run(stream, map, seed);
+        for (std::size_t i = 0; i < outcome.errors_ms.size(); ++i) {
+          const double error = outcome.errors_ms[i], sigma = outcome.sigmas_ms[i];
+          inside += std::abs(error) <= 2 * sigma ? 1 : 0;
+          squares += error * error;
+          stated += sigma * sigma;
+          ++all;
+        }
+      }
+    }
+  }
+  EXPECT_GT(inside / all, 0.95);
+  EXPECT_LT(std::sqrt(stated / squares), 3.0);
+}
+
 TEST(ClockMap, RefusesAStepAndThenFollowsTheNewClock) {
   for (const double step : {1.0, -1.0}) {
     ClockMap map(k_delay);
@@ -105,7 +133,7 @@ TEST(ClockMap, RefusesSingleStampsWithoutAStep) {
 TEST(ClockMap, BeginsWithTheDeclaredDelay) {
   ClockMap map(k_delay);
   EXPECT_EQ(map.map(Time{500}, Time{} + milliseconds(100)), Time{} + milliseconds(91));
-  EXPECT_EQ(map.uncertainty(), Duration{});
+  EXPECT_EQ(map.uncertainty(), ClockMap::k_delay_sigma);
 }
 
 }  // namespace

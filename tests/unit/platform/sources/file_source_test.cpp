@@ -226,6 +226,16 @@ TEST(FileSource, ReportsWhatEndedTheReading) {
   EXPECT_EQ(delivered.report.failures[0], "reading ended early: byte 7: cut");
 }
 
+// A frame counts by when it arrives: 9 ms after the middle of its exposure.
+TEST(FileSource, LeavesOutWhatArrivesAfterTheDuration) {
+  std::vector<ReadFrame> frames;
+  for (int i = 0; i < 100; ++i) frames.push_back(frame_at(20 * i));
+  FileSource source(std::make_unique<Frames>(frames), small_camera(), milliseconds(1000));
+  const Delivered delivered = delivered_by(source);
+  EXPECT_EQ(delivered.frames.size(), 50u);
+  EXPECT_TRUE(delivered.report.failures.empty());
+}
+
 TEST(FileSource, RefusesAFileWithoutAFrame) {
   EXPECT_THROW(FileSource(std::make_unique<Frames>(std::vector<ReadFrame>{}), small_camera()),
                InputError);
