@@ -131,6 +131,24 @@ ordered_json noise_json(const Cell& cell, const SessionResult& result) {
           {"pixel_sigma_px", noise.pixel_sigma_px}};
 }
 
+ordered_json calibration_json(const Cell& cell, const SessionResult& result) {
+  ordered_json list = ordered_json::array();
+  for (const CalibrationFinding& finding : result.calibration) {
+    const ErrorUnit unit = unit_of(finding.source);
+    const bool shared = finding.tool == k_every_tool;
+    const auto tool = static_cast<std::size_t>(shared ? 0 : finding.tool);
+    list.push_back({{"tool", shared ? "" : cell.tools.items[tool].name.data()},
+                    {"source", name_of(finding.source)},
+                    {"unit", unit.text},
+                    {"estimate", unit.per_base * finding.estimate},
+                    {"sigma", unit.per_base * finding.sigma},
+                    {"range_mm", 1e3 * finding.range_m},
+                    {"stated_sigmas", finding.stated_sigmas},
+                    {"named", finding.named}});
+  }
+  return list;
+}
+
 }  // namespace
 
 ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResult& result) {
@@ -149,6 +167,7 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
       {"frames_tracked", result.frames_tracked},
       {"source", source_json(result)},
       {"marker_noise", noise_json(cell, result)},
+      {"calibration", calibration_json(cell, result)},
       {"frames_refused", accuracy.refused},
       {"frames_late_rendered", result.frames_late},
       {"ticks_source_late", result.ticks_source_late},
@@ -319,6 +338,9 @@ void print_table(const ordered_json& summary, const SessionResult& result) {
   for (const auto& notice : summary.at("notices")) row("this cell", notice.get<std::string>());
   if (const auto text = summary.at("corrected").get<std::string>(); !text.empty())
     row("corrected by", text);
+  for (const CalibrationFinding& finding : result.calibration) {
+    if (finding.named) row("CALIBRATION", text_of(finding));
+  }
   for (const std::string& refused : result.refused) row("refused", refused);
   for (const std::string& line : result.machine.spoils) row("this machine", line);
 }

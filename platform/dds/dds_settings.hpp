@@ -7,6 +7,7 @@
 #include "kernels/geometry.hpp"
 #include "kernels/units.hpp"
 #include "platform/record/button_event.hpp"
+#include "platform/report/calibration_findings.hpp"
 #include "platform/rt/followed_robot.hpp"
 #include "platform/rt/loss_counters.hpp"
 #include "platform/rt/overrun_counters.hpp"
@@ -49,6 +50,8 @@ struct DdsSettings {
   const LossCounters* losses = nullptr;
   // And the robot that is followed (null: none is; it outlives the sink).
   const FollowedRobotNotes* robot = nullptr;
+  // And what the tools' residuals show of calibration errors (null: not watched; likewise).
+  const CalibrationNotes* calibration = nullptr;
 };
 
 }  // namespace glint

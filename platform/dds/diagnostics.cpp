@@ -135,6 +135,21 @@ void Diagnostics::add_entry(std::uint8_t level, char* name, char* message,
   entries_.push_back(entry);
 }
 
+void Diagnostics::add_calibration(const std::vector<CalibrationFinding>& findings) {
+  std::vector<Value>& values = values_.emplace_back();
+  std::string warning;
+  for (const CalibrationFinding& finding : findings) {
+    const std::string text = text_of(finding);
+    std::string key(name_of(finding.source));
+    if (finding.tool != k_every_tool) key += " " + std::to_string(finding.tool);
+    values.push_back({keep(key), keep(text)});
+    if (finding.named) warning += (warning.empty() ? "" : "; ") + text;
+  }
+  const char* const fine = findings.empty() ? "too little seen" : "as stated";
+  add_entry(warning.empty() ? k_ok : k_warn, keep("glint: calibration"),
+            keep(warning.empty() ? fine : warning), values);
+}
+
 DiagnosticsMessage Diagnostics::message(Time unix_time) {
   DiagnosticsMessage message{};
   message.header = header_message(unix_time, "");

@@ -1,4 +1,5 @@
-// The sink's state as /diagnostics shows it: one entry a tool, one each of timing, losses, robot.
+// The sink's state as /diagnostics shows it: one entry a tool, one each of timing, losses,
+// robot, calibration.
 #pragma once
 
 #include <deque>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "platform/dds/messages.hpp"
+#include "platform/report/calibration_findings.hpp"
 #include "platform/rt/followed_robot.hpp"
 #include "platform/rt/loss_counters.hpp"
 #include "platform/rt/overrun_counters.hpp"
@@ -25,6 +27,8 @@ class Diagnostics {
   void add_losses(const LossCounters& losses);
   // Whether the robot stands where it is taken to be, as far as that was seen.
   void add_robot(const FollowedRobotNotes& robot);
+  // Calibration errors that are larger than stated, by the tools' residuals.
+  void add_calibration(const std::vector<CalibrationFinding>& findings);
   [[nodiscard]] DiagnosticsMessage message(Time unix_time);
 
  private:

@@ -180,6 +180,7 @@ void PosePublisher::write_diagnostics(const SinkFigures& figures) {
   if (settings_.overruns != nullptr) text.add_timing(*settings_.overruns, settings_.best_effort);
   if (settings_.losses != nullptr) text.add_losses(*settings_.losses);
   if (settings_.robot != nullptr) text.add_robot(*settings_.robot);
+  if (settings_.calibration != nullptr) text.add_calibration(settings_.calibration->all());
   const DiagnosticsMessage message = text.message(Time{dds_time()});
   dds_write(diagnostics_, &message);
 }

@@ -14,6 +14,7 @@
 #include "platform/experiments/motion_experiments.hpp"
 #include "platform/experiments/noise_experiment.hpp"
 #include "platform/experiments/reference_experiment.hpp"
+#include "platform/experiments/warnings_experiment.hpp"
 
 namespace glint {
 
@@ -49,6 +50,8 @@ std::span<const CaseExperiment> case_experiments() {
        false, run_acquisition},
       {"field", "devices that differ from what their cells state, judged at the output", false,
        run_field},
+      {"warnings", "whether a run names the calibration error that a device has", false,
+       run_warnings},
       {"reference", "a robot found in real and simulated depth, from hundreds of rough poses", true,
        run_reference_experiment, true},
   };

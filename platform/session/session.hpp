@@ -11,6 +11,7 @@
 
 #include "kernels/pose/noise_estimate.hpp"
 #include "platform/cells/cell.hpp"
+#include "platform/report/calibration_findings.hpp"
 #include "platform/rt/machine_check.hpp"
 #include "platform/session/accuracy.hpp"
 #include "platform/session/background_group.hpp"
@@ -47,8 +48,9 @@ struct SessionResult : SinkOutcome {
   TicksLeft sent;                       // the ticks that left over CAN
   std::uint64_t ticks_source_late = 0;  // without a measurement, while the source was late
   std::int64_t frames = 0;
-  std::int64_t frames_tracked = 0;  // of these, with at least one tool seen
-  NoiseEstimate noise;              // of the markers, after the last frame
+  std::int64_t frames_tracked = 0;              // of these, with at least one tool seen
+  NoiseEstimate noise;                          // of the markers, after the last frame
+  std::vector<CalibrationFinding> calibration;  // of tools of which enough was seen
   std::int64_t ticks = 0;
   std::int64_t ticks_late = 0, ticks_skipped = 0;
   std::vector<std::int64_t> tick_wake_up_ns;  // live: the newest, and the largest

@@ -81,7 +81,9 @@ SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, Ke
              sinks.recorder() != nullptr ? &sinks.recorder()->tick_lane() : nullptr,
              sinks.recorder(), &sinks.losses()},
             unix_offset_ns, kept.latencies > 0 ? kept.latencies : LatencyLog::k_entries_max,
-            tick_runner_, frame_.overrun_notes()) {
+            tick_runner_, frame_.overrun_notes()),
+      calibration_(cell),
+      calibration_notes_(&sinks.calibration_notes()) {
   robot_.write_slot() = declared_robot_frame(cell);
   robot_.publish(1, 0);
   outcomes_.resize(kept.outcomes);
@@ -103,6 +105,7 @@ void SessionGroups::process(const ArrivedFrame& arrived) noexcept {
   if (processed_ < outcomes_.size()) {
     outcomes_[processed_] = outcome_of(newest, frame_.tracker());
   }
+  if (frame_.tracker() != nullptr) calibration_.see(*frame_.tracker());
   ++processed_;
   if (decisions_.add(arrived.frame.sequence, newest, frame_runner_)) ++tracked_;
   if (background_ == nullptr) return;
@@ -123,6 +126,7 @@ void SessionGroups::report(SessionResult& result) {
   result.frames = static_cast<std::int64_t>(processed_);
   result.frames_tracked = static_cast<std::int64_t>(tracked_);
   result.noise = frame_.newest().noise;
+  result.calibration = calibration_.findings();
   const SentTicks& sent = tick_.sent();
   result.sent = sent.left();
   result.latencies = sent.latencies().entries();

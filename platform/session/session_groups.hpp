@@ -9,6 +9,7 @@
 #include "platform/rt/trace_writer.hpp"
 #include "platform/session/accuracy.hpp"
 #include "platform/session/background_group.hpp"
+#include "platform/session/calibration_watch.hpp"
 #include "platform/session/decision_hash.hpp"
 #include "platform/session/frame_group.hpp"
 #include "platform/session/session.hpp"
@@ -37,7 +38,10 @@ class SessionGroups {
   void stop_safe() noexcept { tick_.stop_safe(); }
 
   // What changes by plan or was asked for, up to this time; not by a real-time thread.
-  void reach(Time now) { roster_.reach(now); }
+  void reach(Time now) {
+    roster_.reach(now);
+    calibration_.review(now, *calibration_notes_);
+  }
 
   // Null where the cell has none.
   [[nodiscard]] BackgroundGroup* background() noexcept { return background_.get(); }
@@ -60,6 +64,8 @@ class SessionGroups {
   FrameGroup frame_;
   TickGroup tick_;
   DecisionHash decisions_;
+  CalibrationWatch calibration_;
+  CalibrationNotes* calibration_notes_;
   std::vector<FrameOutcome> outcomes_;
   std::size_t processed_ = 0, tracked_ = 0;
 };

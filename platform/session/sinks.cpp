@@ -117,6 +117,7 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     settings.best_effort = joined(options.best_effort);
     settings.overruns = &overruns_;
     settings.losses = &losses_;
+    settings.calibration = &calibration_notes_;
     if (cell.mapping && !cell.mapping->model.empty()) settings.robot = &robot_notes_;
     dds_ = std::make_unique<DdsSink>(settings);
     if (options.with_reader) {

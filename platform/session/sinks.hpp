@@ -14,6 +14,7 @@
 #include "platform/dds/reader_process.hpp"
 #include "platform/record/button_event.hpp"
 #include "platform/record/recorder.hpp"
+#include "platform/report/calibration_findings.hpp"
 #include "platform/rt/followed_robot.hpp"
 #include "platform/rt/loss_counters.hpp"
 #include "platform/rt/overrun_counters.hpp"
@@ -58,6 +59,9 @@ class Sinks {
   // For whoever follows the robot; likewise.
   [[nodiscard]] FollowedRobotNotes& robot_notes() noexcept { return robot_notes_; }
 
+  // For whoever watches the calibration; likewise.
+  [[nodiscard]] CalibrationNotes& calibration_notes() noexcept { return calibration_notes_; }
+
   // After the last offer: everything is written, and what became of it stands in the result.
   void close(SinkOutcome& result);
 
@@ -68,6 +72,7 @@ class Sinks {
   OverrunCounters overruns_;
   LossCounters losses_;
   FollowedRobotNotes robot_notes_;
+  CalibrationNotes calibration_notes_;
   ToolRequests tool_requests_;
   std::vector<ToolOrders> tool_orders_;  // by tool; of the thread that reads from DDS
   std::mutex one_button_;  // the lane of inputs and what is held are for one thread at a time

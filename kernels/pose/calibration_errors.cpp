@@ -1,0 +1,124 @@
+#include "kernels/pose/calibration_errors.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "kernels/pose/normal_equations.hpp"
+
+namespace glint {
+namespace {
+
+// One residual: its value, its derivatives by the pose (normal_equations.hpp), and minus those by
+// the errors in sigmas.
+struct Row {
+  double residual = 0;
+  Vector6 by_pose = Vector6::Zero();
+  ErrorVector by_errors = ErrorVector::Zero();
+};
+using Rows = std::array<Row, 3 * k_markers_per_tool_max>;
+
+double squared(double x) { return x * x; }
+
+// What is the same for all residuals of a marker.
+struct Place {
+  const LocalRays& rays;
+  Matrix3 rotation;
+  Vector3 lever;
+  int number;
+};
+
+void set_row(double residual, const Vector3& gradient, const Place& place, double marker_sigma_m,
+             Row& row) {
+  row.residual = residual;
+  row.by_pose << gradient, place.lever.cross(gradient);
+  row.by_errors.setZero();
+  row.by_errors.segment<3>(k_common_errors + 3 * place.number) =
+      marker_sigma_m * (place.rotation.transpose() * gradient);
+}
+
+// The residual across the ray along `across`, where the measured ray may be turned.
+void set_across(const Vector3& across, const WeightedMarker& marker, const Vector3& point,
+                const Place& place, const CameraUncertainty& camera, double marker_sigma_m,
+                Row& row) {
+  const double inverse = 1 / marker.ray.dot(point);
+  const double residual = across.dot(point) * inverse;
+  set_row(residual, (across - marker.ray * residual) * inverse, place, marker_sigma_m, row);
+  const double right = across.dot(place.rays.along_x), down = across.dot(place.rays.along_y);
+  const Vector3 off_axis(marker.ray.x(), marker.ray.y(), 0);
+  row.by_errors(2) = right * camera.principal_point_px;
+  row.by_errors(3) = down * camera.principal_point_px;
+  row.by_errors(4) = across.dot(off_axis) * camera.focal_scale;
+  const double slow_px2 = squared(camera.slow_centroid_px) + squared(k_lens_residual_px);
+  const double noise = std::sqrt(1 + slow_px2 * (squared(right) + squared(down)));
+  row.residual /= noise;
+  row.by_pose /= noise;
+  row.by_errors /= noise;
+}
+
+void set_along(const WeightedMarker& marker, const Vector3& point, const Place& place,
+               const CameraUncertainty& camera, double marker_sigma_m, Row& row) {
+  const double slow_m2 = squared(camera.slow_range_m) + squared(k_range_ripple_m);
+  const double weight =
+      marker.per_range_sigma / std::sqrt(1 + slow_m2 * squared(marker.per_range_sigma));
+  const double range = std::sqrt(point.squaredNorm());
+  set_row((range - marker.range_m) * weight, point * (weight / range), place, marker_sigma_m, row);
+  row.by_errors(0) = weight * camera.range_offset_m;
+  row.by_errors(1) = weight * marker.range_m * camera.range_scale;
+}
+
+}  // namespace
+
+void add_fit(std::span<const WeightedMarker> markers, std::span<const LocalRays> rays,
+             std::span<const int> of_tool, const Pose& T_camera_tool,
+             const CameraUncertainty& camera, double marker_sigma_m,
+             CalibrationErrors& errors) noexcept {
+  const std::size_t count = std::min(markers.size(), std::size_t{k_markers_per_tool_max});
+  if (count < 3 || rays.size() < count || of_tool.size() < count) return;
+  const Vector3 mean_m = mean_of(markers.first(count));
+  const Matrix3 rotation = T_camera_tool.rotation.toRotationMatrix();
+  Rows rows;
+  Matrix6 normal = Matrix6::Zero();
+  double range_m = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const WeightedMarker& marker = markers[i];
+    const Vector3 point = T_camera_tool * marker.model_m;
+    if (!(marker.ray.dot(point) > 0) || of_tool[i] < 0 || of_tool[i] >= k_markers_per_tool_max)
+      return;
+    const Place place{rays[i], rotation, rotation * (marker.model_m - mean_m), of_tool[i]};
+    set_across(marker.across_first, marker, point, place, camera, marker_sigma_m, rows[3 * i]);
+    set_across(marker.across_second, marker, point, place, camera, marker_sigma_m, rows[3 * i + 1]);
+    set_along(marker, point, place, camera, marker_sigma_m, rows[3 * i + 2]);
+    for (std::size_t k = 3 * i; k < 3 * i + 3; ++k)
+      normal += rows[k].by_pose.lazyProduct(rows[k].by_pose.transpose());
+    range_m += marker.range_m;
+  }
+  const Result<PoseFactor> factor = pose_factor(normal);
+  if (!factor) return;
+  // Each column less what a pose explains of it.
+  Vector6 residual_slope = Vector6::Zero();
+  Eigen::Matrix<double, 6, k_calibration_errors> error_slopes;
+  error_slopes.setZero();
+  for (std::size_t k = 0; k < 3 * count; ++k) {
+    residual_slope += rows[k].by_pose * rows[k].residual;
+    for (int c = 0; c < k_calibration_errors; ++c)
+      error_slopes.col(c) += rows[k].by_pose * rows[k].by_errors(c);
+  }
+  const Vector6 residual_pose = factor.value.solve(residual_slope);
+  for (int c = 0; c < k_calibration_errors; ++c)
+    error_slopes.col(c) = factor.value.solve(error_slopes.col(c));
+  for (std::size_t k = 0; k < 3 * count; ++k) {
+    const double residual = rows[k].residual - rows[k].by_pose.dot(residual_pose);
+    ErrorVector left = rows[k].by_errors;
+    for (int c = 0; c < k_calibration_errors; ++c)
+      left(c) -= rows[k].by_pose.dot(error_slopes.col(c));
+    for (int c = 0; c < k_calibration_errors; ++c) {
+      errors.pull(c) -= left(c) * residual;
+      for (int r = c; r < k_calibration_errors; ++r) errors.information(r, c) += left(r) * left(c);
+    }
+  }
+  errors.ranges_m += range_m / static_cast<double>(count);
+  ++errors.fits;
+}
+
+}  // namespace glint

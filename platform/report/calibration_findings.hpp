@@ -1,0 +1,76 @@
+// Which calibration errors are larger than stated, out of the sums of
+// kernels/pose/calibration_errors.
+//
+// An error counts where the data show it: where they leave less than half of its stated variance.
+// Errors that the data do not separate are one finding: a range offset and a range scale at one
+// range. Sizes are in stated standard deviations, along the axes of what the data leave.
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kernels/pose/calibration_errors.hpp"
+
+namespace glint {
+
+enum class ErrorSource : std::uint8_t {
+  range_offset,
+  range_scale,
+  range,  // the two, not separated
+  principal_point,
+  focal_length,
+  tool_geometry
+};
+
+[[nodiscard]] std::string_view name_of(ErrorSource source);
+
+inline constexpr int k_every_tool = -1;  // of an error that all tools share
+
+struct CalibrationFinding {
+  int tool = k_every_tool;
+  ErrorSource source = ErrorSource::range;
+  // Of an offset and of `range` m, at range_m; of scales 1; of the principal point its distance,
+  // px; of the geometry the markers' rms, m.
+  double estimate = 0, sigma = 0, range_m = 0;
+  double stated_sigmas = 0;  // the error's size
+  bool named = false;        // larger than the stated standard deviations explain
+};
+
+// In which unit a source's estimate is printed.
+struct ErrorUnit {
+  const char* text;
+  double per_base;
+};
+[[nodiscard]] ErrorUnit unit_of(ErrorSource source);
+
+// "range offset 24.0 mm (sigma 1.1), 4.0 times what is stated; glint calibrate depth".
+[[nodiscard]] std::string text_of(const CalibrationFinding& finding);
+
+// The newest findings, from whoever computes them to whoever reports them; any thread.
+class CalibrationNotes {
+ public:
+  void set(std::vector<CalibrationFinding> findings);
+  [[nodiscard]] std::vector<CalibrationFinding> all() const;
+
+ private:
+  mutable std::mutex one_;
+  std::vector<CalibrationFinding> findings_;
+};
+
+// What was seen of one tool.
+struct ToolErrors {
+  int tool = 0;
+  int markers = 0;
+  double marker_sigma_m = 0;  // as stated
+  CalibrationErrors sums;     // of at least one fit
+};
+
+// Of the errors that the tools share, and of each tool's own.
+[[nodiscard]] std::vector<CalibrationFinding> calibration_findings(
+    std::span<const ToolErrors> tools, const CameraUncertainty& stated);
+
+}  // namespace glint

@@ -1,0 +1,112 @@
+#include "platform/session/calibration_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/pose/marker_range.hpp"
+#include "kernels/pose/marker_sight.hpp"
+
+namespace glint {
+namespace {
+
+constexpr double k_apart_m = 0.015, k_apart_cosine = 0.999;  // of half the rotation: 5 deg
+constexpr int k_fits_least = 20;
+constexpr unsigned k_doubtful =
+    k_marker_touches_edge | k_marker_has_neighbour | k_marker_uneven | k_marker_wrapped;
+
+bool is_apart(const Pose& a, const Pose& b) {
+  return (a.translation - b.translation).squaredNorm() > k_apart_m * k_apart_m ||
+         std::abs(a.rotation.dot(b.rotation)) < k_apart_cosine;
+}
+
+// The labelled markers of one tool, weighed.
+struct Sights {
+  std::array<WeightedMarker, k_markers_per_tool_max> markers;
+  std::array<LocalRays, k_markers_per_tool_max> rays;
+  std::array<int, k_markers_per_tool_max> of_tool{};
+  std::size_t count = 0;
+
+  Sights(const Markers& all, const Labeling& labeling, const Tool& tool, const MarkerNoise& noise) {
+    for (int i = 0; i < tool.marker_count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (labeling.marker[at] < 0) continue;
+      const Marker& marker = all.items[static_cast<std::size_t>(labeling.marker[at])];
+      if ((marker.flags & k_doubtful) != 0) continue;
+      const double range_m = centre_range_m(marker, tool);
+      const MarkerSight sight = sight_of(marker, range_m, noise);
+      const Result<WeightedMarker> weighed =
+          weigh_marker(tool.markers_m[at], sight.rays, range_m, sight.variance);
+      if (!weighed) continue;
+      markers[count] = weighed.value;
+      rays[count] = sight.rays;
+      of_tool[count++] = i;
+    }
+  }
+};
+
+}  // namespace
+
+CalibrationWatch::CalibrationWatch(const Cell& cell) : cell_(cell) {
+  for (int t = 0; t < k_tools_max; ++t) tools_[static_cast<std::size_t>(t)].tool = t;
+}
+
+void CalibrationWatch::see(const Tracker& tracker) noexcept {
+  if (!tracker.token<FrameVerdict>().usable()) return;
+  const ToolSet& set = tracker.token<graph::Latest<ToolSet>>().value();
+  const int count = std::min(set.count, k_tools_max);
+  for (int t = 0; t < count; ++t) {
+    const auto at = static_cast<std::size_t>(t);
+    see(tracker, set.items[at], tools_[at]);
+  }
+  if (count == 0) return;
+  shared_.write_slot() = tools_[++seen_ % static_cast<std::uint64_t>(count)];
+  shared_.publish(seen_, 0);
+}
+
+void CalibrationWatch::see(const Tracker& tracker, const Tool& tool, Watched& watched) noexcept {
+  const auto at = static_cast<std::size_t>(watched.tool);
+  if (watched.identity != tool.identity) {
+    watched.errors = {};
+    watched.identity = tool.identity;
+  }
+  const Assignment& assignment = tracker.token<Assignment>();
+  if (!tool.present() || assignment.reason[at] != Reason::none) return;
+  const FittedTool& fitted = tracker.parts<FittedTools>(watched.tool % k_tool_slices).tools[at];
+  const Labeling& labeling = labeling_of(assignment, fitted, at);
+  const Pose& pose = fitted.reason == Reason::none ? fitted.T_camera_tool : labeling.T_camera_tool;
+  if (!is_apart(pose, watched.counted)) return;
+  const Camera& camera = cell_.camera;
+  const MarkerNoise declared{camera.range_sigma_m, camera.pixel_sigma_px, camera.model.fx};
+  const MarkerNoise noise = noise_now(tracker.output<Estimates>().noise, declared);
+  const Sights sights(tracker.token<Markers>(), labeling, tool, noise);
+  const int before = watched.errors.fits;
+  add_fit({sights.markers.data(), sights.count}, {sights.rays.data(), sights.count},
+          {sights.of_tool.data(), sights.count}, pose, camera.uncertainty, tool.marker_sigma_m,
+          watched.errors);
+  if (watched.errors.fits > before) watched.counted = pose;
+}
+
+std::vector<CalibrationFinding> CalibrationWatch::findings_of(const AllWatched& tools) const {
+  std::vector<ToolErrors> seen;
+  for (int t = 0; t < cell_.tools.count; ++t) {
+    const Watched& watched = tools[static_cast<std::size_t>(t)];
+    const Tool& tool = cell_.tools.items[static_cast<std::size_t>(t)];
+    if (watched.errors.fits < k_fits_least || watched.identity != tool.identity) continue;
+    seen.push_back({t, tool.marker_count, tool.marker_sigma_m, watched.errors});
+  }
+  return calibration_findings(seen, cell_.camera.uncertainty);
+}
+
+std::vector<CalibrationFinding> CalibrationWatch::findings() const { return findings_of(tools_); }
+
+void CalibrationWatch::review(Time now, CalibrationNotes& notes) {
+  if (shared_.sample()) {
+    const Watched& newest = shared_.value();
+    reviewed_[static_cast<std::size_t>(newest.tool)] = newest;
+  }
+  if (now < next_review_) return;
+  next_review_ = now + k_review;
+  notes.set(findings_of(reviewed_));
+}
+
+}  // namespace glint

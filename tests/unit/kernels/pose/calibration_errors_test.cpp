@@ -1,0 +1,167 @@
+#include "kernels/pose/calibration_errors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tests/unit/kernels/pose/weighted_scene.hpp"
+
+namespace glint::calibration_errors_test {
+namespace {
+
+using test::Random;
+
+constexpr MarkerVariance k_variance{0.01, 0, 0.01, 0.0015 * 0.0015};
+constexpr double k_marker_sigma_m = 0.0003;
+constexpr CameraUncertainty k_stated;
+
+// In their stated sigmas.
+struct Errors {
+  ErrorVector sigmas = ErrorVector::Zero();
+
+  void apply(const CameraModel& camera, Vector2& pixel, double& range_m) const {
+    const Vector2 principal(camera.cx, camera.cy);
+    pixel += sigmas(4) * k_stated.focal_scale * (pixel - principal);
+    pixel += k_stated.principal_point_px * sigmas.segment<2>(2);
+    range_m += k_stated.range_offset_m * sigmas(0) + k_stated.range_scale * sigmas(1) * range_m;
+  }
+};
+
+// Fits of a hand-held tool as a device with these errors measures it; the pose is the true one.
+CalibrationErrors seen_by(const Tool& tool, const Errors& errors, int fits, Random& random) {
+  const CameraModel camera = test::pinhole();
+  Tool made = tool;
+  for (int i = 0; i < tool.marker_count; ++i) {
+    made.markers_m[static_cast<std::size_t>(i)] +=
+        k_marker_sigma_m * errors.sigmas.segment<3>(k_common_errors + 3 * i);
+  }
+  CalibrationErrors sums;
+  for (int n = 0; n < fits; ++n) {
+    const Vector3 place(random.within(-0.2, 0.2), random.within(-0.2, 0.2),
+                        random.within(0.35, 0.7));
+    const Quaternion turn = random.rotation();
+    const Pose pose{turn, place - turn * test::mean_of_markers(tool)};
+    std::vector<WeightedMarker> markers;
+    std::vector<LocalRays> rays;
+    std::vector<int> of_tool;
+    for (int i = 0; i < tool.marker_count; ++i) {
+      const auto m = static_cast<std::size_t>(i);
+      const Vector3 point = pose * made.markers_m[m];
+      Vector2 pixel = project(camera, point).value;
+      double range_m = point.norm();
+      errors.apply(camera, pixel, range_m);
+      pixel += random.vector(0.1).head<2>();
+      range_m += 0.0015 * random.normal();
+      int steps = 0;
+      rays.push_back(local_rays(camera, pixel, k_ray_steps_max, steps).value);
+      markers.push_back(weigh_marker(tool.markers_m[m], rays.back(), range_m, k_variance).value);
+      of_tool.push_back(i);
+    }
+    add_fit(markers, rays, of_tool, pose, k_stated, k_marker_sigma_m, sums);
+  }
+  return sums;
+}
+
+ErrorMatrix covariance_of(const CalibrationErrors& sums) {
+  ErrorMatrix matrix = sums.information.selfadjointView<Eigen::Lower>();
+  matrix.diagonal().array() += 1;
+  return matrix.llt().solve(ErrorMatrix::Identity());
+}
+
+// Errors of the stated distributions: the estimate's own lie within its covariance.
+TEST(CalibrationErrors, LieWithinTheirCovariance) {
+  Random random(7);
+  double squares = 0;
+  constexpr int k_devices = 60;
+  for (int device = 0; device < k_devices; ++device) {
+    const Tool tool = test::random_tool(random, 4 + device % 4);
+    Errors errors;
+    for (int i = 0; i < k_common_errors + 3 * tool.marker_count; ++i)
+      errors.sigmas(i) = random.normal();
+    const CalibrationErrors sums = seen_by(tool, errors, 30, random);
+    EXPECT_EQ(sums.fits, 30);
+    const ErrorMatrix covariance = covariance_of(sums);
+    const ErrorVector off = covariance * sums.pull - errors.sigmas;
+    squares += off.dot(covariance.llt().solve(off)) / (k_common_errors + 3 * tool.marker_count);
+  }
+  // What widens the noise is not in these measurements, so that the errors are a little smaller.
+  EXPECT_GT(squares / k_devices, 0.6);
+  EXPECT_LT(squares / k_devices, 1.2);
+}
+
+// One error of four sigmas.
+TEST(CalibrationErrors, FindARangeOffsetAndAMarkerOutOfPlace) {
+  Random random(8);
+  const Tool tool = test::random_tool(random, 5);
+  Errors offset, marker;
+  offset.sigmas(0) = 4;
+  marker.sigmas.segment<3>(k_common_errors + 6) = Vector3(4, 0, -4);
+  const CalibrationErrors of_offset = seen_by(tool, offset, 60, random);
+  const ErrorVector found = covariance_of(of_offset) * of_offset.pull;
+  EXPECT_GT(found(0), 2.5);
+  EXPECT_LT(found.tail(k_calibration_errors - k_common_errors).cwiseAbs().maxCoeff(), 1.5);
+  const CalibrationErrors of_marker = seen_by(tool, marker, 60, random);
+  const ErrorVector moved = covariance_of(of_marker) * of_marker.pull;
+  EXPECT_LT(std::abs(moved(0)), 1);
+  // A motion of the whole tool is the pose's, and its size may be the focal length's: the shape is
+  // what shows.
+  const auto shape_of = [&tool](const ErrorVector& errors) {
+    std::vector<double> distances;
+    double sum = 0;
+    for (int a = 0; a < tool.marker_count; ++a) {
+      for (int b = 0; b < a; ++b) {
+        const Vector3 apart = tool.markers_m[static_cast<std::size_t>(a)] -
+                              tool.markers_m[static_cast<std::size_t>(b)] +
+                              k_marker_sigma_m * (errors.segment<3>(k_common_errors + 3 * a) -
+                                                  errors.segment<3>(k_common_errors + 3 * b));
+        distances.push_back(apart.norm());
+        sum += apart.norm();
+      }
+    }
+    for (double& distance : distances) distance *= static_cast<double>(distances.size()) / sum;
+    return distances;
+  };
+  const std::vector<double> drawn = shape_of(ErrorVector::Zero()), made = shape_of(marker.sigmas),
+                            seen = shape_of(moved);
+  double largest = 0;
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    EXPECT_NEAR(seen[i], made[i], 0.0025) << i;
+    largest = std::max(largest, std::abs(made[i] - drawn[i]));
+  }
+  EXPECT_GT(largest, 0.006);
+}
+
+// A shift of all markers alike is a shift of the tool.
+TEST(CalibrationErrors, LeaveOpenWhatAPoseExplains) {
+  Random random(9);
+  const Tool tool = test::random_tool(random, 5);
+  const ErrorMatrix covariance = covariance_of(seen_by(tool, {}, 20, random));
+  ErrorVector shift = ErrorVector::Zero();
+  for (int i = 0; i < tool.marker_count; ++i) shift(k_common_errors + 3 * i) = std::sqrt(0.2);
+  EXPECT_NEAR(shift.dot(covariance * shift), 1, 1e-6);
+  EXPECT_LT(covariance(0, 0), 0.7);
+  EXPECT_LT(covariance(2, 2), 0.5);
+}
+
+TEST(CalibrationErrors, AddNothingOfAFitThatIsNotDetermined) {
+  Random random(10);
+  CalibrationErrors sums;
+  const std::vector<WeightedMarker> none;
+  add_fit(none, {}, {}, Pose{}, k_stated, k_marker_sigma_m, sums);
+  // Three times the same marker.
+  int steps = 0;
+  const LocalRays rays = local_rays(test::pinhole(), {200, 200}, k_ray_steps_max, steps).value;
+  const Vector3 point = rays.ray * 0.5;
+  const WeightedMarker one = weigh_marker(Vector3::Zero(), rays, 0.5, k_variance).value;
+  const Pose pose{Quaternion::Identity(), point};
+  add_fit(std::vector(3, one), std::vector(3, rays), std::vector{0, 1, 2}, pose, k_stated,
+          k_marker_sigma_m, sums);
+  EXPECT_EQ(sums.fits, 0);
+  EXPECT_TRUE(sums.pull.isZero());
+}
+
+}  // namespace
+}  // namespace glint::calibration_errors_test
