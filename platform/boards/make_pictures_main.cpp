@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "platform/boards/long_throw.hpp"
 #include "platform/exit_code.hpp"
 #include "platform/input_error.hpp"
 #include "platform/sensors/npy.hpp"
+#include "platform/sim/long_throw.hpp"
 #include "platform/sources/scenario_of.hpp"
 
 namespace glint {

@@ -14,8 +14,8 @@
 
 #include "kernels/angles.hpp"
 #include "nodes/tracker.hpp"
+#include "platform/sensors/frame_truth.hpp"
 #include "platform/session/gross.hpp"
-#include "platform/sim/simulator.hpp"
 
 namespace glint {
 

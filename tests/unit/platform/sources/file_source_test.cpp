@@ -9,6 +9,7 @@
 
 #include "platform/input_error.hpp"
 #include "platform/session/simulated_run.hpp"
+#include "platform/sim/simulator.hpp"
 #include "platform/sources/open_source.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
 

@@ -1,4 +1,4 @@
-#include "platform/boards/long_throw.hpp"
+#include "platform/sim/long_throw.hpp"
 
 #include <cstdint>
 #include <memory>
