@@ -10,7 +10,8 @@
 //           each candidate a step for each bit of a distance; nothing depends on the distances.
 // Worst:    as many candidates as runs, as many predictions as tools have markers, and a search.
 // Accuracy: exact: half pixels, squared, are whole numbers below 2^23, and below 2^31 with misfit.
-//           What is further apart, which frames up to 512 pixels a side have not, counts alike.
+//           Distances from 2^23 on count alike: a prediction far outside the frame, or opposite
+//           corners of the largest one.
 // Source:   the place of an order without the order: the largest distance that fewer than `kept`
 //           lie below, by bisection of its bits; Knuth, "The Art of Computer Programming", vol. 3,
 //           section 6.2.1. The golden ratio's gaps: the same, section 6.4, theorem S.

@@ -131,13 +131,11 @@ ordered_json noise_json(const Cell& cell, const SessionResult& result) {
           {"pixel_sigma_px", noise.pixel_sigma_px}};
 }
 
-ordered_json calibration_json(const Cell& cell, const SessionResult& result) {
+ordered_json calibration_json(const SessionResult& result) {
   ordered_json list = ordered_json::array();
   for (const CalibrationFinding& finding : result.calibration) {
     const ErrorUnit unit = unit_of(finding.source);
-    const bool shared = finding.tool == k_every_tool;
-    const auto tool = static_cast<std::size_t>(shared ? 0 : finding.tool);
-    list.push_back({{"tool", shared ? "" : cell.tools.items[tool].name.data()},
+    list.push_back({{"tool", finding.tool},
                     {"source", name_of(finding.source)},
                     {"unit", unit.text},
                     {"estimate", unit.per_base * finding.estimate},
@@ -167,7 +165,7 @@ ordered_json summary_of(const Cell& cell, const RunPlan& plan, const SessionResu
       {"frames_tracked", result.frames_tracked},
       {"source", source_json(result)},
       {"marker_noise", noise_json(cell, result)},
-      {"calibration", calibration_json(cell, result)},
+      {"calibration", calibration_json(result)},
       {"frames_refused", accuracy.refused},
       {"frames_late_rendered", result.frames_late},
       {"ticks_source_late", result.ticks_source_late},

@@ -140,9 +140,8 @@ void Diagnostics::add_calibration(const std::vector<CalibrationFinding>& finding
   std::string warning;
   for (const CalibrationFinding& finding : findings) {
     const std::string text = text_of(finding);
-    std::string key(name_of(finding.source));
-    if (finding.tool != k_every_tool) key += " " + std::to_string(finding.tool);
-    values.push_back({keep(key), keep(text)});
+    const std::string key = finding.tool.empty() ? "" : finding.tool + ": ";
+    values.push_back({keep(key + std::string(name_of(finding.source))), keep(text)});
     if (finding.named) warning += (warning.empty() ? "" : "; ") + text;
   }
   const char* const fine = findings.empty() ? "too little seen" : "as stated";

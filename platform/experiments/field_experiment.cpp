@@ -16,20 +16,6 @@ constexpr double k_duration_s = 30, k_duration_quick_s = 8;
 constexpr double k_coverage_min = 88, k_sharpness_max = 3;
 constexpr double k_seed_coverage_low = 80;
 
-// Nothing leaves the process.
-Cell field_cell(std::uint64_t seed, double duration_s) {
-  Cell cell = default_cell();
-  cell.simulator.scenario = "field";
-  cell.simulator.seed = seed;
-  cell.simulator.duration_s = duration_s;
-  cell.realtime = false;
-  cell.workers = 1;
-  cell.dds.on = false;
-  cell.record.file.clear();
-  cell.files = {};
-  return cell;
-}
-
 void state_exactly(Cell& cell) {
   cell.camera.uncertainty = k_exact_camera;
   cell.robot_sigma_m = cell.robot_sigma_rad = 0;
@@ -123,6 +109,19 @@ ExperimentCase judged(FieldDevice device, const CaseOptions& options, int& done)
 }
 
 }  // namespace
+
+Cell field_cell(std::uint64_t seed, double duration_s) {
+  Cell cell = default_cell();
+  cell.simulator.scenario = "field";
+  cell.simulator.seed = seed;
+  cell.simulator.duration_s = duration_s;
+  cell.realtime = false;
+  cell.workers = 1;
+  cell.dds.on = false;
+  cell.record.file.clear();
+  cell.files = {};
+  return cell;
+}
 
 SessionResult run_field_device(FieldDevice device, std::uint64_t seed, double duration_s,
                                const std::string& out) {

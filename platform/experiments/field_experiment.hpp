@@ -16,6 +16,9 @@ namespace glint {
 
 enum class FieldDevice { drawn, exact };
 
+// The built-in cell with the device of a random seed; nothing leaves the process.
+[[nodiscard]] Cell field_cell(std::uint64_t seed, double duration_s);
+
 // One random seed's run.
 [[nodiscard]] SessionResult run_field_device(FieldDevice device, std::uint64_t seed,
                                              double duration_s, const std::string& out);

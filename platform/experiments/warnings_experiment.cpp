@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "platform/cells/tool_file.hpp"
+#include "platform/experiments/field_experiment.hpp"
 #include "platform/session/simulated_run.hpp"
 #include "platform/sources/scenario_of.hpp"
 
@@ -74,16 +75,8 @@ void add_reference_body(Cell& cell) {
 
 std::vector<CalibrationFinding> findings_of(Large large, std::uint64_t seed, double duration_s,
                                             const std::string& out) {
-  Cell cell = default_cell();
+  Cell cell = field_cell(seed, duration_s);
   if (large == Large::principal_point || large == Large::focal_length) add_reference_body(cell);
-  cell.simulator.scenario = "field";
-  cell.simulator.seed = seed;
-  cell.simulator.duration_s = duration_s;
-  cell.realtime = false;
-  cell.workers = 1;
-  cell.dds.on = false;
-  cell.record.file.clear();
-  cell.files = {};
   sim::Scenario scenario = scenario_of(cell);
   shrink_errors(cell, large, seed, scenario);
   SessionOptions options;
@@ -116,7 +109,7 @@ CaseList run_warnings(const CaseOptions& options) {
   for (const WarningCase& one : k_warning_cases) {
     const int seeds = options.quick ? one.quick : one.seeds;
     int named = 0, others = 0;
-    double sigmas = 0;  // of the source named, the mean
+    double sigmas = 0;  // of the case's source, the largest
     for (int i = 0; i < seeds; ++i) {
       const auto findings = findings_of(one.large, options.seed + static_cast<std::uint64_t>(i),
                                         options.quick ? k_warned_quick_s : k_warned_s, options.out);

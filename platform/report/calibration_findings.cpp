@@ -100,24 +100,25 @@ class Findings {
   std::vector<CalibrationFinding> found;
 
  private:
-  void add(int tool, ErrorSource source, double value, double sigma, const Size& size) {
+  void add(const std::string& tool, ErrorSource source, double value, double sigma,
+           const Size& size) {
     found.push_back({tool, source, value, sigma, range_m_, size.axes > 1 ? size.rms : size.largest,
                      size.axes > 0 && size.beyond()});
   }
   void add_one(ErrorSource source, int at, double stated) {
-    add(k_every_tool, source, estimate_.errors(at) * stated,
-        std::sqrt(estimate_.covariance(at, at)) * stated, Size(estimate_, at, 1));
+    add({}, source, estimate_.errors(at) * stated, std::sqrt(estimate_.covariance(at, at)) * stated,
+        Size(estimate_, at, 1));
   }
   // At the mean range.
   void add_range() {
     const Eigen::Vector2d part(stated_.range_offset_m, stated_.range_scale * range_m_);
-    add(k_every_tool, ErrorSource::range, part.dot(estimate_.errors.head<2>()),
+    add({}, ErrorSource::range, part.dot(estimate_.errors.head<2>()),
         std::sqrt(part.dot(estimate_.covariance.topLeftCorner<2, 2>() * part)),
         Size(estimate_, 0, 2));
   }
   void add_principal_point() {
     const Eigen::Vector2d variance = estimate_.covariance.diagonal().segment<2>(2);
-    add(k_every_tool, ErrorSource::principal_point,
+    add({}, ErrorSource::principal_point,
         stated_.principal_point_px * estimate_.errors.segment<2>(2).norm(),
         stated_.principal_point_px * std::sqrt(variance.sum()), Size(estimate_, 2, 2));
   }
@@ -155,11 +156,15 @@ std::string text_of(const CalibrationFinding& finding) {
   const char* const command = lens                                           ? "camera"
                               : finding.source == ErrorSource::tool_geometry ? "tool"
                                                                              : "depth";
-  char text[160];
+  char at[32] = "";
+  if (finding.source == ErrorSource::range)
+    std::snprintf(at, sizeof at, " at %.0f mm", 1e3 * finding.range_m);
+  char text[256];
   std::snprintf(text, sizeof text,
-                "%s %.2f %s (sigma %.2f), %.1f times what is stated; glint calibrate %s",
+                "%s%s%s %.2f %s%s (sigma %.2f), %.1f times what is stated; glint calibrate %s",
+                finding.tool.c_str(), finding.tool.empty() ? "" : ": ",
                 std::string(name_of(finding.source)).c_str(), unit.per_base * finding.estimate,
-                unit.text, unit.per_base * finding.sigma, finding.stated_sigmas, command);
+                unit.text, at, unit.per_base * finding.sigma, finding.stated_sigmas, command);
   return text;
 }
 

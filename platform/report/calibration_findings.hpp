@@ -28,10 +28,8 @@ enum class ErrorSource : std::uint8_t {
 
 [[nodiscard]] std::string_view name_of(ErrorSource source);
 
-inline constexpr int k_every_tool = -1;  // of an error that all tools share
-
 struct CalibrationFinding {
-  int tool = k_every_tool;
+  std::string tool;  // its name; empty: an error that all tools share
   ErrorSource source = ErrorSource::range;
   // Of an offset and of `range` m, at range_m; of scales 1; of the principal point its distance,
   // px; of the geometry the markers' rms, m.
@@ -47,10 +45,10 @@ struct ErrorUnit {
 };
 [[nodiscard]] ErrorUnit unit_of(ErrorSource source);
 
-// "range offset 24.0 mm (sigma 1.1), 4.0 times what is stated; glint calibrate depth".
+// "pen: tool geometry 1.20 mm (sigma 0.31), 4.0 times what is stated; glint calibrate tool".
 [[nodiscard]] std::string text_of(const CalibrationFinding& finding);
 
-// The newest findings, from whoever computes them to whoever reports them; any thread.
+// The newest findings, between two threads: one computes them, one publishes them.
 class CalibrationNotes {
  public:
   void set(std::vector<CalibrationFinding> findings);
@@ -63,7 +61,7 @@ class CalibrationNotes {
 
 // What was seen of one tool.
 struct ToolErrors {
-  int tool = 0;
+  std::string tool;  // its name
   int markers = 0;
   double marker_sigma_m = 0;  // as stated
   CalibrationErrors sums;     // of at least one fit

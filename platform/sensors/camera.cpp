@@ -111,8 +111,8 @@ Camera azure_kinect_wfov() {
   return camera;
 }
 
-// Its short range: radial depth (ml_depth_camera.h), 0.2 to 0.9 m. The headset writes metres as
-// floats, which every source turns into millimetres of 16 bits.
+// Its short range: radial depth (ml_depth_camera.h), 0.2 to 0.9 m. The headset has floats of
+// metres; here depth has 16 bits of millimetres.
 Camera magic_leap2() {
   Camera camera = bare_camera("magic_leap2", 544, 480, DepthKind::radial);
   camera.period = Duration{16'666'667};

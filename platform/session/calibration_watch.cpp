@@ -54,12 +54,10 @@ void CalibrationWatch::see(const Tracker& tracker) noexcept {
   if (!tracker.token<FrameVerdict>().usable()) return;
   const ToolSet& set = tracker.token<graph::Latest<ToolSet>>().value();
   const int count = std::min(set.count, k_tools_max);
-  for (int t = 0; t < count; ++t) {
-    const auto at = static_cast<std::size_t>(t);
-    see(tracker, set.items[at], tools_[at]);
-  }
   if (count == 0) return;
-  shared_.write_slot() = tools_[++seen_ % static_cast<std::uint64_t>(count)];
+  const auto turn = static_cast<std::size_t>(seen_++ % static_cast<std::uint64_t>(count));
+  see(tracker, set.items[turn], tools_[turn]);
+  shared_.write_slot() = tools_[turn];
   shared_.publish(seen_, 0);
 }
 
@@ -92,7 +90,7 @@ std::vector<CalibrationFinding> CalibrationWatch::findings_of(const AllWatched& 
     const Watched& watched = tools[static_cast<std::size_t>(t)];
     const Tool& tool = cell_.tools.items[static_cast<std::size_t>(t)];
     if (watched.errors.fits < k_fits_least || watched.identity != tool.identity) continue;
-    seen.push_back({t, tool.marker_count, tool.marker_sigma_m, watched.errors});
+    seen.push_back({tool.name.data(), tool.marker_count, tool.marker_sigma_m, watched.errors});
   }
   return calibration_findings(seen, cell_.camera.uncertainty);
 }

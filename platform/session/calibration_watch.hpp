@@ -1,6 +1,7 @@
 // Adds up, in a run, what the tools' residuals show of calibration errors.
 //
-// Of each tool, fits count whose pose differs from that of the fit counted before, since a tool at
+// Of each frame one tool counts, in turn, so that a frame's cost does not grow with the tools. Of
+// each tool, fits count whose pose differs from that of the fit counted before, since a tool at
 // rest shows the same errors of lens and range again. Fits that were refused as bad count, too.
 #pragma once
 

@@ -59,7 +59,7 @@ class Sinks {
   // For whoever follows the robot; likewise.
   [[nodiscard]] FollowedRobotNotes& robot_notes() noexcept { return robot_notes_; }
 
-  // For whoever watches the calibration; likewise.
+  // Of the calibration watch; /diagnostics publishes them.
   [[nodiscard]] CalibrationNotes& calibration_notes() noexcept { return calibration_notes_; }
 
   // After the last offer: everything is written, and what became of it stands in the result.

@@ -73,6 +73,13 @@ TEST(CalibrationWatch, IsAWarningOfDiagnostics) {
             "range offset 24.00 mm (sigma 1.10), 4.0 times what is stated; glint calibrate depth");
   EXPECT_EQ(entry().values.size(), 1u) << "the newest ones alone";
   EXPECT_EQ(entry().values.count("range offset"), 1u);
+  finding.tool = "pen";
+  finding.source = ErrorSource::range;
+  finding.range_m = 0.48;
+  notes.set({finding});
+  EXPECT_EQ(entry().message,
+            "pen: range offset or scale 24.00 mm at 480 mm (sigma 1.10), 4.0 times what is stated; "
+            "glint calibrate depth");
 }
 
 }  // namespace
