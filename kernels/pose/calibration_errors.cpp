@@ -18,7 +18,7 @@ struct Row {
 };
 using Rows = std::array<Row, 3 * k_markers_per_tool_max>;
 
-double squared(double x) { return x * x; }
+double square_of(double x) { return x * x; }
 
 // What is the same for all residuals of a marker.
 struct Place {
@@ -49,8 +49,8 @@ void set_across(const Vector3& across, const WeightedMarker& marker, const Vecto
   row.by_errors(2) = right * camera.principal_point_px;
   row.by_errors(3) = down * camera.principal_point_px;
   row.by_errors(4) = across.dot(off_axis) * camera.focal_scale;
-  const double slow_px2 = squared(camera.slow_centroid_px) + squared(k_lens_residual_px);
-  const double noise = std::sqrt(1 + slow_px2 * (squared(right) + squared(down)));
+  const double slow_px2 = square_of(camera.slow_centroid_px) + square_of(k_lens_residual_px);
+  const double noise = std::sqrt(1 + slow_px2 * (square_of(right) + square_of(down)));
   row.residual /= noise;
   row.by_pose /= noise;
   row.by_errors /= noise;
@@ -58,9 +58,9 @@ void set_across(const Vector3& across, const WeightedMarker& marker, const Vecto
 
 void set_along(const WeightedMarker& marker, const Vector3& point, const Place& place,
                const CameraUncertainty& camera, double marker_sigma_m, Row& row) {
-  const double slow_m2 = squared(camera.slow_range_m) + squared(k_range_ripple_m);
+  const double slow_m2 = square_of(camera.slow_range_m) + square_of(k_range_ripple_m);
   const double weight =
-      marker.per_range_sigma / std::sqrt(1 + slow_m2 * squared(marker.per_range_sigma));
+      marker.per_range_sigma / std::sqrt(1 + slow_m2 * square_of(marker.per_range_sigma));
   const double range = std::sqrt(point.squaredNorm());
   set_row((range - marker.range_m) * weight, point * (weight / range), place, marker_sigma_m, row);
   row.by_errors(0) = weight * camera.range_offset_m;
