@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "kernels/pose/lever_arm.hpp"
+#include "kernels/pose/marker_slopes.hpp"
 #include "kernels/pose/normal_equations.hpp"
 
 namespace glint {
@@ -20,42 +21,18 @@ void add_square(const Vector6& column, Matrix6& sum) {
   sum += column.lazyProduct(column.transpose());
 }
 
-void add_marker(const WeightedMarker& marker, const LocalRays& rays, const Vector3& point,
-                const Vector3& lever, const CameraUncertainty& camera, double marker_sigma_m,
-                Spread& spread) {
-  const double inverse = 1 / marker.ray.dot(point);
-  const double distance = std::sqrt(point.squaredNorm());
-  const auto across = [&](const Vector3& direction) -> Vector3 {
-    return (direction - marker.ray * (direction.dot(point) * inverse)) * inverse;
-  };
-  const auto row = [&](const Vector3& gradient) {
-    Vector6 out;
-    out << gradient, lever.cross(gradient);
-    return out;
-  };
-  const Vector3 gradients[3] = {across(marker.across_first), across(marker.across_second),
-                                point * (marker.per_range_sigma / distance)};
-  const Vector6 rows[3] = {row(gradients[0]), row(gradients[1]), row(gradients[2])};
-  // A residual's change where the measured ray turns by `turn`, or its range grows by 1 m.
-  const auto turned = [&](const Vector3& turn) -> Vector6 {
-    return rows[0] * marker.across_first.dot(turn) + rows[1] * marker.across_second.dot(turn);
-  };
-  const Vector6 farther = rows[2] * marker.per_range_sigma;
-  const Vector6 right = turned(rays.along_x), down = turned(rays.along_y);
-  const Vector3 off_axis(marker.ray.x(), marker.ray.y(), 0);
-  spread.common.col(0) += farther * camera.range_offset_m;
-  spread.common.col(1) += farther * (camera.range_scale * marker.range_m);
-  spread.common.col(2) += right * camera.principal_point_px;
-  spread.common.col(3) += down * camera.principal_point_px;
-  spread.common.col(4) += turned(off_axis) * camera.focal_scale;
-  add_square(farther * camera.slow_range_m, spread.correlated);
-  add_square(right * camera.slow_centroid_px, spread.correlated);
-  add_square(down * camera.slow_centroid_px, spread.correlated);
-  for (int axis = 0; axis < 3; ++axis) {
-    const Vector6 moved =
-        rows[0] * gradients[0](axis) + rows[1] * gradients[1](axis) + rows[2] * gradients[2](axis);
-    add_square(moved * marker_sigma_m, spread.geometry);
-  }
+void add_marker(const MarkerSlopes& slopes, double range_m, const CameraUncertainty& camera,
+                double marker_sigma_m, Spread& spread) {
+  spread.common.col(0) += slopes.farther * camera.range_offset_m;
+  spread.common.col(1) += slopes.farther * (camera.range_scale * range_m);
+  spread.common.col(2) += slopes.right * camera.principal_point_px;
+  spread.common.col(3) += slopes.down * camera.principal_point_px;
+  spread.common.col(4) += slopes.outward * camera.focal_scale;
+  add_square(slopes.farther * camera.slow_range_m, spread.correlated);
+  add_square(slopes.right * camera.slow_centroid_px, spread.correlated);
+  add_square(slopes.down * camera.slow_centroid_px, spread.correlated);
+  for (int axis = 0; axis < 3; ++axis)
+    add_square(slopes.moved.col(axis) * marker_sigma_m, spread.geometry);
 }
 
 // Of the reference: N^-1 S N^-1, moved by `lever`.
@@ -84,8 +61,9 @@ Result<SystematicCovariance> systematic_covariance(std::span<const WeightedMarke
   for (std::size_t i = 0; i < markers.size(); ++i) {
     const WeightedMarker& marker = markers[i];
     const Vector3 lever = T_camera_tool.rotation * (marker.model_m - mean_m);
-    add_marker(marker, rays[i], T_camera_tool * marker.model_m, lever, camera, marker_sigma_m,
-               spread);
+    const MarkerSlopes slopes =
+        marker_slopes(marker, rays[i], T_camera_tool * marker.model_m, lever);
+    add_marker(slopes, marker.range_m, camera, marker_sigma_m, spread);
   }
   const Matrix6 inverse = factor.value.inverse();
   const Vector3 lever = T_camera_tool.rotation * (reference_m - mean_m);

@@ -95,8 +95,8 @@ void CellParser::read_simulator(const toml::table* table) {
   if (table == nullptr) return;
   TomlReader reader(*table, cell.file, "simulator.");
   SimulatorSettings& sim = cell.simulator;
-  sim.scenario =
-      reader.one_of("scenario", sim.scenario, {"default", "still", "trajectories", "field"});
+  sim.scenario = reader.one_of("scenario", sim.scenario,
+                               {"default", "still", "touches", "trajectories", "field"});
   sim.duration_s = reader.real("duration_s", sim.duration_s, 0.1, 3600);
   sim.seed = static_cast<std::uint64_t>(reader.integer("seed", 1, 0, INT64_MAX));
   sim.pen_scale = reader.real("pen_scale", sim.pen_scale, 0.001, 10);

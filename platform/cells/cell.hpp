@@ -71,7 +71,7 @@ struct SourceSettings {
 
 // Where simulated frames come from; everything else about the simulator has one declared default.
 struct SimulatorSettings {
-  std::string scenario = "default";  // default, still, trajectories, or field
+  std::string scenario = "default";  // default, still, touches, trajectories, or field
   double duration_s = 60;
   std::uint64_t seed = 1;
   std::string head_trajectory, pen_trajectory;  // files; scenario = "trajectories"

@@ -12,6 +12,7 @@ void add_replay(CLI::App& app, int& exit_code);
 void add_simulate(CLI::App& app, int& exit_code);
 void add_experiment(CLI::App& app, int& exit_code);
 void add_calibrate(CLI::App& app, int& exit_code);
+void add_verify(CLI::App& app, int& exit_code);
 void add_map(CLI::App& app, int& exit_code);
 void add_reference(CLI::App& app, int& exit_code);
 void add_path(CLI::App& app, int& exit_code);

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   glint::add_simulate(app, exit_code);
   glint::add_experiment(app, exit_code);
   glint::add_calibrate(app, exit_code);
+  glint::add_verify(app, exit_code);
   glint::add_map(app, exit_code);
   glint::add_reference(app, exit_code);
   glint::add_path(app, exit_code);

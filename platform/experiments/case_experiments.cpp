@@ -14,6 +14,7 @@
 #include "platform/experiments/motion_experiments.hpp"
 #include "platform/experiments/noise_experiment.hpp"
 #include "platform/experiments/reference_experiment.hpp"
+#include "platform/experiments/verify_experiment.hpp"
 #include "platform/experiments/warnings_experiment.hpp"
 
 namespace glint {
@@ -52,6 +53,8 @@ std::span<const CaseExperiment> case_experiments() {
        run_field},
       {"warnings", "whether a run names the calibration error that a device has", false,
        run_warnings},
+      {"verify", "touches of known points by devices as stated, and with one error of four sigma",
+       false, run_verify_experiment},
       {"reference", "a robot found in real and simulated depth, from hundreds of rough poses", true,
        run_reference_experiment, true},
   };

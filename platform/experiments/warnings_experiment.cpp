@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <random>
 #include <string>
 #include <utility>
 
 #include "platform/cells/tool_file.hpp"
 #include "platform/experiments/field_experiment.hpp"
+#include "platform/experiments/stated_errors.hpp"
 #include "platform/session/simulated_run.hpp"
 #include "platform/sources/scenario_of.hpp"
 
@@ -16,56 +15,20 @@ namespace glint {
 namespace {
 
 constexpr double k_warned_s = 30, k_warned_quick_s = 10;
-constexpr double k_large_sigmas = 4;
-
-enum class Large { nothing, range_offset, tool_geometry, principal_point, focal_length };
 struct WarningCase {
   const char* name;
-  Large large;
+  LargeError large;
   int seeds, quick;
   Bar bar;
 };
 constexpr int k_warning_case_count = 5;
 const std::array<WarningCase, k_warning_case_count> k_warning_cases = {
-    WarningCase{"every error below one sigma", Large::nothing, 40, 2, Bar::at_most(2)},
-    WarningCase{"range offset at four sigma", Large::range_offset, 20, 1, Bar::at_least(16)},
-    WarningCase{"tool geometry at four sigma", Large::tool_geometry, 20, 1, Bar::at_least(16)},
-    WarningCase{"principal point at four sigma", Large::principal_point, 20, 1, Bar::at_least(14)},
-    WarningCase{"focal length at four sigma", Large::focal_length, 20, 1, Bar::at_least(14)}};
-
-// Even, below one sigma; the scenario's own draws are of the stated distributions.
-void shrink_errors(const Cell& cell, Large large, std::uint64_t seed, sim::Scenario& scenario) {
-  std::mt19937_64 random(seed);
-  const auto even = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
-  const auto normal = [&] { return std::normal_distribution<double>()(random); };
-  const CameraUncertainty& stated = cell.camera.uncertainty;
-  sim::DeviceErrors& device = scenario.device;
-  device.principal_point_px.x() = stated.principal_point_px * even();
-  device.principal_point_px.y() = stated.principal_point_px * even();
-  device.focal_scale = stated.focal_scale * even();
-  device.range_scale = stated.range_scale * even();
-  device.range_offset_m = stated.range_offset_m * even();
-  if (large == Large::range_offset)
-    device.range_offset_m = (even() > 0 ? 1 : -1) * k_large_sigmas * stated.range_offset_m;
-  if (large == Large::principal_point) {
-    const double angle = 3.1415926535897932 * even();
-    device.principal_point_px =
-        k_large_sigmas * stated.principal_point_px * Vector2(std::cos(angle), std::sin(angle));
-  }
-  if (large == Large::focal_length)
-    device.focal_scale = (even() > 0 ? 1 : -1) * k_large_sigmas * stated.focal_scale;
-  scenario.timing.stamp_offset = {static_cast<std::int64_t>(1e9 * stated.stamp_s * even())};
-  for (std::size_t t = 0; t < scenario.tools.size(); ++t) {
-    Tool& made = scenario.tools[t].tool;
-    const Tool& drawn = cell.tools.items[t];
-    for (std::size_t i = 0; i < static_cast<std::size_t>(made.marker_count); ++i) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const double sigmas = large == Large::tool_geometry ? k_large_sigmas * normal() : even();
-        made.markers_m[i](axis) = drawn.markers_m[i](axis) + sigmas * drawn.marker_sigma_m;
-      }
-    }
-  }
-}
+    WarningCase{"every error below one sigma", LargeError::nothing, 40, 2, Bar::at_most(2)},
+    WarningCase{"range offset at four sigma", LargeError::range_offset, 20, 1, Bar::at_least(16)},
+    WarningCase{"tool geometry at four sigma", LargeError::tool_geometry, 20, 1, Bar::at_least(16)},
+    WarningCase{"principal point at four sigma", LargeError::principal_point, 20, 1,
+                Bar::at_least(14)},
+    WarningCase{"focal length at four sigma", LargeError::focal_length, 20, 1, Bar::at_least(14)}};
 
 // Fixed to the table.
 void add_reference_body(Cell& cell) {
@@ -73,29 +36,33 @@ void add_reference_body(Cell& cell) {
   cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] = reference_board();
 }
 
-std::vector<CalibrationFinding> findings_of(Large large, std::uint64_t seed, double duration_s,
+std::vector<CalibrationFinding> findings_of(LargeError large, std::uint64_t seed, double duration_s,
                                             const std::string& out) {
   Cell cell = field_cell(seed, duration_s);
-  if (large == Large::principal_point || large == Large::focal_length) add_reference_body(cell);
+  if (large == LargeError::principal_point || large == LargeError::focal_length)
+    add_reference_body(cell);
   sim::Scenario scenario = scenario_of(cell);
-  shrink_errors(cell, large, seed, scenario);
+  draw_below_one_sigma(cell, large, seed, scenario);
   SessionOptions options;
   options.out = out;
   return run_simulated(cell, std::move(scenario), options).calibration;
 }
 
-bool is_of(ErrorSource found, Large large) {
+bool is_of(ErrorSource found, LargeError large) {
   switch (large) {
-    case Large::nothing:
+    case LargeError::nothing:
       return true;
-    case Large::range_offset:
+    case LargeError::range_offset:
       return found == ErrorSource::range_offset || found == ErrorSource::range;
-    case Large::tool_geometry:
+    case LargeError::tool_geometry:
       return found == ErrorSource::tool_geometry;
-    case Large::principal_point:
+    case LargeError::principal_point:
       return found == ErrorSource::principal_point;
-    case Large::focal_length:
+    case LargeError::focal_length:
       return found == ErrorSource::focal_length;
+    case LargeError::range_scale:
+    case LargeError::head_drift:
+      break;  // no case of this list
   }
   return false;
 }

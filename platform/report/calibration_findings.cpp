@@ -50,23 +50,22 @@ struct Estimate {
 // ellipsoid that the data leave.
 struct Size {
   int axes = 0;
-  double largest = 0, rms = 0;
+  double largest = 0, rms = 0, chi_square = 0;
 
   Size(const Estimate& estimate, int first, int count) {
     const Eigen::MatrixXd shown = Eigen::MatrixXd::Identity(count, count) -
                                   estimate.covariance.block(first, first, count, count);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(shown);
-    double squares = 0;
     for (int i = 0; i < count; ++i) {
       const double part = solver.eigenvalues()(i);
       if (part < k_shown_least) continue;
       const double size =
           solver.eigenvectors().col(i).dot(estimate.errors.segment(first, count)) / std::sqrt(part);
       largest = std::max(largest, std::abs(size));
-      squares += size * size;
+      chi_square += size * size;
       ++axes;
     }
-    if (axes > 0) rms = std::sqrt(squares / axes);
+    if (axes > 0) rms = std::sqrt(chi_square / axes);
   }
   [[nodiscard]] bool beyond() const {
     return axes == 1 ? largest > k_one_most : largest > k_largest_most || rms > k_rms_most;
@@ -103,7 +102,7 @@ class Findings {
   void add(const std::string& tool, ErrorSource source, double value, double sigma,
            const Size& size) {
     found.push_back({tool, source, value, sigma, range_m_, size.axes > 1 ? size.rms : size.largest,
-                     size.axes > 0 && size.beyond()});
+                     size.chi_square, size.axes, size.axes > 0 && size.beyond()});
   }
   void add_one(ErrorSource source, int at, double stated) {
     add({}, source, estimate_.errors(at) * stated, std::sqrt(estimate_.covariance(at, at)) * stated,

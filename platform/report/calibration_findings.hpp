@@ -35,7 +35,10 @@ struct CalibrationFinding {
   // px; of the geometry the markers' rms, m.
   double estimate = 0, sigma = 0, range_m = 0;
   double stated_sigmas = 0;  // the error's size
-  bool named = false;        // larger than the stated standard deviations explain
+  // Along the axes that the data show; 0 axes: they leave more than half of its stated variance.
+  double chi_square = 0;
+  int axes = 0;
+  bool named = false;  // larger than the stated standard deviations explain
 };
 
 // In which unit a source's estimate is printed.

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 namespace glint {
@@ -48,6 +49,19 @@ double percentile(std::span<const double> values, double fraction) {
   const auto place = copy.begin() + static_cast<std::ptrdiff_t>(std::min(index, copy.size() - 1));
   std::nth_element(copy.begin(), place, copy.end());
   return *place;
+}
+
+double chi_square_tail(double x, int degrees_of_freedom) {
+  if (!(x > 0)) return 1;
+  const bool odd = degrees_of_freedom % 2 == 1;
+  double tail = odd ? std::erfc(std::sqrt(0.5 * x)) : 0;
+  double term = odd ? std::sqrt(2 * x / std::numbers::pi) : 1;
+  term *= std::exp(-0.5 * x);
+  for (int k = odd ? 3 : 2; k <= degrees_of_freedom; k += 2) {
+    tail += term;
+    term *= x / k;
+  }
+  return tail;
 }
 
 Histogram make_histogram(std::span<const double> values, double low, double high, int bins) {

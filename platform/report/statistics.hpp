@@ -23,6 +23,10 @@ struct Summary {
 // that it is always one of them. fraction in [0, 1]; 0 for no values.
 [[nodiscard]] double percentile(std::span<const double> values, double fraction);
 
+// P(chi-square of so many degrees of freedom > x). Source: Abramowitz and Stegun 1964, 26.4.4 and
+// 26.4.5.
+[[nodiscard]] double chi_square_tail(double x, int degrees_of_freedom);
+
 // Bin i covers low + i width <= value < low + (i + 1) width.
 struct Histogram {
   double low = 0;

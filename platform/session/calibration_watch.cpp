@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/pose/marker_range.hpp"
-#include "kernels/pose/marker_sight.hpp"
+#include "platform/session/labelled_markers.hpp"
 
 namespace glint {
 namespace {
@@ -18,31 +17,6 @@ bool is_apart(const Pose& a, const Pose& b) {
   return (a.translation - b.translation).squaredNorm() > k_apart_m * k_apart_m ||
          std::abs(a.rotation.dot(b.rotation)) < k_apart_cosine;
 }
-
-// The labelled markers of one tool, weighed.
-struct Sights {
-  std::array<WeightedMarker, k_markers_per_tool_max> markers;
-  std::array<LocalRays, k_markers_per_tool_max> rays;
-  std::array<int, k_markers_per_tool_max> of_tool{};
-  std::size_t count = 0;
-
-  Sights(const Markers& all, const Labeling& labeling, const Tool& tool, const MarkerNoise& noise) {
-    for (int i = 0; i < tool.marker_count; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      if (labeling.marker[at] < 0) continue;
-      const Marker& marker = all.items[static_cast<std::size_t>(labeling.marker[at])];
-      if ((marker.flags & k_doubtful) != 0) continue;
-      const double range_m = centre_range_m(marker, tool);
-      const MarkerSight sight = sight_of(marker, range_m, noise);
-      const Result<WeightedMarker> weighed =
-          weigh_marker(tool.markers_m[at], sight.rays, range_m, sight.variance);
-      if (!weighed) continue;
-      markers[count] = weighed.value;
-      rays[count] = sight.rays;
-      of_tool[count++] = i;
-    }
-  }
-};
 
 }  // namespace
 
@@ -74,13 +48,11 @@ void CalibrationWatch::see(const Tracker& tracker, const Tool& tool, Watched& wa
   const Pose& pose = fitted.reason == Reason::none ? fitted.T_camera_tool : labeling.T_camera_tool;
   if (!is_apart(pose, watched.counted)) return;
   const Camera& camera = cell_.camera;
-  const MarkerNoise declared{camera.range_sigma_m, camera.pixel_sigma_px, camera.model.fx};
-  const MarkerNoise noise = noise_now(tracker.output<Estimates>().noise, declared);
-  const Sights sights(tracker.token<Markers>(), labeling, tool, noise);
+  const LabelledMarkers seen(tracker.token<Markers>(), labeling, tool,
+                             noise_of(tracker.output<Estimates>().noise, camera), k_doubtful);
   const int before = watched.errors.fits;
-  add_fit({sights.markers.data(), sights.count}, {sights.rays.data(), sights.count},
-          {sights.of_tool.data(), sights.count}, pose, camera.uncertainty, tool.marker_sigma_m,
-          watched.errors);
+  add_fit(seen.weighed(), seen.sights(), seen.numbers(), pose, camera.uncertainty,
+          tool.marker_sigma_m, watched.errors);
   if (watched.errors.fits > before) watched.counted = pose;
 }
 

@@ -24,6 +24,10 @@ class CalibrationWatch {
 
   // Of the tools of which enough was seen; after the last frame.
   [[nodiscard]] std::vector<CalibrationFinding> findings() const;
+  // What they rest on, of one tool.
+  [[nodiscard]] const CalibrationErrors& errors_of(std::size_t tool) const {
+    return tools_[tool].errors;
+  }
 
   // While frames come, for one other thread that may take its time: every k_review the findings of
   // what it saw so far go to `notes`. Each call takes the newest sums of one tool.

@@ -29,6 +29,7 @@ enum class Stream : std::uint64_t {
   long_throw = 12,
   device = 13,
   field = 14,
+  touches = 15,
 };
 
 [[nodiscard]] constexpr std::uint64_t mixed(std::uint64_t x) {

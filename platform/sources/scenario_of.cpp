@@ -5,6 +5,7 @@
 #include "platform/sensors/frame_files.hpp"
 #include "platform/sim/field.hpp"
 #include "platform/sim/scenarios.hpp"
+#include "platform/sim/touches.hpp"
 
 namespace glint {
 
@@ -24,6 +25,9 @@ sim::Scenario scenario_of(const Cell& cell) {
                               settings.duration_s, settings.seed);
   } else if (settings.scenario == "still") {
     scenario = sim::still_run(cell.camera, tools);
+  } else if (settings.scenario == "touches") {
+    scenario = sim::still_run(cell.camera, tools);
+    sim::touch_points({}, settings.seed, scenario);
   } else {
     scenario = sim::default_run(tools);
     const sim::Scenario sensor = sim::still_run(cell.camera, tools);

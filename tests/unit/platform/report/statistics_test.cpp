@@ -25,6 +25,15 @@ std::vector<double> normal_sample(double mean, double sd, int count) {
   return values;
 }
 
+// 95 % quantiles: Abramowitz and Stegun 1964, table 26.8.
+TEST(Statistics, TailOfChiSquareIsThatOfTheTables) {
+  EXPECT_NEAR(chi_square_tail(3.84146, 1), 0.05, 1e-6);
+  EXPECT_NEAR(chi_square_tail(5.99146, 2), 0.05, 1e-6);
+  EXPECT_NEAR(chi_square_tail(16.9190, 9), 0.05, 1e-6);
+  EXPECT_NEAR(chi_square_tail(43.7729, 30), 0.05, 1e-6);
+  EXPECT_EQ(chi_square_tail(0, 5), 1);
+}
+
 TEST(Statistics, SumsUpAKnownColumn) {
   const std::vector<double> values = {4, -2, 1, -3, 5};
   const Summary summary = summarize(values);

@@ -1,0 +1,72 @@
+#include "platform/sim/touches.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "platform/sim/scenarios.hpp"
+
+namespace glint::sim::touches_test {
+namespace {
+
+Scenario touches(std::uint64_t seed) {
+  Scenario scenario = still_run(hololens2_ahat(), {});
+  touch_points({}, seed, scenario);
+  return scenario;
+}
+
+Time middle_of_touch(int touch) {
+  const TouchSettings settings;
+  return {static_cast<std::int64_t>(
+      1e9 * (touch * (settings.hold_s + settings.move_s) + 0.5 * settings.hold_s))};
+}
+
+// Two on the first point, one on the second, and so on; the last is the rest.
+TEST(Touches, StandOnTheirPoints) {
+  const Scenario scenario = touches(1);
+  const TouchSettings settings;
+  const Vector3& tip_m = scenario.tools[0].tool.tip_m;
+  for (int i = 0; i <= settings.touches; ++i) {
+    const bool second = i % 3 == 2 && i < settings.touches;
+    const Vector3 tip = scenario.tools[0].motion->pose(middle_of_touch(i)) * tip_m;
+    EXPECT_LT((tip - (second ? settings.second_m : settings.first_m)).norm(), 0.0003) << i;
+  }
+  const Time before_end = Time{} + settings.duration() - milliseconds(10);
+  EXPECT_LT((scenario.tools[0].motion->pose(before_end) * tip_m - settings.first_m).norm(), 0.0003);
+  EXPECT_EQ(scenario.duration.nanoseconds, settings.duration().nanoseconds);
+}
+
+TEST(Touches, LeanAndAreSeenFromOtherPlaces) {
+  const Scenario scenario = touches(2);
+  double turn = 0, way_m = 0, near_m = 1, far_m = 0;
+  for (int i = 0; i < TouchSettings{}.touches; ++i) {
+    const Pose tool = scenario.tools[0].motion->pose(middle_of_touch(i));
+    const Pose next = scenario.tools[0].motion->pose(middle_of_touch(i + 1));
+    const Pose head = scenario.head->pose(middle_of_touch(i));
+    turn = std::max(turn, tool.rotation.angularDistance(next.rotation));
+    way_m = std::max(
+        way_m, (head.translation - scenario.head->pose(middle_of_touch(i + 1)).translation).norm());
+    const double range_m = (head.inverse() * tool.translation).norm();
+    near_m = std::min(near_m, range_m);
+    far_m = std::max(far_m, range_m);
+  }
+  EXPECT_GT(turn, 0.5);
+  EXPECT_GT(way_m, 0.2);
+  EXPECT_GT(far_m - near_m, 0.2);
+  EXPECT_NE(touches(3).head->pose({}).translation, scenario.head->pose({}).translation);
+}
+
+// No jump: between two frames the tip moves by less than 2 cm.
+TEST(Touches, MoveSmoothly) {
+  const Scenario scenario = touches(1);
+  const Vector3& tip_m = scenario.tools[0].tool.tip_m;
+  Vector3 last = scenario.tools[0].motion->pose({}) * tip_m;
+  for (Time t; t < Time{} + scenario.duration; t = t + milliseconds(22)) {
+    const Vector3 tip = scenario.tools[0].motion->pose(t) * tip_m;
+    EXPECT_LT((tip - last).norm(), 0.02);
+    last = tip;
+  }
+}
+
+}  // namespace
+}  // namespace glint::sim::touches_test

@@ -1,0 +1,56 @@
+#include "platform/verify/joint_covariance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/platform/verify/made_touches.hpp"
+
+namespace glint::joint_covariance_test {
+namespace {
+
+std::vector<Touch> touches_of(const TipSeries& series) {
+  std::vector<Touch> touches;
+  for (const Hold& hold : find_holds(series)) touches.push_back(mean_of(series, hold));
+  return touches;
+}
+
+// The drift of two touches fades with the time between them; noise is each touch's own.
+TEST(JointCovariance, DriftFadesBetweenTouches) {
+  TipSeries series = test::series_of({.touches = 4});
+  const std::vector<Touch> touches = touches_of(series);
+  const Eigen::MatrixXd drift = joint_covariance(touches, series.stated, Places::apart);
+  const double variance = 1e-6, correlation_s = series.stated.head.rest_correlation_s;
+  EXPECT_NEAR(drift(0, 0), variance, 0.05 * variance);
+  for (int j = 1; j < 4; ++j) {
+    const double apart_s =
+        (touches[static_cast<std::size_t>(j)].mean.time - touches[0].mean.time).seconds();
+    EXPECT_NEAR(drift(0, 3 * j), variance * std::exp(-apart_s / correlation_s), 0.01 * variance);
+    EXPECT_EQ(drift(0, 3 * j + 1), 0);
+  }
+  EXPECT_LT((drift - drift.transpose()).norm(), 1e-18);
+}
+
+// A process that is much faster than a touch leaves its mean alone, and no touch shares it.
+TEST(JointCovariance, OfAFastProcessIsFinite) {
+  TipSeries series = test::series_of({.touches = 2});
+  series.stated.head.rest_correlation_s = 1e-4;
+  const std::vector<Touch> touches = touches_of(series);
+  const Eigen::MatrixXd covariance = joint_covariance(touches, series.stated, Places::apart);
+  EXPECT_TRUE(covariance.allFinite());
+  EXPECT_LT(covariance(0, 0), 1e-8);
+  EXPECT_NEAR(covariance(0, 3), 0, 1e-20);
+}
+
+// Lens residual and range ripple are each place's own: a rest does not have them.
+TEST(JointCovariance, OfOnePlaceLeavesOutLensAndRipple) {
+  TipSeries series = test::series_of({.touches = 2});
+  for (TipSighting& one : series.sightings) one.by_markers.col(0) = Vector3(0, 0, 2);
+  const std::vector<Touch> touches = touches_of(series);
+  const double apart = joint_covariance(touches, series.stated, Places::apart)(2, 2);
+  const double same = joint_covariance(touches, series.stated, Places::same)(2, 2);
+  EXPECT_NEAR(apart - same, 4 * k_range_ripple_m * k_range_ripple_m, 1e-12);
+}
+
+}  // namespace
+}  // namespace glint::joint_covariance_test
