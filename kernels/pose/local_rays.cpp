@@ -31,6 +31,7 @@ Result<LocalRays> from_table(const CameraModel& camera, const Vector2& pixel, in
       break;
     }
   }
+  local.set_outward({camera.cx, camera.cy});
   return {local};
 }
 
@@ -41,7 +42,9 @@ Result<LocalRays> local_rays(const CameraModel& camera, const Vector2& pixel, in
   if (camera.lens == Lens::lut) return from_table(camera, pixel, lens_steps);
   const Result<TurningRay> turning = unproject_turning(camera, pixel, steps_max, lens_steps);
   const TurningRay& found = turning.value;
-  return {{pixel, found.ray, found.along_x, found.along_y}, turning.reason};
+  LocalRays local{pixel, found.ray, found.along_x, found.along_y};
+  local.set_outward({camera.cx, camera.cy});
+  return {local, turning.reason};
 }
 
 int ray_steps_needed(const CameraModel& camera) noexcept {

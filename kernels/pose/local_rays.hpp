@@ -18,11 +18,14 @@ struct LocalRays {
   Vector3 ray = Vector3::UnitZ();     // unit
   Vector3 along_x = Vector3::Zero();  // change of the ray by one pixel, at right angles to it
   Vector3 along_y = Vector3::Zero();
+  Vector3 outward = Vector3::Zero();  // change of the ray by the focal length, as a ratio
 
   // Perpendicular distance from the middle ray to the pixel's, at range 1.
   [[nodiscard]] Vector3 sideways(const Vector2& at) const {
     return along_x * (at.x() - pixel.x()) + along_y * (at.y() - pixel.y());
   }
+  // principal_px: the pixel of the lens's axis.
+  void set_outward(const Vector2& principal_px) { outward = -sideways(principal_px); }
   [[nodiscard]] double steradian_per_pixel() const { return along_x.cross(along_y).norm(); }
 };
 

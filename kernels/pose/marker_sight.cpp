@@ -12,7 +12,8 @@ double variance_of(double own_sigma, double declared_sigma, double least) {
 // Rays at right angles to each other, turning by this much a unit.
 LocalRays made_up(const Marker& marker, double turn) {
   const Vector3 first = marker.ray.unitOrthogonal();
-  return {marker.centroid_px, marker.ray, turn * first, turn * marker.ray.cross(first)};
+  return {marker.centroid_px, marker.ray, turn * first, turn * marker.ray.cross(first),
+          Vector3(marker.ray.x(), marker.ray.y(), 0)};
 }
 
 }  // namespace
@@ -20,6 +21,7 @@ LocalRays made_up(const Marker& marker, double turn) {
 MarkerSight sight_of(const Marker& marker, double range_m, const MarkerNoise& noise) noexcept {
   MarkerSight sight;
   sight.rays = {marker.centroid_px, marker.ray, marker.along_x, marker.along_y};
+  sight.rays.set_outward({noise.principal_px[0], noise.principal_px[1]});
   MarkerVariance& variance = sight.variance;
   variance.range_m2 = variance_of(marker.range_sigma_m, noise.range_sigma_m, k_range_sigma_least_m);
   variance.xy_px2 = 0;

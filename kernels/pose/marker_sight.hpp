@@ -11,6 +11,8 @@
 // Source:   variances of independent errors add.
 #pragma once
 
+#include <array>
+
 #include "kernels/nonblocking.hpp"
 #include "kernels/pose/local_rays.hpp"
 #include "kernels/pose/marker.hpp"
@@ -21,8 +23,9 @@ namespace glint {
 // The declared noise of one marker: 1 sigma along its ray and, from the pixel's, across it.
 struct MarkerNoise {
   double range_sigma_m = 0.0015;
-  double pixel_sigma_px = 0.1;  // an axis
-  double focal_px = 0;          // 0: as much across as along (points without an image)
+  double pixel_sigma_px = 0.1;           // an axis
+  double focal_px = 0;                   // 0: as much across as along (points without an image)
+  std::array<double, 2> principal_px{};  // the pixel of the lens's axis
 };
 
 // Nothing is surer than this, whatever is declared: an exact marker would have no weight.

@@ -5,7 +5,7 @@
 //           N^-1 h dc, N = sum J' J.
 // Cost:     seven 6-vectors of two or three products each.
 // Worst:    none is worse than another.
-// Accuracy: first order in the errors; the focal length acts as that of a pinhole.
+// Accuracy: first order in the errors.
 // Source:   systematic_covariance.hpp.
 #pragma once
 
@@ -48,7 +48,7 @@ struct MarkerSlopes {
   slopes.farther = rows[2] * marker.per_range_sigma;
   slopes.right = turned(rays.along_x);
   slopes.down = turned(rays.along_y);
-  slopes.outward = turned(Vector3(marker.ray.x(), marker.ray.y(), 0));
+  slopes.outward = turned(rays.outward);
   for (int axis = 0; axis < 3; ++axis) {
     slopes.moved.col(axis) =
         rows[0] * gradients[0](axis) + rows[1] * gradients[1](axis) + rows[2] * gradients[2](axis);

@@ -70,7 +70,8 @@ inline constexpr double k_noise_open_worth = 3;
 [[nodiscard]] inline MarkerNoise noise_now(const NoiseEstimate& estimate,
                                            const MarkerNoise& declared) {
   if (!estimate.known) return declared;
-  return {estimate.range_sigma_m, estimate.pixel_sigma_px, declared.focal_px};
+  return {estimate.range_sigma_m, estimate.pixel_sigma_px, declared.focal_px,
+          declared.principal_px};
 }
 
 // Adds the residuals of one fit, if it has any.

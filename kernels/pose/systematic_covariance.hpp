@@ -8,7 +8,7 @@
 // Cost:     the normal equations once more, their inverse, four products of 6x6 matrices, and 12
 //           products of 6-vectors a marker.
 // Worst:    none is worse than another of as many markers.
-// Accuracy: first order in the errors; the focal length acts as that of a pinhole.
+// Accuracy: first order in the errors.
 // Source:   Schmidt 1966, Application of state-space methods to navigation problems; Bierman 1977,
 //           Factorization Methods for Discrete Sequential Estimation, chapter VIII.
 #pragma once

@@ -1,6 +1,7 @@
 #include "platform/session/labelled_markers.hpp"
 
 #include "kernels/pose/marker_range.hpp"
+#include "platform/session/pipeline.hpp"
 
 namespace glint {
 
@@ -23,7 +24,7 @@ LabelledMarkers::LabelledMarkers(const Markers& all, const Labeling& labeling, c
 }
 
 MarkerNoise noise_of(const NoiseEstimate& estimate, const Camera& camera) noexcept {
-  return noise_now(estimate, {camera.range_sigma_m, camera.pixel_sigma_px, camera.model.fx});
+  return noise_now(estimate, declared_noise(camera));
 }
 
 }  // namespace glint

@@ -72,10 +72,6 @@ NominalMarker nominal_marker(const ToolSet& tools) {
 
 double square(double value) { return value * value; }
 
-MarkerNoise marker_noise(const Camera& camera) {
-  return {camera.range_sigma_m, camera.pixel_sigma_px, camera.model.fx};
-}
-
 CorrespondSettings correspond_settings(const Cell& cell) {
   CorrespondSettings settings;
   // As many declared sigmas as by default.
@@ -118,7 +114,7 @@ void configure_common(const Cell& cell, AnyTracker& tracker) {
   });
   tracker.template node<AssignMarkers>().limits = limits;
   tracker.template node<NameFew>().limits = limits;
-  const MarkerNoise noise = marker_noise(cell.camera);
+  const MarkerNoise noise = declared_noise(cell.camera);
   tracker.template node<NameFew>().noise = noise;
   tracker.template for_each<RefinePose>([&](RefinePose& node) {
     node.limits = limits;
@@ -196,6 +192,11 @@ void configure(const Cell& cell, Output& output) {
   pack.settings.node = static_cast<unsigned>(cell.can.node);
   pack.limits = predict.limits;
   prepare(output);
+}
+
+MarkerNoise declared_noise(const Camera& camera) noexcept {
+  const CameraModel& model = camera.model;
+  return {camera.range_sigma_m, camera.pixel_sigma_px, model.fx, {model.cx, model.cy}};
 }
 
 RobotFrame declared_robot_frame(const Cell& cell) {

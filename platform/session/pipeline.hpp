@@ -12,6 +12,8 @@ void configure(const Cell& cell, Tracker& tracker);
 void configure(const Cell& cell, MarkerTracker& tracker);
 void configure(const Cell& cell, Output& output);
 
+// What the cell declares of a marker's noise and of the lens.
+[[nodiscard]] MarkerNoise declared_noise(const Camera& camera) noexcept;
 // The robot's frame that the cell declares.
 [[nodiscard]] RobotFrame declared_robot_frame(const Cell& cell);
 

@@ -102,6 +102,18 @@ TEST(MarkerSight, GivesAPointWithoutAFocalLengthTheSameNoiseInEveryDirection) {
   }
 }
 
+// Of the lens's own rays, and of a pinhole's where no image shows how the ray turns.
+TEST(MarkerSight, FocalLengthMovesTheRayFromTheAxis) {
+  Marker marker = seen_at({300, 200}, 0.5);
+  MarkerNoise noise = k_declared;
+  noise.principal_px = {260, 250};
+  EXPECT_TRUE(sight_of(marker, 0.5, noise)
+                  .rays.outward.isApprox(40 * marker.along_x - 50 * marker.along_y));
+  marker.along_x = marker.along_y = Vector3::Zero();
+  EXPECT_TRUE(sight_of(marker, 0.5, noise)
+                  .rays.outward.isApprox(Vector3(marker.ray.x(), marker.ray.y(), 0)));
+}
+
 TEST(MarkerSight, GivesTheSameBitsEverywhere) {
   Random random(3);
   test::BitHash hash;
