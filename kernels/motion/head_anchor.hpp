@@ -1,37 +1,24 @@
 // Holds the headset's world to a body that does not move: what the headset's own localisation is
 // off by, from where it puts that body, and how sure that is.
 //
-// What:     the error e (a shift and a small rotation about the body's place) is a random walk that
-//           returns to zero, of the variance that is declared for the headset's speed; each sight
-//           of the body measures it. Corrected poses are those relative to the body, as long as it
-//           is in view; hidden, the correction fades and its covariance grows to the headset's.
+// What:     the error e (a shift and a small rotation about the body's place) is the walk of
+//           head_walk.hpp; each sight of the body measures it. Corrected poses are those relative
+//           to the body, as long as it is in view; hidden, the correction fades and its covariance
+//           grows to the headset's.
 // Cost:     one 6x6 factor and a few products: 1.5 us.
 // Worst:    the body in view, none is worse than another.
 // Accuracy: the body's own, filtered as far as the headset's error allows. The body's first
 //           k_anchor_frames sights define where it is; what they are off by moves the whole world.
-// Source:   Ornstein and Uhlenbeck 1930 (the walk); Bar-Shalom, Li and Kirubarajan 2001, section
-//           5.2 (the update, in Joseph's form, whose two terms are given apart).
+// Source:   Bar-Shalom, Li and Kirubarajan 2001, section 5.2 (the update, in Joseph's form, whose
+//           two terms are given apart).
 #pragma once
 
-#include "kernels/motion/interpolate.hpp"
+#include "kernels/motion/head_walk.hpp"
 #include "kernels/motion/motion_state.hpp"
 #include "kernels/nonblocking.hpp"
 #include "kernels/pose/head_pose.hpp"
 
 namespace glint {
-
-// The headset's declared error: standard deviations of an axis, at a pivot ahead of the camera.
-struct HeadNoise {
-  double rest_position_m = 0.001;
-  double rest_angle_rad = 0.002;
-  double rest_correlation_s = 20;
-  double position_per_speed_s = 0.03;  // m of error per m/s
-  double position_per_turn_m = 0.01;   // m of error per rad/s
-  double angle_per_speed_s_m = 0.02;   // rad of error per m/s
-  double angle_per_turn_s = 0.02;      // rad of error per rad/s
-  double motion_correlation_s = 0.4;
-  double pivot_m = 0.5;
-};
 
 inline constexpr int k_anchor_frames = 45;  // 1 s
 // Chi square of 6 degrees of freedom, 1e-6: beyond it something else was taken for the body ..
@@ -75,11 +62,10 @@ class HeadAnchor {
   [[nodiscard]] const Pose& T_world_body() const { return T_world_body_; }  // once known()
   [[nodiscard]] int jumps() const { return jumps_; }  // of the headset, that the body told
   // The stamps begin anew: nothing is known of how the head moved before.
-  void restart_clock() noexcept { has_head_ = false; }
+  void restart_clock() noexcept { walk_.restart_clock(); }
 
  private:
-  void observe_speed(const HeadPose& head, const HeadNoise& noise);
-  void walk_on(const Pose& T_world_camera, double seconds, const HeadNoise& noise);
+  void walk_on(const HeadPose& head, const HeadNoise& noise);
   void define(const UncertainPose& T_world_body);
   bool correct(const UncertainPose& T_world_body, AnchoredHead& out);
   void take_over(const UncertainPose& T_world_body, AnchoredHead& out);
@@ -93,10 +79,7 @@ class HeadAnchor {
   Matrix6 covariance_ = Matrix6::Zero();
   Matrix6 uncorrected_ = Matrix6::Zero();  // what covariance_ grows to
   Matrix6 step_ = Matrix6::Zero();         // by how much it grew since the frame before
-  bool has_head_ = false;
-  StampedPose head_;                       // as the headset gave it
-  Velocity velocity_;                      // of the head, smoothed over k_jitter_s
-  double speed_m_s_ = 0, turn_rad_s_ = 0;  // its lengths, smoothed over motion_correlation_s
+  HeadWalk walk_;
 };
 
 }  // namespace glint

@@ -1,4 +1,5 @@
 target_sources(glint_kernels PRIVATE ${CMAKE_CURRENT_LIST_DIR}/head_anchor.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/head_walk.cpp ${CMAKE_CURRENT_LIST_DIR}/world_errors.cpp
   ${CMAKE_CURRENT_LIST_DIR}/interpolate.cpp
   ${CMAKE_CURRENT_LIST_DIR}/motion_filter.cpp ${CMAKE_CURRENT_LIST_DIR}/predict_motion.cpp
   ${CMAKE_CURRENT_LIST_DIR}/rest_window.cpp ${CMAKE_CURRENT_LIST_DIR}/singer.cpp

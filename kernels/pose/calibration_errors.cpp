@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "kernels/motion/interpolate.hpp"
+#include "kernels/pose/lever_arm.hpp"
 #include "kernels/pose/normal_equations.hpp"
 
 namespace glint {
@@ -17,6 +19,13 @@ struct Row {
   ErrorVector by_errors = ErrorVector::Zero();
 };
 using Rows = std::array<Row, 3 * k_markers_per_tool_max>;
+
+// A fit that neither its noise (chi-square of 42 degrees of freedom, 1e-3: 16 markers) nor errors
+// so many times as large as stated explain is a wrong labeling or a wrong minimum.
+constexpr double k_noise_chi_square_max = 76, k_errors_most = 8;
+
+// So many fits see about the same lens residual, and the same part of the ripple.
+constexpr double k_fits_a_residual = 4, k_fits_a_ripple = 16;
 
 double square_of(double x) { return x * x; }
 
@@ -45,11 +54,11 @@ void set_across(const Vector3& across, const WeightedMarker& marker, const Vecto
   const double residual = across.dot(point) * inverse;
   set_row(residual, (across - marker.ray * residual) * inverse, place, marker_sigma_m, row);
   const double right = across.dot(place.rays.along_x), down = across.dot(place.rays.along_y);
-  const Vector3 off_axis(marker.ray.x(), marker.ray.y(), 0);
   row.by_errors(2) = right * camera.principal_point_px;
   row.by_errors(3) = down * camera.principal_point_px;
-  row.by_errors(4) = across.dot(off_axis) * camera.focal_scale;
-  const double slow_px2 = square_of(camera.slow_centroid_px) + square_of(k_lens_residual_px);
+  row.by_errors(4) = across.dot(place.rays.outward) * camera.focal_scale;
+  const double slow_px2 =
+      square_of(camera.slow_centroid_px) + k_fits_a_residual * square_of(k_lens_residual_px);
   const double noise = std::sqrt(1 + slow_px2 * (square_of(right) + square_of(down)));
   row.residual /= noise;
   row.by_pose /= noise;
@@ -58,7 +67,8 @@ void set_across(const Vector3& across, const WeightedMarker& marker, const Vecto
 
 void set_along(const WeightedMarker& marker, const Vector3& point, const Place& place,
                const CameraUncertainty& camera, double marker_sigma_m, Row& row) {
-  const double slow_m2 = square_of(camera.slow_range_m) + square_of(k_range_ripple_m);
+  const double slow_m2 =
+      square_of(camera.slow_range_m) + k_fits_a_ripple * square_of(k_range_ripple_m);
   const double weight =
       marker.per_range_sigma / std::sqrt(1 + slow_m2 * square_of(marker.per_range_sigma));
   const double range = std::sqrt(point.squaredNorm());
@@ -69,12 +79,12 @@ void set_along(const WeightedMarker& marker, const Vector3& point, const Place& 
 
 }  // namespace
 
-void add_fit(std::span<const WeightedMarker> markers, std::span<const LocalRays> rays,
-             std::span<const int> of_tool, const Pose& T_camera_tool,
-             const CameraUncertainty& camera, double marker_sigma_m,
-             CalibrationErrors& errors) noexcept {
+Result<OptimalFit> add_fit(std::span<const WeightedMarker> markers, std::span<const LocalRays> rays,
+                           std::span<const int> of_tool, const Pose& T_camera_tool,
+                           const CameraUncertainty& camera, double marker_sigma_m,
+                           CalibrationErrors* errors) noexcept {
   const std::size_t count = std::min(markers.size(), std::size_t{k_markers_per_tool_max});
-  if (count < 3 || rays.size() < count || of_tool.size() < count) return;
+  if (count < 3 || rays.size() < count || of_tool.size() < count) return {{}, Reason::degenerate};
   const Vector3 mean_m = mean_of(markers.first(count));
   const Matrix3 rotation = T_camera_tool.rotation.toRotationMatrix();
   Rows rows;
@@ -84,7 +94,7 @@ void add_fit(std::span<const WeightedMarker> markers, std::span<const LocalRays>
     const WeightedMarker& marker = markers[i];
     const Vector3 point = T_camera_tool * marker.model_m;
     if (!(marker.ray.dot(point) > 0) || of_tool[i] < 0 || of_tool[i] >= k_markers_per_tool_max)
-      return;
+      return {{}, Reason::degenerate};
     const Place place{rays[i], rotation, rotation * (marker.model_m - mean_m), of_tool[i]};
     set_across(marker.across_first, marker, point, place, camera, marker_sigma_m, rows[3 * i]);
     set_across(marker.across_second, marker, point, place, camera, marker_sigma_m, rows[3 * i + 1]);
@@ -94,31 +104,52 @@ void add_fit(std::span<const WeightedMarker> markers, std::span<const LocalRays>
     range_m += marker.range_m;
   }
   const Result<PoseFactor> factor = pose_factor(normal);
-  if (!factor) return;
+  if (!factor) return {{}, Reason::degenerate};
   // Each column less what a pose explains of it.
-  Vector6 residual_slope = Vector6::Zero();
-  Eigen::Matrix<double, 6, k_calibration_errors> error_slopes;
-  error_slopes.setZero();
+  Vector6 residual_pose = Vector6::Zero();
+  Eigen::Matrix<double, 6, k_calibration_errors> pose_by_errors;
+  pose_by_errors.setZero();
   for (std::size_t k = 0; k < 3 * count; ++k) {
-    residual_slope += rows[k].by_pose * rows[k].residual;
+    residual_pose += rows[k].by_pose * rows[k].residual;
     for (int c = 0; c < k_calibration_errors; ++c)
-      error_slopes.col(c) += rows[k].by_pose * rows[k].by_errors(c);
+      pose_by_errors.col(c) += rows[k].by_pose * rows[k].by_errors(c);
   }
-  const Vector6 residual_pose = factor.value.solve(residual_slope);
+  residual_pose = factor.value.solve(residual_pose);
   for (int c = 0; c < k_calibration_errors; ++c)
-    error_slopes.col(c) = factor.value.solve(error_slopes.col(c));
+    pose_by_errors.col(c) = factor.value.solve(pose_by_errors.col(c));
+  double left_squares = 0, error_squares = 0;
   for (std::size_t k = 0; k < 3 * count; ++k) {
-    const double residual = rows[k].residual - rows[k].by_pose.dot(residual_pose);
-    ErrorVector left = rows[k].by_errors;
+    Row& row = rows[k];
+    row.residual -= row.by_pose.dot(residual_pose);
     for (int c = 0; c < k_calibration_errors; ++c)
-      left(c) -= rows[k].by_pose.dot(error_slopes.col(c));
-    for (int c = 0; c < k_calibration_errors; ++c) {
-      errors.pull(c) -= left(c) * residual;
-      for (int r = c; r < k_calibration_errors; ++r) errors.information(r, c) += left(r) * left(c);
-    }
+      row.by_errors(c) -= row.by_pose.dot(pose_by_errors.col(c));
+    left_squares += row.residual * row.residual;
+    error_squares += row.by_errors.squaredNorm();
   }
-  errors.ranges_m += range_m / static_cast<double>(count);
-  ++errors.fits;
+  if (!(left_squares <= k_noise_chi_square_max + k_errors_most * k_errors_most * error_squares))
+    return {{}, Reason::bad_fit};
+  if (errors != nullptr) {
+    for (std::size_t k = 0; k < 3 * count; ++k) {
+      const ErrorVector& left = rows[k].by_errors;
+      for (int c = 0; c < k_calibration_errors; ++c) {
+        errors->pull(c) -= left(c) * rows[k].residual;
+        for (int r = c; r < k_calibration_errors; ++r)
+          errors->information(r, c) += left(r) * left(c);
+      }
+    }
+    errors->ranges_m += range_m / static_cast<double>(count);
+    ++errors->fits;
+  }
+  // From the markers' mean to the tool's origin.
+  const Quaternion turn = from_rotation_vector(-residual_pose.tail<3>());
+  const Vector3 mean = T_camera_tool * mean_m - residual_pose.head<3>();
+  OptimalFit fit;
+  fit.T_camera_tool.rotation = (turn * T_camera_tool.rotation).normalized();
+  const Vector3 lever = -(fit.T_camera_tool.rotation * mean_m);
+  fit.T_camera_tool.translation = mean + lever;
+  fit.covariance = moved_covariance(factor.value.inverse(), lever);
+  fit.by_errors = pose_by_pose(lever).lazyProduct(pose_by_errors.leftCols<k_common_errors>());
+  return {fit};
 }
 
 }  // namespace glint

@@ -21,6 +21,7 @@
 #include "kernels/pose/local_rays.hpp"
 #include "kernels/pose/systematic_covariance.hpp"
 #include "kernels/pose/weighted_marker.hpp"
+#include "kernels/result.hpp"
 
 namespace glint {
 
@@ -40,12 +41,23 @@ struct CalibrationErrors {
   int fits = 0;
 };
 
+// The optimum of one fit, and how the common errors move it: about the tool's origin and the
+// camera's axes, order (x, y, z, rx, ry, rz).
+struct OptimalFit {
+  Pose T_camera_tool;
+  Matrix6 covariance = Matrix6::Zero();  // by noise, slow errors and what no calibration states
+  Eigen::Matrix<double, 6, k_common_errors> by_errors =
+      Eigen::Matrix<double, 6, k_common_errors>::Zero();  // in their stated sigmas
+};
+
 // rays: the lens around each marker; of_tool: which of the tool's markers each is, both in the
-// markers' order; T_camera_tool: near the fit's optimum. A fit that its markers do not determine
-// adds nothing.
-void add_fit(std::span<const WeightedMarker> markers, std::span<const LocalRays> rays,
-             std::span<const int> of_tool, const Pose& T_camera_tool,
-             const CameraUncertainty& camera, double marker_sigma_m,
-             CalibrationErrors& errors) noexcept GLINT_NONBLOCKING;
+// markers' order; T_camera_tool: near the fit's optimum; errors: null to add nothing.
+// Nothing is added by Reason::degenerate (the markers do not determine the pose) and bad_fit (a
+// wrong labeling or minimum: no error explains what is left).
+[[nodiscard]] Result<OptimalFit> add_fit(std::span<const WeightedMarker> markers,
+                                         std::span<const LocalRays> rays,
+                                         std::span<const int> of_tool, const Pose& T_camera_tool,
+                                         const CameraUncertainty& camera, double marker_sigma_m,
+                                         CalibrationErrors* errors) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

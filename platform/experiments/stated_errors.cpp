@@ -41,6 +41,10 @@ void draw_below_one_sigma(const Cell& cell, LargeError large, std::uint64_t seed
       }
     }
   }
+  const double time_s = std::hypot(stated.stamp_s, cell.head_noise.stamp_s);
+  scenario.localisation.latency_s = large == LargeError::time_offset
+                                        ? (even() > 0 ? 1 : -1) * k_large_sigmas * time_s
+                                        : cell.head_noise.stamp_s * even();
   const double drift = std::abs(even());
   set_drift(large == LargeError::head_drift ? k_large_sigmas : drift, scenario.localisation);
 }

@@ -17,6 +17,7 @@ enum class LargeError {
   tool_geometry,
   principal_point,
   focal_length,
+  time_offset,  // of the head's poses against the frames
   head_drift
 };
 

@@ -15,6 +15,11 @@ namespace {
 constexpr double k_shown_least = 0.5;
 // In stated sigmas: of one error, of the largest of several, and the rms of several.
 constexpr double k_one_most = 2.5, k_largest_most = 3.2, k_rms_most = 2;
+constexpr int k_sights_least = 30;
+constexpr double k_drift_most = 2;  // times what is declared, less two sigma of the sights
+// Of the factor's logarithm: the headset's own velocity, which the walk grows with, holds its
+// error.
+constexpr double k_drift_model_sigma = 0.4;
 
 // The most likely errors and their covariance, in stated sigmas: first those that the tools share,
 // then each tool's own.
@@ -22,13 +27,20 @@ struct Estimate {
   Eigen::MatrixXd covariance;
   Eigen::VectorXd errors;
 
-  explicit Estimate(std::span<const ToolErrors> tools) {
-    Eigen::Index size = k_common_errors;
+  Estimate(std::span<const ToolErrors> tools, const WorldFindings* world) {
+    Eigen::Index size = k_shared_errors;
     for (const ToolErrors& tool : tools) size += 3 * tool.markers;
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(size, size);
     Eigen::VectorXd pull = Eigen::VectorXd::Zero(size);
-    Eigen::Index at = k_common_errors;
-    constexpr Eigen::Index k_common = k_common_errors;
+    constexpr Eigen::Index k_shared = k_shared_errors, k_common = k_common_errors;
+    if (world != nullptr) {
+      // Less what was stated before, which counts once.
+      const Eigen::MatrixXd both =
+          world->covariance.llt().solve(Eigen::MatrixXd::Identity(k_shared, k_shared));
+      matrix.topLeftCorner(k_shared, k_shared) = both;
+      pull.head(k_shared) = both * world->errors;
+    }
+    Eigen::Index at = k_shared;
     for (const ToolErrors& tool : tools) {
       const Eigen::Index own = 3 * tool.markers;
       const ErrorMatrix all = tool.sums.information.selfadjointView<Eigen::Lower>();
@@ -44,6 +56,34 @@ struct Estimate {
     errors = covariance * pull;
   }
   [[nodiscard]] double shown(int error) const { return 1 - covariance(error, error); }
+};
+
+// What a body that stands still shows, by the factor of the headset's error that explains it best.
+struct World {
+  bool seen = false;
+  WorldFindings errors;
+  double drift = 1, drift_log_sigma = 0;
+
+  explicit World(const WorldErrors* all) : seen(all != nullptr && all->sights() >= k_sights_least) {
+    if (!seen) return;
+    constexpr std::size_t k_factors = k_walk_factors.size();
+    std::array<WorldFindings, k_factors> each;
+    std::size_t best = 0;
+    for (std::size_t i = 0; i < k_factors; ++i) {
+      each[i] = all->of_factor(i);
+      if (each[i].log_likelihood > each[best].log_likelihood) best = i;
+    }
+    errors = each[best];
+    // The top of the parabola through it and its neighbours.
+    const std::size_t middle = std::clamp<std::size_t>(best, 1, k_factors - 2);
+    const double below = each[middle - 1].log_likelihood, here = each[middle].log_likelihood,
+                 above = each[middle + 1].log_likelihood;
+    const double step = std::log(k_walk_factors[middle + 1] / k_walk_factors[middle]);
+    const double bend = below - 2 * here + above;
+    const double top = bend < 0 ? std::clamp(0.5 * (below - above) / bend, -1.0, 1.0) : 0;
+    drift = k_walk_factors[middle] * std::exp(step * top);
+    drift_log_sigma = bend < 0 ? step / std::sqrt(-bend) : step;
+  }
 };
 
 // How large the errors first .. first + count are, where the data show them: along the axes of the
@@ -72,10 +112,28 @@ struct Size {
   }
 };
 
+// What measures it, or where it is stated.
+const char* remedy_of(ErrorSource source) {
+  switch (source) {
+    case ErrorSource::principal_point:
+    case ErrorSource::focal_length:
+      return "glint calibrate camera";
+    case ErrorSource::tool_geometry:
+      return "glint calibrate tool";
+    case ErrorSource::time_offset:
+      return "stamp the head's poses and the frames by one clock";
+    case ErrorSource::head_drift:
+      return "state it in [headset]";
+    default:
+      return "glint calibrate depth";
+  }
+}
+
 class Findings {
  public:
-  Findings(std::span<const ToolErrors> tools, const CameraUncertainty& stated)
-      : estimate_(tools), stated_(stated) {
+  Findings(std::span<const ToolErrors> tools, const CameraUncertainty& stated,
+           const WorldErrors* world, double time_sigma_s)
+      : world_(world), estimate_(tools, world_.seen ? &world_.errors : nullptr), stated_(stated) {
     int fits = 0;
     for (const ToolErrors& tool : tools) {
       range_m_ += tool.sums.ranges_m;
@@ -90,7 +148,21 @@ class Findings {
     }
     add_principal_point();
     add_one(ErrorSource::focal_length, 4, stated.focal_scale);
-    int at = k_common_errors;
+    if (world_.seen) {
+      add_one(ErrorSource::time_offset, k_common_errors, time_sigma_s);
+      const bool wider = world_.drift * std::exp(-2 * world_.drift_log_sigma) > k_drift_most;
+      const double log_sigma = std::hypot(world_.drift_log_sigma, k_drift_model_sigma);
+      found.push_back({{},
+                       ErrorSource::head_drift,
+                       world_.drift,
+                       world_.drift * log_sigma,
+                       range_m_,
+                       world_.drift,
+                       world_.drift * world_.drift,
+                       1,
+                       wider});
+    }
+    int at = k_shared_errors;
     for (const ToolErrors& tool : tools) {
       add_geometry(tool, at);
       at += 3 * tool.markers;
@@ -129,6 +201,7 @@ class Findings {
         tool.marker_sigma_m * std::sqrt(variance), Size(estimate_, at, count));
   }
 
+  World world_;
   Estimate estimate_;
   const CameraUncertainty& stated_;
   double range_m_ = 0;
@@ -137,33 +210,30 @@ class Findings {
 }  // namespace
 
 std::string_view name_of(ErrorSource source) {
-  constexpr std::array<std::string_view, 6> names{"range offset",          "range scale",
-                                                  "range offset or scale", "principal point",
-                                                  "focal length",          "tool geometry"};
+  constexpr std::array<std::string_view, 8> names{
+      "range offset", "range scale", "range offset or scale", "principal point",
+      "focal length", "time offset", "headset drift",         "tool geometry"};
   return names[static_cast<std::size_t>(source)];
 }
 
 ErrorUnit unit_of(ErrorSource source) {
   if (source == ErrorSource::range_scale || source == ErrorSource::focal_length) return {"%", 100};
-  return source == ErrorSource::principal_point ? ErrorUnit{"px", 1} : ErrorUnit{"mm", 1e3};
+  if (source == ErrorSource::principal_point) return {"px", 1};
+  if (source == ErrorSource::time_offset) return {"ms", 1e3};
+  return source == ErrorSource::head_drift ? ErrorUnit{"x", 1} : ErrorUnit{"mm", 1e3};
 }
 
 std::string text_of(const CalibrationFinding& finding) {
   const ErrorUnit unit = unit_of(finding.source);
-  const bool lens =
-      finding.source == ErrorSource::principal_point || finding.source == ErrorSource::focal_length;
-  const char* const command = lens                                           ? "camera"
-                              : finding.source == ErrorSource::tool_geometry ? "tool"
-                                                                             : "depth";
+  const char* const remedy = remedy_of(finding.source);
   char at[32] = "";
   if (finding.source == ErrorSource::range)
     std::snprintf(at, sizeof at, " at %.0f mm", 1e3 * finding.range_m);
   char text[256];
-  std::snprintf(text, sizeof text,
-                "%s%s%s %.2f %s%s (sigma %.2f), %.1f times what is stated; glint calibrate %s",
+  std::snprintf(text, sizeof text, "%s%s%s %.2f %s%s (sigma %.2f), %.1f times what is stated; %s",
                 finding.tool.c_str(), finding.tool.empty() ? "" : ": ",
                 std::string(name_of(finding.source)).c_str(), unit.per_base * finding.estimate,
-                unit.text, at, unit.per_base * finding.sigma, finding.stated_sigmas, command);
+                unit.text, at, unit.per_base * finding.sigma, finding.stated_sigmas, remedy);
   return text;
 }
 
@@ -178,9 +248,11 @@ std::vector<CalibrationFinding> CalibrationNotes::all() const {
 }
 
 std::vector<CalibrationFinding> calibration_findings(std::span<const ToolErrors> tools,
-                                                     const CameraUncertainty& stated) {
+                                                     const CameraUncertainty& stated,
+                                                     const WorldErrors* world,
+                                                     double time_sigma_s) {
   if (tools.empty()) return {};
-  return Findings(tools, stated).found;
+  return Findings(tools, stated, world, time_sigma_s).found;
 }
 
 }  // namespace glint

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "kernels/motion/world_errors.hpp"
 #include "kernels/pose/calibration_errors.hpp"
 
 namespace glint {
@@ -23,6 +24,8 @@ enum class ErrorSource : std::uint8_t {
   range,  // the two, not separated
   principal_point,
   focal_length,
+  time_offset,  // of the head's poses against the frames
+  head_drift,   // of the headset's own localisation
   tool_geometry
 };
 
@@ -32,7 +35,8 @@ struct CalibrationFinding {
   std::string tool;  // its name; empty: an error that all tools share
   ErrorSource source = ErrorSource::range;
   // Of an offset and of `range` m, at range_m; of scales 1; of the principal point its distance,
-  // px; of the geometry the markers' rms, m.
+  // px; of the time s; of the drift the factor of what is declared; of the geometry the markers'
+  // rms, m.
   double estimate = 0, sigma = 0, range_m = 0;
   double stated_sigmas = 0;  // the error's size
   // Along the axes that the data show; 0 axes: they leave more than half of its stated variance.
@@ -70,8 +74,10 @@ struct ToolErrors {
   CalibrationErrors sums;     // of at least one fit
 };
 
-// Of the errors that the tools share, and of each tool's own.
+// Of the errors that the tools share, and of each tool's own. world: of a body that stands still,
+// null: none; time_sigma_s: of the head's poses against the frames, as stated.
 [[nodiscard]] std::vector<CalibrationFinding> calibration_findings(
-    std::span<const ToolErrors> tools, const CameraUncertainty& stated);
+    std::span<const ToolErrors> tools, const CameraUncertainty& stated,
+    const WorldErrors* world = nullptr, double time_sigma_s = 0);
 
 }  // namespace glint

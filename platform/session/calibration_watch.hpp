@@ -3,12 +3,16 @@
 // Of each frame one tool counts, in turn, so that a frame's cost does not grow with the tools. Of
 // each tool, fits count whose pose differs from that of the fit counted before, since a tool at
 // rest shows the same errors of lens and range again. Fits that were refused as bad count, too.
+// Where a body stands still in view, each fifth of a second one of its fits shows what the lens,
+// the clocks and the headset's drift do to its place in the world.
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "graph/latest.hpp"
+#include "kernels/motion/world_errors.hpp"
 #include "nodes/tracker.hpp"
 #include "platform/cells/cell.hpp"
 #include "platform/report/calibration_findings.hpp"
@@ -41,15 +45,34 @@ class CalibrationWatch {
     Pose counted;  // T_camera_tool of the last fit that did
     CalibrationErrors errors;
   };
+  struct SeenBody {
+    StampedPose head;  // then
+    BodySight sight;
+  };
   void see(const Tracker& tracker, const Tool& tool, Watched& watched) noexcept;
+  [[nodiscard]] bool body_is_due(int tool, const HeadPose& head, Time now) const;
+  void note_body(const OptimalFit& fit, const HeadPose& head) noexcept;
+  [[nodiscard]] double time_sigma_s() const;
   using AllWatched = std::array<Watched, k_tools_max>;
-  [[nodiscard]] std::vector<CalibrationFinding> findings_of(const AllWatched& tools) const;
+  [[nodiscard]] std::vector<CalibrationFinding> findings_of(const AllWatched& tools,
+                                                            const WorldErrors& world) const;
 
   const Cell& cell_;
   AllWatched tools_;
   std::uint64_t seen_ = 0;  // frames
-  graph::TripleBuffer<Watched> shared_;
+  HeadWalk walk_;
+  SeenBody body_;                   // the newest sight
+  StampedPose head_before_;         // of the one before
+  int in_a_row_ = 0;                // sights, up to 2
+  std::optional<Time> last_sight_;  // that world_ took
+  WorldErrors world_;
+  struct Newest {
+    Watched tool;
+    WorldErrors world;
+  };
+  graph::TripleBuffer<Newest> shared_;
   AllWatched reviewed_;  // the reviewing thread's
+  WorldErrors reviewed_world_;
   Time next_review_;
 };
 

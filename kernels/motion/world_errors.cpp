@@ -1,0 +1,93 @@
+#include "kernels/motion/world_errors.hpp"
+
+#include <algorithm>
+
+#include "kernels/elementary.hpp"
+#include "kernels/motion/cholesky.hpp"
+#include "kernels/motion/motion_filter.hpp"
+
+namespace glint {
+namespace {
+
+// Chi square of 6 degrees of freedom, 1e-6.
+constexpr double k_sight_chi_square_max = 38.3;
+constexpr int k_sights_refused_max = 9;
+constexpr double k_unknown_m = 1, k_unknown_rad = 1;  // beside the first sight
+
+}  // namespace
+
+bool WorldErrors::add(const BodySight& sight) noexcept {
+  if (!idle()) return false;
+  waiting_ = sight;
+  next_ = 0;
+  return true;
+}
+
+void WorldErrors::work() noexcept {
+  if (idle()) return;
+  filters_[next_].update(waiting_, k_walk_factors[next_]);
+  ++next_;
+  if (idle()) ++sights_;
+}
+
+WorldFindings WorldErrors::of_factor(std::size_t factor) const { return filters_[factor].shared(); }
+
+WorldErrors::Filter::Filter() {
+  covariance_.setIdentity();
+  covariance_.topLeftCorner<12, 12>().setZero();
+  forget_place();
+}
+
+void WorldErrors::Filter::forget_place() {
+  covariance_.block<6, k_states>(6, 0).setZero();
+  covariance_.block<k_states, 6>(0, 6).setZero();
+  covariance_.diagonal().segment<3>(6).setConstant(k_unknown_m * k_unknown_m);
+  covariance_.diagonal().segment<3>(9).setConstant(k_unknown_rad * k_unknown_rad);
+  state_.segment<6>(6).setZero();
+  refused_ = 0;
+  known_ = false;
+}
+
+void WorldErrors::Filter::update(const BodySight& sight, double factor) noexcept {
+  const double kept = sight.walked.kept;
+  state_.head<6>() *= kept;
+  covariance_.topRows<6>() *= kept;
+  covariance_.leftCols<6>() *= kept;
+  covariance_.topLeftCorner<6, 6>() += factor * factor * sight.walked.fresh();
+  if (!known_) T_world_body_ = sight.T_world_body;
+  known_ = true;
+
+  // z = H (e, b, c, t), H = (1, 1, by_errors).
+  constexpr int k_shared_at = 12;
+  Eigen::Matrix<double, k_states, 6> gained =
+      covariance_.leftCols<6>() + covariance_.middleCols<6>(6);
+  gained +=
+      covariance_.middleCols<k_shared_errors>(k_shared_at).lazyProduct(sight.by_errors.transpose());
+  Matrix6 expected = gained.topRows<6>() + gained.middleRows<6>(6) + sight.covariance;
+  expected += sight.by_errors.lazyProduct(gained.middleRows<k_shared_errors>(k_shared_at));
+  const Vector6 innovation = pose_difference(sight.T_world_body, T_world_body_) - state_.head<6>() -
+                             state_.segment<6>(6) -
+                             sight.by_errors * state_.tail<k_shared_errors>();
+  const Cholesky<6> root(0.5 * (expected + expected.transpose()));
+  if (!root.positive) return;
+  const double chi_square = root.squared_length(innovation);
+  // Left out, it must not count as likelier than one that is explained.
+  log_likelihood_ -= 0.5 * std::min(chi_square, k_sight_chi_square_max);
+  for (int i = 0; i < 6; ++i) log_likelihood_ -= logarithm(root.lower(i, i));
+  if (!(chi_square <= k_sight_chi_square_max)) {
+    if (++refused_ >= k_sights_refused_max) forget_place();
+    return;
+  }
+  refused_ = 0;
+  const Eigen::Matrix<double, k_states, 6> gain = gained.lazyProduct(root.inverse());
+  state_ += gain * innovation;
+  covariance_ -= gain.lazyProduct(gained.transpose());
+  covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
+}
+
+WorldFindings WorldErrors::Filter::shared() const {
+  return {state_.tail<k_shared_errors>(),
+          covariance_.bottomRightCorner<k_shared_errors, k_shared_errors>(), log_likelihood_};
+}
+
+}  // namespace glint

@@ -1,0 +1,75 @@
+#include "kernels/motion/head_walk.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/kernels/motion/motion_scene.hpp"
+
+namespace glint::head_walk_test {
+namespace {
+
+constexpr double k_frame_s = 1.0 / 45;
+
+HeadPose head_at(double seconds, double speed_m_s, double turn_rad_s) {
+  HeadPose head;
+  head.time = Time{static_cast<std::int64_t>(1e9 * seconds)};
+  head.valid = true;
+  head.T_world_camera = {from_rotation_vector(Vector3(0, turn_rad_s * seconds, 0)),
+                         Vector3(speed_m_s * seconds, 0, 0)};
+  return head;
+}
+
+HeadWalk moving(double speed_m_s, double turn_rad_s) {
+  HeadWalk walk;
+  for (int frame = 0; frame < 200; ++frame)
+    (void)walk.observe(head_at(frame * k_frame_s, speed_m_s, turn_rad_s), {});
+  return walk;
+}
+
+// At the pivot a rotation about it moves nothing.
+TEST(HeadWalk, AtRestIsAsDeclared) {
+  const HeadNoise noise;
+  const HeadWalk walk = moving(0, 0);
+  const WalkedError here = walk.over(1, Vector3(0, 0, noise.pivot_m), noise);
+  EXPECT_NEAR(here.kept, std::exp(-1 / noise.rest_correlation_s), 1e-12);
+  EXPECT_NEAR(here.at_length(0, 0), noise.rest_position_m * noise.rest_position_m, 1e-12);
+  EXPECT_NEAR(here.at_length(4, 4), noise.rest_angle_rad * noise.rest_angle_rad, 1e-12);
+  const WalkedError away = walk.over(1, Vector3(0, 0, noise.pivot_m + 1), noise);
+  EXPECT_NEAR(away.at_length(0, 0) - here.at_length(0, 0),
+              noise.rest_angle_rad * noise.rest_angle_rad, 1e-12);
+  EXPECT_TRUE(here.fresh().isApprox((1 - here.kept * here.kept) * here.at_length));
+}
+
+TEST(HeadWalk, InMotionIsWiderAndFaster) {
+  const HeadNoise noise;
+  const HeadWalk walk = moving(0.4, 0);
+  const Vector3 pivot(0.4 * 199 * k_frame_s, 0, noise.pivot_m);
+  const WalkedError walked = walk.over(0.1, pivot, noise);
+  const double moving_m = 0.4 * noise.position_per_speed_s;
+  EXPECT_NEAR(walked.at_length(1, 1),
+              noise.rest_position_m * noise.rest_position_m + moving_m * moving_m, 1e-6);
+  EXPECT_LT(walked.kept, std::exp(-0.1 / (2 * noise.motion_correlation_s)));
+  EXPECT_GT(walked.kept, std::exp(-0.1 / noise.motion_correlation_s));
+  EXPECT_NEAR(walk.velocity().linear_m_s.x(), 0.4, 0.01);
+}
+
+// The first head's error is any of those declared; so it is where stamps begin anew.
+TEST(HeadWalk, BeginsBeyondEveryCorrelation) {
+  HeadWalk walk;
+  EXPECT_GT(walk.observe(head_at(5, 0, 0), {}), 1e5);
+  EXPECT_NEAR(walk.observe(head_at(5.5, 0, 0), {}), 0.5, 1e-9);
+  walk.restart_clock();
+  EXPECT_GT(walk.observe(head_at(1, 0, 0), {}), 1e5);
+}
+
+TEST(HeadWalk, GivesTheSameBitsEverywhere) {
+  test::BitHash hash;
+  const WalkedError walked = moving(0.3, 0.5).over(0.2, Vector3(0.4, -0.1, 0.7), {});
+  hash.add(walked.kept);
+  for (int i = 0; i < 36; ++i) hash.add(walked.at_length(i / 6, i % 6));
+  EXPECT_EQ(hash.value(), 7977141867570956807u);
+}
+
+}  // namespace
+}  // namespace glint::head_walk_test
