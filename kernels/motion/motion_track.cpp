@@ -116,8 +116,8 @@ Reason MotionTrack::update(Time time, std::span<const MeasuredPoint> points,
   const double seconds = (time - next.time).seconds();
   const double hidden_s = (time - posed_).seconds();
   propagate(next, time, settings.motion, partial_noise_scale(settings));
-  add_strokes(next.covariance, k_position, next.velocity_m_s, k_linear_stroke_1_s, hidden_s,
-              seconds);
+  add_strokes(next.covariance, k_position, next.velocity_m_s, linear_stroke_1_s(next.velocity_m_s),
+              hidden_s, seconds);
   add_strokes(next.covariance, k_rotation, next.angular_velocity_rad_s, k_angular_stroke_1_s,
               hidden_s, seconds);
   const std::size_t count = std::min(points.size(), k_points_max);

@@ -54,7 +54,7 @@ UncertainPose predict_pose(const MotionState& state, Time time, const MotionSett
     later.covariance(3 + i, 3 + i) += turn_noise;
   }
   later.covariance.topLeftCorner<3, 3>() +=
-      stroke_spread(state.velocity_m_s, k_linear_stroke_1_s, seconds);
+      stroke_spread(state.velocity_m_s, linear_stroke_1_s(state.velocity_m_s), seconds);
   later.covariance.bottomRightCorner<3, 3>() +=
       stroke_spread(state.angular_velocity_rad_s, k_angular_stroke_1_s, seconds);
   return later;

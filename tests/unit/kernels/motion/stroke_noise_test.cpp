@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace glint {
 namespace {
 
@@ -11,6 +13,14 @@ TEST(Strokes, SpreadAlongTheMotionAlone) {
   EXPECT_NEAR(velocity.dot(spread * velocity) / velocity.squaredNorm(), 0.0016 * 0.25, 1e-15);
   EXPECT_NEAR((spread * Vector3(0.4, -0.3, 0)).norm(), 0, 1e-15);
   EXPECT_EQ(stroke_spread(Vector3::Zero(), 2, 0.2), Matrix3(Matrix3::Zero()));
+}
+
+// Slow, the share of recorded hands; fast, what stops the hand within its reach.
+TEST(Strokes, EndWithinAHandsReach) {
+  EXPECT_NEAR(linear_stroke_1_s(Vector3(0, 0.05, 0)), k_linear_stroke_1_s, 0.003);
+  const Vector3 fast(2.7, 0, 0);
+  const double stopping_m_s2 = 2.7 * 2.7 / (2 * k_stroke_reach_m);
+  EXPECT_NEAR(linear_stroke_1_s(fast) * 2.7, std::hypot(stopping_m_s2, 0.9 * 2.7), 1e-12);
 }
 
 // Carried by hand between the steps: place by speed.
