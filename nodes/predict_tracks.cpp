@@ -40,18 +40,18 @@ bool speed_is_known(const MotionState& motion, double sigma_m_s) {
 
 }  // namespace
 
-// T_camera_world: null where the head's pose is not known. Returns how far from where its motion
-// would lead the tool is held.
-double PredictTracks::foretell(const Track& track, const Tool& tool, Time time,
-                               const HeadAnchor& anchor, const Pose* T_camera_world,
-                               Prediction& prediction) noexcept {
+// T_camera_world: null where the head's pose is not known.
+PredictTracks::Foretold PredictTracks::foretell(const Track& track, const Tool& tool, Time time,
+                                                const HeadAnchor& anchor,
+                                                const Pose* T_camera_world,
+                                                Prediction& prediction) noexcept {
   const bool in_world = track.base == ReferenceFrame::world;
   prediction.has_prior = true;
   prediction.missed_last = !track.seen_now;
   prediction.follows_motion = !in_world || T_camera_world != nullptr;
   if (!prediction.follows_motion) {
     prediction.T_camera_tool = track.T_camera_tool;  // held where the camera saw it
-    return 0;
+    return {};
   }
   ++counts_[2];
   prediction.only_near = speed_is_known(track.motion, settings.known_speed_m_s);
@@ -60,23 +60,27 @@ double PredictTracks::foretell(const Track& track, const Tool& tool, Time time,
   Pose middle = goes_on ? later.pose : track.motion.pose;
   prediction.covariance = track.surprise * later.covariance;
   prediction.odds = track.odds;
-  const double held_back_m = (later.pose.translation - middle.translation).norm();
+  Foretold foretold;
+  foretold.held_back_m = (later.pose.translation - middle.translation).norm();
   if (in_world) {
     const double since_s = (time - track.newest.time).seconds();
-    prediction.covariance += moved_share(since_s, settings.head_correlation_s) *
-                             anchor.uncorrected_at(middle.translation);
+    const Matrix6 of_head = moved_share(since_s, settings.head_correlation_s) *
+                            anchor.uncorrected_at(middle.translation);
+    foretold.head_sigma_m = std::sqrt(largest_variance(of_head.topLeftCorner<3, 3>()));
+    prediction.covariance += of_head;
     prediction.covariance = turned_covariance(prediction.covariance, T_camera_world->rotation);
     middle = *T_camera_world * middle;
   }
   prediction.T_camera_tool = {middle.rotation, middle * (-tool.middle_m())};
-  return held_back_m;
+  return foretold;
 }
 
+// As far as a hand moves in the world, and the world before the headset.
 double PredictTracks::reach_of(const Prediction& prediction, const Tool& tool, int markers,
-                               double seconds, double held_back_m) const noexcept {
+                               double seconds, const Foretold& foretold) const noexcept {
   const double half_jerk = 0.5 * settings.acceleration_max_m_s2;
-  const double widest =
-      settings.margin_m + settings.speed_max_m_s * seconds + half_jerk * seconds * seconds;
+  const double widest = settings.margin_m + settings.speed_max_m_s * seconds +
+                        half_jerk * seconds * seconds + k_reach_sigmas * foretold.head_sigma_m;
   if (!prediction.follows_motion) return widest;
   double variance = 0;
   const Vector3 middle = tool.middle_m();
@@ -86,7 +90,7 @@ double PredictTracks::reach_of(const Prediction& prediction, const Tool& tool, i
   }
   const double start_s = std::min(seconds, settings.start_max.seconds());
   const double least = settings.floor_m + half_jerk * start_s * start_s;
-  return std::clamp(held_back_m + k_reach_sigmas * std::sqrt(variance), least, widest);
+  return std::clamp(foretold.held_back_m + k_reach_sigmas * std::sqrt(variance), least, widest);
 }
 
 void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head,
@@ -118,10 +122,10 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
 
     ++counts_[1];
     const Tool& tool = set.items[t];
-    const double held_back_m = foretell(track, tool, now, anchor.value().state,
-                                        head.valid ? &T_camera_world : nullptr, prediction);
+    const Foretold foretold = foretell(track, tool, now, anchor.value().state,
+                                       head.valid ? &T_camera_world : nullptr, prediction);
     const int markers = markers_within(tool, limits);
-    prediction.reach_m = reach_of(prediction, tool, markers, gap.seconds(), held_back_m);
+    prediction.reach_m = reach_of(prediction, tool, markers, gap.seconds(), foretold);
     counts_[3] += markers;
     prediction.in_view = true;
     prediction.low_px = Vector2::Constant(1e9);

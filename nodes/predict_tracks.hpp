@@ -69,11 +69,15 @@ struct PredictTracks {
                   Predictions& predictions) noexcept GLINT_NONBLOCKING;
 
  private:
-  double foretell(const Track& track, const Tool& tool, Time time, const HeadAnchor& anchor,
-                  const Pose* T_camera_world, Prediction& prediction) noexcept GLINT_NONBLOCKING;
+  struct Foretold {
+    double held_back_m = 0;   // from where its motion would lead the tool
+    double head_sigma_m = 0;  // of the tool's place by the headset's error, an axis
+  };
+  Foretold foretell(const Track& track, const Tool& tool, Time time, const HeadAnchor& anchor,
+                    const Pose* T_camera_world, Prediction& prediction) noexcept GLINT_NONBLOCKING;
   [[nodiscard]] double reach_of(const Prediction& prediction, const Tool& tool, int markers,
                                 double seconds,
-                                double held_back_m) const noexcept GLINT_NONBLOCKING;
+                                const Foretold& foretold) const noexcept GLINT_NONBLOCKING;
 
   graph::LoopCounts counts_;
 };

@@ -10,6 +10,8 @@
 namespace glint {
 namespace {
 
+constexpr double k_likelihood_kept = 1 - 1.0 / 30;  // of each sight by the next: 0.7 s at 45 Hz
+
 // A shift and a rotation about `pivot`.
 Pose motion_about(const Vector3& pivot, const Vector6& error) {
   const Quaternion turn = from_rotation_vector(error.tail<3>());
@@ -30,21 +32,25 @@ Matrix6 AnchoredHead::stepped_at(const Vector3& point_m) const noexcept {
 }
 
 Matrix6 HeadAnchor::uncorrected_at(const Vector3& point_m) const noexcept {
-  return moved_covariance(uncorrected_, point_m - T_world_body_.translation);
+  const double factor = drift_factor();
+  return moved_covariance(factor * factor * walked_.at_length, point_m - T_world_body_.translation);
 }
 
 Pose HeadAnchor::corrected(const Pose& T_world_camera) const noexcept {
-  return motion_about(T_world_body_.translation, error_).inverse() * T_world_camera;
+  return motion_about(T_world_body_.translation, held_[best_].error).inverse() * T_world_camera;
 }
 
 void HeadAnchor::walk_on(const HeadPose& head, const HeadNoise& noise) {
   const double since = walk_.observe(head, noise);
   if (!known()) T_world_body_.translation = head.T_world_camera * Vector3(0, 0, noise.pivot_m);
-  const WalkedError walked = walk_.over(since, T_world_body_.translation, noise);
-  error_ *= walked.kept;
-  uncorrected_ = walked.at_length;
-  step_ = walked.fresh();
-  covariance_ = (walked.kept * walked.kept) * covariance_ + step_;
+  walked_ = walk_.over(since, T_world_body_.translation, noise);
+  const double kept = walked_.kept;
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    Held& held = held_[i];
+    held.error *= kept;
+    held.covariance =
+        kept * kept * held.covariance + k_drift_factors[i] * k_drift_factors[i] * walked_.fresh();
+  }
 }
 
 // The mean of the first sights.
@@ -55,30 +61,50 @@ void HeadAnchor::define(const UncertainPose& T_world_body) {
   T_world_body_.translation += off.head<3>();
   T_world_body_.rotation =
       (from_rotation_vector(off.tail<3>()) * T_world_body_.rotation).normalized();
+  held_.fill(Held{});
 }
 
-// False: this sight is none of the body where it is.
-bool HeadAnchor::correct(const UncertainPose& T_world_body, AnchoredHead& out) {
-  const Vector6 innovation = pose_difference(T_world_body.pose, T_world_body_) - error_;
-  const Matrix6 sum = covariance_ + T_world_body.covariance;
-  const Cholesky<6> factor(sum);
-  if (!factor.positive || !(factor.squared_length(innovation) <= k_anchor_chi_square_max))
-    return false;
-  const Matrix6 gain = covariance_.lazyProduct(factor.inverse());
-  const Matrix6 left = Matrix6::Identity() - gain;
-  error_ += gain * innovation;
-  out.fresh = gain.lazyProduct(T_world_body.covariance).lazyProduct(gain.transpose());
-  out.lasting = left.lazyProduct(covariance_).lazyProduct(left.transpose());
-  covariance_ = out.fresh + out.lasting;
-  covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
-  return true;
+HeadAnchor::Corrected HeadAnchor::correct(const UncertainPose& T_world_body, Held& held) const {
+  Corrected out{Matrix6::Zero(), held.covariance};
+  const Vector6 seen = pose_difference(T_world_body.pose, T_world_body_);
+  const Vector6 innovation = seen - held.error;
+  const Cholesky<6> root(held.covariance + T_world_body.covariance);
+  const double chi_square =
+      root.positive ? root.squared_length(innovation) : 2 * k_anchor_chi_square_max;
+  // Left out, a sight must not count as likelier than one that is explained.
+  held.log_likelihood *= k_likelihood_kept;
+  held.log_likelihood -= 0.5 * std::min(chi_square, k_anchor_chi_square_max);
+  for (int i = 0; root.positive && i < 6; ++i) held.log_likelihood -= logarithm(root.lower(i, i));
+  if (chi_square <= k_anchor_chi_square_max) {
+    const Matrix6 gain = held.covariance.lazyProduct(root.inverse());
+    const Matrix6 left = Matrix6::Identity() - gain;
+    held.error += gain * innovation;
+    out.fresh = gain.lazyProduct(T_world_body.covariance).lazyProduct(gain.transpose());
+    out.lasting = left.lazyProduct(held.covariance).lazyProduct(left.transpose());
+    out.accepted = true;
+  } else if (++held.refused >= k_anchor_refused_max) {
+    // As this sight has it, whatever was known before.
+    held.error = seen;
+    out.fresh = T_world_body.covariance;
+    out.lasting.setZero();
+    out.accepted = out.jumped = true;
+  }
+  if (!out.accepted) return out;
+  held.refused = 0;
+  const Matrix6 sum = out.fresh + out.lasting;
+  held.covariance = 0.5 * (sum + sum.transpose());
+  return out;
 }
 
-// As this sight has it, whatever was known before.
-void HeadAnchor::take_over(const UncertainPose& T_world_body, AnchoredHead& out) {
-  error_ = pose_difference(T_world_body.pose, T_world_body_);
-  covariance_ = out.fresh = T_world_body.covariance;
-  out.lasting.setZero();
+void HeadAnchor::correct_all(const UncertainPose& T_world_body, AnchoredHead& out) {
+  std::array<Corrected, k_drift_factors.size()> each;
+  for (std::size_t i = 0; i < held_.size(); ++i) each[i] = correct(T_world_body, held_[i]);
+  for (std::size_t i = 0; i < held_.size(); ++i)
+    if (held_[i].log_likelihood > held_[best_].log_likelihood) best_ = i;
+  out.fresh = each[best_].fresh;
+  out.lasting = each[best_].lasting;
+  out.corrected = each[best_].accepted;
+  jumps_ += each[best_].jumped ? 1 : 0;
 }
 
 AnchoredHead HeadAnchor::update(const HeadPose& head, const UncertainPose* body,
@@ -88,32 +114,24 @@ AnchoredHead HeadAnchor::update(const HeadPose& head, const UncertainPose* body,
   if (!head.valid) return out;
   walk_on(head, noise);
 
-  const Pose before = motion_about(T_world_body_.translation, error_);
-  out.lasting = covariance_;
+  const Pose before = motion_about(T_world_body_.translation, held_[best_].error);
+  out.lasting = held_[best_].covariance;
   if (body != nullptr) {
     const UncertainPose seen{head.time, head.T_world_camera * body->pose,
                              turned_covariance(body->covariance, head.T_world_camera.rotation)};
-    out.corrected = true;
     if (sights_ < k_anchor_frames) {
       define(seen);
-      error_.setZero();
-      covariance_.setZero();
       out.lasting.setZero();
-    } else if (correct(seen, out)) {
-      refused_ = 0;
-    } else if (++refused_ >= k_anchor_refused_max) {
-      take_over(seen, out);
-      refused_ = 0;
-      ++jumps_;
+      out.corrected = true;
     } else {
-      out.corrected = false;
+      correct_all(seen, out);
     }
   }
   out.moved_along = out.corrected && unseen_ > 0;
   if (out.moved_along)
-    out.moved = motion_about(T_world_body_.translation, error_).inverse() * before;
+    out.moved = motion_about(T_world_body_.translation, held_[best_].error).inverse() * before;
   out.in_gap = unseen_ > 0 || !out.corrected;
-  if (out.in_gap) out.stepped = step_;
+  if (out.in_gap) out.stepped = drift_factor() * drift_factor() * walked_.fresh();
   unseen_ = out.corrected ? 0 : unseen_ + 1;
   out.pivot_m = T_world_body_.translation;
   out.head.T_world_camera = corrected(head.T_world_camera);

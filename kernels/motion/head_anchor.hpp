@@ -4,14 +4,19 @@
 // What:     the error e (a shift and a small rotation about the body's place) is the walk of
 //           head_walk.hpp; each sight of the body measures it. Corrected poses are those relative
 //           to the body, as long as it is in view; hidden, the correction fades and its covariance
-//           grows to the headset's.
-// Cost:     one 6x6 factor and a few products: 1.5 us.
+//           grows to the headset's. One filter for each of k_drift_factors times the declared
+//           deviations; the one under which the newest sights are likeliest is given. So a headset
+//           that drifts more than is declared is held to the body all the same.
+// Cost:     for each factor one 6x6 Cholesky factor and a few products: 1.5 us.
 // Worst:    the body in view, none is worse than another.
 // Accuracy: the body's own, filtered as far as the headset's error allows. The body's first
 //           k_anchor_frames sights define where it is; what they are off by moves the whole world.
 // Source:   Bar-Shalom, Li and Kirubarajan 2001, section 5.2 (the update, in Joseph's form, whose
-//           two terms are given apart).
+//           two terms are given apart) and 11.6.2 (models compared by their likelihoods).
 #pragma once
+
+#include <array>
+#include <cstddef>
 
 #include "kernels/motion/head_walk.hpp"
 #include "kernels/motion/motion_state.hpp"
@@ -26,6 +31,8 @@ inline constexpr double k_anchor_chi_square_max = 38.3;
 // .. unless it goes on for 0.2 s: then the headset has lost its place and found another, and the
 // body, which is declared not to move, is believed.
 inline constexpr int k_anchor_refused_max = 9;
+// None below 1: a drift that is stated too large costs little, one too small the body's hold.
+inline constexpr std::array<double, 5> k_drift_factors{1, 3, 10, 30, 100};
 
 // The head's pose of one frame, corrected, with what its error adds to every pose in the world.
 struct AnchoredHead {
@@ -61,24 +68,36 @@ class HeadAnchor {
   [[nodiscard]] bool known() const { return sights_ > 0; }
   [[nodiscard]] const Pose& T_world_body() const { return T_world_body_; }  // once known()
   [[nodiscard]] int jumps() const { return jumps_; }  // of the headset, that the body told
+  // Of the declared deviations, that which holds now.
+  [[nodiscard]] double drift_factor() const { return k_drift_factors[best_]; }
   // The stamps begin anew: nothing is known of how the head moved before.
   void restart_clock() noexcept { walk_.restart_clock(); }
 
  private:
+  // Under one factor.
+  struct Held {
+    Vector6 error = Vector6::Zero();  // of the head, about T_world_body_'s origin
+    Matrix6 covariance = Matrix6::Zero();
+    int refused = 0;            // in a row
+    double log_likelihood = 0;  // of the newest sights
+  };
+  // What one sight left of a covariance: AnchoredHead.
+  struct Corrected {
+    Matrix6 fresh, lasting;
+    bool accepted = false, jumped = false;
+  };
   void walk_on(const HeadPose& head, const HeadNoise& noise);
   void define(const UncertainPose& T_world_body);
-  bool correct(const UncertainPose& T_world_body, AnchoredHead& out);
-  void take_over(const UncertainPose& T_world_body, AnchoredHead& out);
+  [[nodiscard]] Corrected correct(const UncertainPose& T_world_body, Held& held) const;
+  void correct_all(const UncertainPose& T_world_body, AnchoredHead& out);
 
-  int sights_ = 0;   // that defined the body's place, up to k_anchor_frames
-  int refused_ = 0;  // in a row
-  int unseen_ = 0;   // frames in a row
+  int sights_ = 0;  // that defined the body's place, up to k_anchor_frames
+  int unseen_ = 0;  // frames in a row
   int jumps_ = 0;
   Pose T_world_body_;
-  Vector6 error_ = Vector6::Zero();  // of the head, about T_world_body_'s origin
-  Matrix6 covariance_ = Matrix6::Zero();
-  Matrix6 uncorrected_ = Matrix6::Zero();  // what covariance_ grows to
-  Matrix6 step_ = Matrix6::Zero();         // by how much it grew since the frame before
+  std::array<Held, k_drift_factors.size()> held_;
+  std::size_t best_ = 0;
+  WalkedError walked_;  // since the frame before, of factor 1
   HeadWalk walk_;
 };
 

@@ -1,4 +1,5 @@
 #include "platform/experiments/case_experiments.hpp"
+#include "platform/experiments/anchored_experiment.hpp"
 
 #include <vector>
 
@@ -38,6 +39,8 @@ std::span<const CaseExperiment> case_experiments() {
        run_occlusion},
       {"rates", "frames at 45, 5 and 45 Hz, dropped, doubled, late and stamped backwards", false,
        run_rates},
+      {"anchored", "a board in view, shipped settings, a headset that drifts more than declared",
+       false, run_anchored},
       {"correlated", "real tools at rest: errors that last, their model and stated covariance",
        true, run_correlated},
       {"bound", "the pose of one frame beside the best that any estimator could do", false,

@@ -37,20 +37,7 @@ ExperimentRun make_run(sim::Scenario scenario, int judged, const ExperimentOptio
   return run;
 }
 
-// The cell's user declares what the simulator does.
-HeadNoise head_noise_of(const sim::LocalisationSettings& localisation) {
-  HeadNoise noise;
-  noise.rest_position_m = localisation.rest_position_m;
-  noise.rest_angle_rad = localisation.rest_angle_rad;
-  noise.rest_correlation_s = localisation.rest_correlation_s;
-  noise.position_per_speed_s = localisation.position_per_speed_s;
-  noise.position_per_turn_m = localisation.position_per_turn_m;
-  noise.angle_per_speed_s_m = localisation.angle_per_speed_s_m;
-  noise.angle_per_turn_s = localisation.angle_per_turn_s;
-  noise.motion_correlation_s = localisation.motion_correlation_s;
-  noise.pivot_m = localisation.pivot_m;
-  return noise;
-}
+}  // namespace
 
 sim::Scenario with_reference(sim::Scenario scenario) {
   sim::ToolBody board;
@@ -59,8 +46,6 @@ sim::Scenario with_reference(sim::Scenario scenario) {
   sim::lay_on_table(scenario, scenario.tools.size() - 1);
   return scenario;
 }
-
-}  // namespace
 
 ExperimentBars bars_of(ExperimentKind kind) {
   return kind == ExperimentKind::still ? ExperimentBars{0.5, 0.2} : ExperimentBars{1.5, 0.6};
@@ -119,17 +104,18 @@ ExperimentResult run_experiment(ExperimentKind kind, const std::vector<Experimen
   const Tool tool = runs.front().scenario.tools.front().tool;
   const sim::ReferenceSettings& judge = runs.front().scenario.reference;
   MethodRecord seed("seed", tool, judge), glint("glint", tool, judge),
-      held("glint, held to a board", tool, judge);
+      held("glint, held to a board", tool, judge), perfect("a perfect tracker", tool, judge);
   sim::SimFrame frame, with_board;
   for (const ExperimentRun& run : runs) {
     const sim::Simulator simulator(run.scenario), board_simulator(with_reference(run.scenario));
     SeedTracker seed_tracker(run.scenario.camera, tool);
-    const HeadNoise noise = head_noise_of(run.scenario.localisation);
+    const HeadNoise noise;  // as shipped: the simulated headset is another
     GlintChain free_chain(run.scenario.camera, ChainSetup{{tool}, -1, noise});
     GlintChain held_chain(run.scenario.camera, ChainSetup{{tool, reference_board()}, 1, noise});
     seed.begin_run();
     glint.begin_run();
     held.begin_run();
+    perfect.begin_run();
     result.path.reference_m.clear();
     const int end = std::min(run.skipped + run.aligning + run.judged, simulator.frame_count());
     for (int i = run.skipped; i < end; ++i) {
@@ -155,6 +141,10 @@ ExperimentResult run_experiment(ExperimentKind kind, const std::vector<Experimen
       (seed.*take)(frame, seed_answer.first, seed_answer.second);
       (glint.*take)(frame, glint_answer.first, glint_answer.second);
       (held.*take)(with_board, held_answer.first, held_answer.second);
+      const Pose T_camera_tip = frame.truth.T_world_camera.inverse() *
+                                frame.truth.T_world_tool.front() *
+                                Pose{Quaternion::Identity(), tool.tip_m};
+      (perfect.*take)(frame, {{{}, frame.head.T_world_camera * T_camera_tip, Matrix6::Zero()}}, 0);
       if (!aligning) result.path.reference_m.push_back(frame.reference.front() * tool.tip_m);
       if (options.progress && (++done % k_progress_every == 0 || done == total))
         options.progress(done, total);
@@ -163,6 +153,7 @@ ExperimentResult run_experiment(ExperimentKind kind, const std::vector<Experimen
   result.seed = seed.figures();
   result.glint = glint.figures();
   result.glint_held = held.figures();
+  result.perfect = perfect.figures();
   result.path.seed_m = seed.path_m();
   result.path.glint_m = glint.path_m();
   return result;

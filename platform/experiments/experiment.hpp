@@ -7,8 +7,8 @@
 //   static:  headset and pen still, an arm's length apart, k_static_frames samples;
 //   dynamic: both moving, k_dynamic_runs times k_dynamic_frames samples, each run aligned anew.
 // Both methods get the very same frames and head poses; Glint in a second row those of the same
-// scenario, noise and drift with a board on the table, to which it holds the headset's world. A
-// sample is a frame in which the method measured the tool.
+// scenario, noise and drift with a board on the table, to which it holds the headset's world. Its
+// settings are the shipped ones. A sample is a frame in which the method measured the tool.
 //
 // Figures: an error's position and rotation vector have three signed components along the
 // reference's axes; all of them are pooled into one column of 3 x samples. mean_abs is the mean of
@@ -82,6 +82,7 @@ struct ExperimentResult {
   bool quick = false;
   MethodFigures seed, glint;
   MethodFigures glint_held;  // with the built-in board in view, as the reference that does not move
+  MethodFigures perfect;     // the true pose before the camera: what the headset's drift alone does
   ExperimentPath path;       // of the last run
   std::string declared;      // every declared parameter, as text
   std::string config_hash;   // FNV-1a of `declared`, 16 hexadecimal digits
@@ -96,6 +97,9 @@ struct ExperimentBars {
 };
 [[nodiscard]] ExperimentBars bars_of(ExperimentKind kind);
 [[nodiscard]] int missed_bars(const ExperimentResult& result);
+
+// The scenario with the built-in board on the table as its last tool.
+[[nodiscard]] sim::Scenario with_reference(sim::Scenario scenario);
 
 // The same on scenarios of one's own: of each, `aligning` frames align and all after them are
 // judged; the first `skipped` are not even rendered.

@@ -59,14 +59,15 @@ Json json_of(const MethodFigures& figures) {
 
 // The figures of one row; nothing where a column has none.
 struct Row {
-  std::optional<double> published, seed, glint, held;
+  std::optional<double> published, seed, glint, held, perfect;
 };
 
 std::string row(const char* name, const Row& figures, int decimals) {
   char line[64];
   std::snprintf(line, sizeof line, "  %-34s", name);
   std::string text = line;
-  for (const auto& figure : {figures.published, figures.seed, figures.glint, figures.held}) {
+  for (const auto& figure :
+       {figures.published, figures.seed, figures.glint, figures.held, figures.perfect}) {
     if (figure) {
       std::snprintf(line, sizeof line, " %12.*f", decimals, *figure);
     } else {
@@ -102,6 +103,7 @@ std::string experiment_json(const ExperimentResult& result) {
   json["seed"] = json_of(result.seed);
   json["glint"] = json_of(result.glint);
   json["glint_held"] = json_of(result.glint_held);
+  json["perfect_tracker"] = json_of(result.perfect);
   const ExperimentBars bars = bars_of(result.kind);
   json["bars"] = {{"position_mean_abs_mm", bars.position_mm},
                   {"angle_mean_abs_deg", bars.angle_deg},
@@ -112,47 +114,56 @@ std::string experiment_json(const ExperimentResult& result) {
 
 std::string experiment_table(const ExperimentResult& result) {
   const PublishedFigures published = published_figures(result.kind);
-  const MethodFigures &seed = result.seed, &glint = result.glint, &held = result.glint_held;
+  const MethodFigures &seed = result.seed, &glint = result.glint, &held = result.glint_held,
+                      &perfect = result.perfect;
   const auto fit_sd = [](const ErrorColumn& column) {
     return column.fit.valid ? column.fit.sd : 0;
   };
   std::string text = "Experiment " + name_of(result.kind) + (result.quick ? " (quick)" : "") +
                      ", parameters " + result.config_hash + '\n';
   char heading[128];
-  std::snprintf(heading, sizeof heading, "  %-34s %12s %12s %12s %12s\n", "", "published",
-                "seed here", "Glint here", "with board");
+  std::snprintf(heading, sizeof heading, "  %-34s %12s %12s %12s %12s %12s\n", "", "published",
+                "seed here", "Glint here", "with board", "perfect");
   text += heading;
   const auto block = [&](const char* unit, ErrorColumn MethodFigures::*column, double mean_abs,
                          const std::optional<double>& sd, const std::optional<double>& median) {
-    const ErrorColumn &s = seed.*column, &g = glint.*column, &h = held.*column;
+    const ErrorColumn &s = seed.*column, &g = glint.*column, &h = held.*column,
+                      &p = perfect.*column;
     const std::string of = std::string(" [") + unit + "]";
     const std::string what = unit == std::string("mm") ? "position " : "angle ";
-    text += row((what + "mean absolute" + of).c_str(),
-                {mean_abs, s.summary.mean_abs, g.summary.mean_abs, h.summary.mean_abs}, 2);
+    text += row(
+        (what + "mean absolute" + of).c_str(),
+        {mean_abs, s.summary.mean_abs, g.summary.mean_abs, h.summary.mean_abs, p.summary.mean_abs},
+        2);
     text += row((what + "standard deviation" + of).c_str(),
-                {sd, s.summary.sd, g.summary.sd, h.summary.sd}, 2);
-    text += row((what + "median" + of).c_str(),
-                {median, s.summary.median, g.summary.median, h.summary.median}, 2);
+                {sd, s.summary.sd, g.summary.sd, h.summary.sd, p.summary.sd}, 2);
+    text +=
+        row((what + "median" + of).c_str(),
+            {median, s.summary.median, g.summary.median, h.summary.median, p.summary.median}, 2);
     text += row((what + "Gaussian fit, sd" + of).c_str(),
-                {std::nullopt, fit_sd(s), fit_sd(g), fit_sd(h)}, 2);
+                {std::nullopt, fit_sd(s), fit_sd(g), fit_sd(h), fit_sd(p)}, 2);
     text += row((what + "mean length" + of).c_str(),
-                {std::nullopt, s.norm_mean, g.norm_mean, h.norm_mean}, 2);
+                {std::nullopt, s.norm_mean, g.norm_mean, h.norm_mean, p.norm_mean}, 2);
   };
   block("mm", &MethodFigures::position_mm, published.position_mean_abs_mm, published.position_sd_mm,
         published.position_median_mm);
   block("deg", &MethodFigures::angle_deg, published.angle_mean_abs_deg, published.angle_sd_deg,
         published.angle_median_deg);
   text += row("inside the 95 % ellipsoid",
-              {std::nullopt, seed.covered, glint.covered, held.covered}, 3);
-  text +=
-      row("frames a second",
-          {published.frames_per_s, seed.frames_per_s, glint.frames_per_s, held.frames_per_s}, 0);
+              {std::nullopt, seed.covered, glint.covered, held.covered, perfect.covered}, 3);
+  text += row("frames a second",
+              {published.frames_per_s, seed.frames_per_s, glint.frames_per_s, held.frames_per_s,
+               std::nullopt},
+              0);
   const auto count = [](int n) { return std::optional<double>(n); };
-  text +=
-      row("samples",
-          {published.samples, count(seed.samples), count(glint.samples), count(held.samples)}, 0);
-  text +=
-      row("frames", {std::nullopt, count(seed.frames), count(glint.frames), count(held.frames)}, 0);
+  text += row("samples",
+              {published.samples, count(seed.samples), count(glint.samples), count(held.samples),
+               count(perfect.samples)},
+              0);
+  text += row("frames",
+              {std::nullopt, count(seed.frames), count(glint.frames), count(held.frames),
+               count(perfect.frames)},
+              0);
   const ExperimentBars bars = bars_of(result.kind);
   char bar[128];
   std::snprintf(bar, sizeof bar, "  bars with the board: %.1f mm, %.1f deg mean absolute: %s\n",
@@ -163,7 +174,9 @@ std::string experiment_table(const ExperimentResult& result) {
       "pooled;\n"
       "  the length of the whole error beside them. Frames a second: 1 / mean time of a frame on "
       "one\n"
-      "  thread of this machine; published: of the whole application on a HoloLens 1.\n";
+      "  thread of this machine; published: of the whole application on a HoloLens 1. Perfect: "
+      "the\n"
+      "  true pose before the camera, put into the headset's world: what its drift alone does.\n";
   return text;
 }
 

@@ -49,14 +49,22 @@ void draw_below_one_sigma(const Cell& cell, LargeError large, std::uint64_t seed
   set_drift(large == LargeError::head_drift ? k_large_sigmas : drift, scenario.localisation);
 }
 
+void scale_drift(double factor, sim::LocalisationSettings& head) {
+  for (double* part :
+       {&head.rest_position_m, &head.rest_angle_rad, &head.position_per_speed_s,
+        &head.position_per_turn_m, &head.angle_per_speed_s_m, &head.angle_per_turn_s})
+    *part *= factor;
+}
+
 void set_drift(double factor, sim::LocalisationSettings& head) {
   const sim::LocalisationSettings declared;
-  head.rest_position_m = factor * declared.rest_position_m;
-  head.rest_angle_rad = factor * declared.rest_angle_rad;
-  head.position_per_speed_s = factor * declared.position_per_speed_s;
-  head.position_per_turn_m = factor * declared.position_per_turn_m;
-  head.angle_per_speed_s_m = factor * declared.angle_per_speed_s_m;
-  head.angle_per_turn_s = factor * declared.angle_per_turn_s;
+  head.rest_position_m = declared.rest_position_m;
+  head.rest_angle_rad = declared.rest_angle_rad;
+  head.position_per_speed_s = declared.position_per_speed_s;
+  head.position_per_turn_m = declared.position_per_turn_m;
+  head.angle_per_speed_s_m = declared.angle_per_speed_s_m;
+  head.angle_per_turn_s = declared.angle_per_turn_s;
+  scale_drift(factor, head);
 }
 
 }  // namespace glint

@@ -27,7 +27,9 @@ enum class LargeError {
 void draw_below_one_sigma(const Cell& cell, LargeError large, std::uint64_t seed,
                           sim::Scenario& scenario);
 
-// The headset's own error, by this factor of what is declared.
+// The headset's own error, by this factor of what it is.
+void scale_drift(double factor, sim::LocalisationSettings& head);
+// By this factor of what is declared.
 void set_drift(double factor, sim::LocalisationSettings& head);
 
 }  // namespace glint
