@@ -40,7 +40,7 @@ bool speed_is_known(const MotionState& motion, double sigma_m_s) {
 
 }  // namespace
 
-// T_camera_world: null where the head's pose is not known.
+// T_camera_world: null without a head pose.
 PredictTracks::Foretold PredictTracks::foretell(const Track& track, const Tool& tool, Time time,
                                                 const HeadAnchor& anchor,
                                                 const Pose* T_camera_world,

@@ -83,7 +83,7 @@ HeadAnchor::Corrected HeadAnchor::correct(const UncertainPose& T_world_body, Hel
     out.lasting = left.lazyProduct(held.covariance).lazyProduct(left.transpose());
     out.accepted = true;
   } else if (++held.refused >= k_anchor_refused_max) {
-    // As this sight has it, whatever was known before.
+    // The error follows from this sight alone.
     held.error = seen;
     out.fresh = T_world_body.covariance;
     out.lasting.setZero();

@@ -46,15 +46,13 @@ class HeadWalk {
   // At the newest head's place and speed.
   [[nodiscard]] WalkedError over(double seconds, const Vector3& point_m,
                                  const HeadNoise& noise) const noexcept GLINT_NONBLOCKING;
-  // Of the head, about the world's axes at the camera, smoothed over a tenth of a second.
-  [[nodiscard]] const Velocity& velocity() const { return velocity_; }
-  // The stamps begin anew: nothing is known of how the head moved before.
+  // The stamps begin anew: the head's motion before does not count.
   void restart_clock() noexcept { has_head_ = false; }
 
  private:
   bool has_head_ = false;
-  StampedPose head_;  // as the headset gave it
-  Velocity velocity_;
+  StampedPose head_;   // as the headset gave it
+  Velocity velocity_;  // about the world's axes at the camera, smoothed over k_jitter_s
   double speed_m_s_ = 0, turn_rad_s_ = 0;  // its lengths, smoothed over motion_correlation_s
 };
 

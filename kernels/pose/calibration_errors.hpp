@@ -6,7 +6,7 @@
 //           projection that leaves out the pose's part: information += C' M C, pull -= C' M f. The
 //           most likely errors under their declared distributions are (1 + information)^-1 pull.
 //           Slow errors and what no calibration states (k_lens_residual_px, k_range_ripple_m) widen
-//           the residuals' noise.
+//           the residuals' noise, the latter as often as neighbouring fits share them.
 // Cost:     for each fit the normal equations, and k_calibration_errors^2 / 2 products a residual.
 // Worst:    none is worse than another of as many markers.
 // Accuracy: first order in the errors and in the pose's distance from the optimum.

@@ -28,7 +28,13 @@ CalibrationWatch::CalibrationWatch(const Cell& cell) : cell_(cell) {
 }
 
 void CalibrationWatch::see(const Tracker& tracker) noexcept {
-  if (!tracker.token<FrameVerdict>().usable()) return;
+  const FrameVerdict& verdict = tracker.token<FrameVerdict>();
+  if (!verdict.usable()) return;
+  if (verdict.resynchronised) {
+    walk_.restart_clock();
+    in_a_row_ = 0;
+    last_sight_.reset();
+  }
   const ToolSet& set = tracker.token<graph::Latest<ToolSet>>().value();
   const int count = std::min(set.count, k_tools_max);
   if (count == 0) return;

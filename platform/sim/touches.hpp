@@ -1,4 +1,4 @@
-// A person who checks a tracker by touching points: what `glint verify` asks for, simulated.
+// Touches of two points and a rest: the recording that `glint verify` needs, simulated.
 //
 // The tip of the first tool stands on one of two points for hold_s, the tool leans to another side
 // and the head looks from another place each time; every third touch is on the second point. At the

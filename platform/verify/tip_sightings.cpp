@@ -63,14 +63,14 @@ bool add_slopes(const LabelledMarkers& seen, const Pose& pose, const Tool& tool,
   return true;
 }
 
-// Of the headset's own error.
-void add_head(const Pose& T_world_camera, const Anchor& anchor, const HeadNoise& head,
+// Of the headset's own error, as declared: not as a reference body shows it.
+void add_head(const Pose& T_world_camera, const HeadWalk& walk, const HeadNoise& head,
               TipSighting& sighting) {
   const Vector3 pivot = T_world_camera * Vector3(0, 0, head.pivot_m);
   sighting.by_head = point_by_pose(sighting.tip_m - pivot);
   sighting.by_head.leftCols<3>() *= head.rest_position_m;
   sighting.by_head.rightCols<3>() *= head.rest_angle_rad;
-  sighting.moving_m2 = anchor.state.uncorrected_at(sighting.tip_m).topLeftCorner<3, 3>() -
+  sighting.moving_m2 = walk.over(0, sighting.tip_m, head).at_length.topLeftCorner<3, 3>() -
                        sighting.by_head * sighting.by_head.transpose();
 }
 
@@ -83,7 +83,7 @@ Labeling used_by(const FittedTool& fitted, Labeling labeling) {
 }
 
 std::optional<TipSighting> sighting_of(const ArrivedFrame& arrived, const Tracker& tracker,
-                                       const Cell& cell, std::size_t at) {
+                                       const HeadWalk& walk, const Cell& cell, std::size_t at) {
   const Assignment& assignment = tracker.token<Assignment>();
   if (assignment.reason[at] != Reason::none) return std::nullopt;
   const int slice = static_cast<int>(at) % k_tool_slices;
@@ -105,8 +105,7 @@ std::optional<TipSighting> sighting_of(const ArrivedFrame& arrived, const Tracke
   sighting.middle_m = base * (fit->T_camera_tool * tool.middle_m());
   sighting.random_m2 = turn * fit->covariance.topLeftCorner<3, 3>() * turn.transpose();
   sighting.refused = fitted.reason != Reason::none;
-  if (arrived.head.valid)
-    add_head(arrived.head.T_world_camera, tracker.token<Anchor>(), cell.head_noise, sighting);
+  if (arrived.head.valid) add_head(arrived.head.T_world_camera, walk, cell.head_noise, sighting);
   return sighting;
 }
 
@@ -120,10 +119,13 @@ TipSeries sight_tips(RecordedFrames& recorded, std::size_t tool) {
   series.stated = {cell.camera.uncertainty, cell.camera.correlation, cell.head_noise};
   std::vector<TipSighting> in_camera;
   CalibrationWatch watch(cell);
+  HeadWalk walk;
   TrackedFrames tracked =
       track_frames(recorded, Search::tracked, [&](const ArrivedFrame& arrived, Tracker& tracker) {
         watch.see(tracker);
-        const auto sighting = sighting_of(arrived, tracker, cell, tool);
+        if (tracker.token<FrameVerdict>().resynchronised) walk.restart_clock();
+        if (arrived.head.valid) (void)walk.observe(arrived.head, cell.head_noise);
+        const auto sighting = sighting_of(arrived, tracker, walk, cell, tool);
         if (sighting) (arrived.head.valid ? series.sightings : in_camera).push_back(*sighting);
       });
   series.frames = tracked.frames;

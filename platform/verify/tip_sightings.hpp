@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/motion/head_anchor.hpp"
+#include "kernels/motion/head_walk.hpp"
 #include "kernels/pose/calibration_errors.hpp"
 #include "platform/tools/recorded_frames.hpp"
 

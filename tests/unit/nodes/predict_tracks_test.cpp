@@ -195,6 +195,21 @@ TEST_F(PredictTracks, CountsWhatTheHeadsetsErrorMayHaveChangedBySince) {
   EXPECT_NEAR(predict(22).covariance(0, 0) - alone, 0.107029 * 1e-4, 1e-9);
 }
 
+// A hand's speed bounds how far the tool moves in the world, not how far the world moves.
+TEST_F(PredictTracks, ReachesAsFarAsTheHeadsetMayErr) {
+  head_.valid = true;
+  track().base = ReferenceFrame::world;
+  sure_within(1e-5, 1e-4);
+  const double hand = predict().reach_m;
+  HeadNoise noise;
+  noise.rest_position_m = 0.1;
+  noise.rest_angle_rad = 0;
+  (void)anchor_.state.update(head_, nullptr, noise);
+  // 2 (1 - exp(-22 / 400)) of the variance
+  EXPECT_GT(predict().reach_m, 8 * 0.0327);
+  EXPECT_LT(predict().reach_m, 8 * 0.0328 + hand);
+}
+
 TEST_F(PredictTracks, HoldsWhatTheCameraSawWhereTheHeadsPoseWentMissing) {
   track().base = ReferenceFrame::world;
   track().motion.velocity_m_s = {0.5, 0, 0};

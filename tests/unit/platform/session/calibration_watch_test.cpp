@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "platform/cells/tool_file.hpp"
 #include "platform/dds/diagnostics.hpp"
+#include "platform/session/pipeline.hpp"
 #include "platform/sim/hand_motion.hpp"
+#include "platform/sim/simulator.hpp"
 #include "tests/unit/platform/dds/diagnostic_entry.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
 
@@ -54,12 +57,15 @@ TEST(CalibrationWatch, NamesNothingOfADeviceAsStated) {
   EXPECT_EQ(named(findings), nullptr);
 }
 
-// A body stands on the table while the head looks around.
-std::vector<CalibrationFinding> findings_beside_a_body(double latency_s, double drift) {
-  const TemporaryFolder folder;
-  Cell cell = short_cell(k_seconds, "outputs");
+Cell cell_with_a_body(double seconds) {
+  Cell cell = short_cell(seconds, "outputs");
   cell.reference = cell.tools.count;
   cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] = reference_board();
+  return cell;
+}
+
+// A body stands on the table while the head looks around.
+sim::Scenario looking_around(const Cell& cell) {
   sim::Scenario scenario = scenario_of(cell);
   sim::HeadSettings head;
   head.target_m = Vector3(0.44, 0, -0.2);
@@ -67,6 +73,13 @@ std::vector<CalibrationFinding> findings_beside_a_body(double latency_s, double 
   head.gaze_rms_rad = 0.25;
   scenario.head = sim::head_motion(head, 4);
   scenario.device.exists = true;
+  return scenario;
+}
+
+std::vector<CalibrationFinding> findings_beside_a_body(double latency_s, double drift) {
+  const TemporaryFolder folder;
+  const Cell cell = cell_with_a_body(k_seconds);
+  sim::Scenario scenario = looking_around(cell);
   scenario.localisation.latency_s = latency_s;
   sim::LocalisationSettings& own = scenario.localisation;
   for (double* part : {&own.rest_position_m, &own.rest_angle_rad, &own.position_per_speed_s,
@@ -92,6 +105,33 @@ TEST(CalibrationWatch, NamesTheHeadsetsDriftByABodyAtRest) {
   EXPECT_EQ(found->source, ErrorSource::head_drift);
   EXPECT_GT(found->estimate, 2);
   EXPECT_LT(found->estimate, 5);
+}
+
+// 4 s, then the stamps are an hour earlier for 6 s: neither part alone has sights enough.
+TEST(CalibrationWatch, SeesTheBodyAfterTheStampsRestart) {
+  const Cell cell = cell_with_a_body(10);
+  const sim::Simulator simulator(looking_around(cell));
+  const auto tracker = std::make_unique<Tracker>();
+  configure(cell, *tracker);
+  tracker->latest<ToolSet>().set(cell.tools, 1, 0);
+  CalibrationWatch watch(cell);
+  sim::SimFrame frame;
+  for (int i = 0; i < simulator.frame_count(); ++i) {
+    simulator.render(i, frame);
+    const Duration earlier =
+        frame.mid_exposure < Time{} + milliseconds(4000) ? Duration{} : milliseconds(-3'600'000);
+    frame.mid_exposure = frame.head.time = frame.mid_exposure + earlier;
+    frame.arrival = frame.arrival + earlier;
+    tracker->input<Frame>() = frame.view();
+    tracker->input<HeadPose>() = frame.head;
+    tracker->activate();
+    watch.see(*tracker);
+  }
+  EXPECT_EQ(tracker->output<Estimates>().verdict.resynchronisations, 1u);
+  const std::vector<CalibrationFinding> findings = watch.findings();
+  EXPECT_TRUE(std::any_of(findings.begin(), findings.end(), [](const CalibrationFinding& one) {
+    return one.source == ErrorSource::time_offset;
+  }));
 }
 
 TEST(CalibrationWatch, NamesNothingByABodyAtRestBeforeADeviceAsStated) {

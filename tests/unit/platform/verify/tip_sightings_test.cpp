@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "platform/cells/tool_file.hpp"
+#include "platform/sim/scenarios.hpp"
 #include "platform/sim/touches.hpp"
 #include "platform/sources/scenario_of.hpp"
 #include "platform/sources/simulated_source.hpp"
@@ -54,6 +56,30 @@ TEST(TipSightings, StateHowEachErrorMovesTheTip) {
     expect({}, 0.0004 * Vector3::Unit(axis), k_common_errors + 3 * 2 + axis,
            0.0004 / Tool{}.marker_sigma_m, "marker");
   }
+}
+
+// A headset that drifts ten times as much as declared, before a body that shows it: what is stated
+// of a touch is the declared drift all the same, else no touch would disagree.
+TEST(TipSightings, StateTheDeclaredDriftBesideABody) {
+  const auto moving_of = [](bool is_reference) {
+    Cell cell = default_cell();
+    const int board = cell.tools.count++;
+    cell.tools.items[static_cast<std::size_t>(board)] = reference_board();
+    sim::Scenario scenario =
+        sim::hand_held_run(cell.camera, {cell.tools.items[0], reference_board()}, 3);
+    sim::lay_on_table(scenario, static_cast<std::size_t>(board));
+    scenario.duration = milliseconds(3000);
+    scenario.localisation.rest_position_m *= 10;
+    scenario.localisation.rest_angle_rad *= 10;
+    scenario.localisation.rest_correlation_s = 2;
+    cell.reference = is_reference ? board : -1;
+    const sim::Simulator simulator(scenario);
+    RecordedFrames recorded{"simulated", cell, std::make_unique<SimulatedSource>(simulator)};
+    return sight_tips(recorded, 0).sightings.back().moving_m2;
+  };
+  const Matrix3 with_body = moving_of(true);
+  EXPECT_GT(with_body.trace(), 0);
+  EXPECT_TRUE(with_body.isApprox(moving_of(false)));
 }
 
 }  // namespace
