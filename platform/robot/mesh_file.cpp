@@ -140,7 +140,8 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, error);
 }
 
-// A path that names its place itself: absolute, or beside the URDF.
+// A path that names its place itself: absolute, or beside the URDF. A folder, a device or a pipe is
+// no mesh.
 std::string confined(const fs::path& path, const std::string& name, const RobotFiles& files,
                      bool beside) {
   std::error_code error;  // an empty name has no absolute path
@@ -153,6 +154,10 @@ std::string confined(const fs::path& path, const std::string& name, const RobotF
     throw InputError(files.urdf + ": mesh '" + name + "' lies outside of " +
                      (beside ? "the URDF's folder and " : "") +
                      "every --package-dir; expected it inside one of them");
+  }
+  if (!is_file(found)) {
+    throw InputError(files.urdf + ": mesh '" + name + "': " + found.string() +
+                     " is not a file; expected a mesh");
   }
   return found.string();
 }

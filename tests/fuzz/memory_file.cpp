@@ -1,5 +1,6 @@
 #include "tests/fuzz/memory_file.hpp"
 
+#include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -10,13 +11,17 @@
 namespace glint::fuzz {
 namespace {
 
-// Links in a folder of their own: a name with an ending for /proc/self/fd/N.
+// Links in a folder of their own: a name with an ending for /proc/self/fd/N. The folder's name is
+// random, and libFuzzer learns from each comparison: readers get a path without it.
 class Files {
  public:
   Files() {
     std::string name = (std::filesystem::temp_directory_path() / "glint_fuzz_XXXXXX").string();
     expect(mkdtemp(name.data()) != nullptr, "a temporary folder");
     folder_ = name;
+    const int folder = open(name.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+    expect(folder >= 0, "a temporary folder");
+    path_ = "/proc/self/fd/" + std::to_string(folder);
   }
   ~Files() {
     std::error_code ignored;
@@ -27,20 +32,21 @@ class Files {
 
   std::string write(Bytes bytes, const std::string& ending) {
     const auto [file, fresh] = descriptors_.try_emplace(ending, -1);
-    const std::string path = (folder_ / ("input" + ending)).string();
     if (fresh) {
       file->second = memfd_create("input", MFD_CLOEXEC);
-      std::filesystem::create_symlink("/proc/self/fd/" + std::to_string(file->second), path);
+      std::filesystem::create_symlink("/proc/self/fd/" + std::to_string(file->second),
+                                      folder_ / ("input" + ending));
     }
     const auto size = static_cast<ssize_t>(bytes.size());
     expect(ftruncate(file->second, 0) == 0 &&
                pwrite(file->second, bytes.data(), bytes.size(), 0) == size,
            "a file in memory");
-    return path;
+    return path_ + "/input" + ending;
   }
 
  private:
   std::filesystem::path folder_;
+  std::string path_;
   std::map<std::string, int> descriptors_;
 };
 

@@ -122,6 +122,10 @@ TEST(FindMesh, StaysInThePackageFolders) {
   refused("file://" + package + "x/../secret.stl");
   refused(secret);
   refused("../secret.stl");
+  refused(package);  // a folder: found by fuzzing
+  refused("//" + package);
+  refused(package + "/");
+  refused(package + "/m/b.stl");  // not there
 }
 
 TEST(FindMesh, OfAFileStaysInItsFolderAndThePackageFolders) {
