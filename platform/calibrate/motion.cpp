@@ -20,7 +20,7 @@ constexpr double k_still_part = 1e-4;               // of the noise found: a too
 constexpr Duration k_warm_up = milliseconds(1000);  // of the prediction, not judged
 constexpr Duration k_truth_gap_max = milliseconds(100);
 
-std::vector<StampedPose> thinned(const sim::Trajectory& recording, double rate_hz) {
+std::vector<StampedPose> thinned(const Trajectory& recording, double rate_hz) {
   std::vector<StampedPose> samples;
   for (const StampedPose& sample : recording.samples) {
     if (samples.empty() || (sample.time - samples.back().time).seconds() * rate_hz >= k_early)
@@ -43,7 +43,7 @@ void add_noise(std::vector<StampedPose>& samples, const MeasuredNoise& noise, st
   }
 }
 
-bool recorded_near(const sim::Trajectory& truth, Time time) {
+bool recorded_near(const Trajectory& truth, Time time) {
   const auto& samples = truth.samples;
   const auto after =
       std::lower_bound(samples.begin(), samples.end(), time,
@@ -55,8 +55,7 @@ bool recorded_near(const sim::Trajectory& truth, Time time) {
 // The sums of squares of the prediction's errors, over one recording's held-out part.
 class PredictionJudge {
  public:
-  PredictionJudge(const sim::Trajectory& truth, const MotionSettings& motion,
-                  const MeasuredNoise& noise)
+  PredictionJudge(const Trajectory& truth, const MotionSettings& motion, const MeasuredNoise& noise)
       : truth_(truth), noise_(noise) {
     motion_.settings.motion = motion;
   }
@@ -79,7 +78,7 @@ class PredictionJudge {
   // The distance that the prediction misses by; -1: nothing is known of the truth there.
   double add(Time time, MotionError& error) {
     if (!recorded_near(truth_, time)) return -1;
-    const Pose truth = sim::interpolated(truth_, time);
+    const Pose truth = interpolated(truth_, time);
     const Pose said =
         predict_pose(motion_.estimate(), time, motion_.settings.motion, motion_.noise_scale()).pose;
     const double miss = (said.translation - truth.translation).norm();
@@ -90,7 +89,7 @@ class PredictionJudge {
     return miss;
   }
 
-  const sim::Trajectory& truth_;
+  const Trajectory& truth_;
   MeasuredNoise noise_;
   ToolMotion motion_;
   bool begun_ = false;
@@ -103,7 +102,7 @@ MotionUnknowns unknowns_of(const MotionSettings& motion, MotionPart part) {
              : MotionUnknowns{motion.angular_noise_rad2_s5, motion.angular_damping_1_s};
 }
 
-HeldOut judged(std::span<const sim::Trajectory> recordings, const MotionSeries& held_out,
+HeldOut judged(std::span<const Trajectory> recordings, const MotionSeries& held_out,
                const MotionSettings& motion, const LikelihoodSettings& likelihood,
                std::vector<double>* misses_m) {
   HeldOut out;
@@ -165,7 +164,7 @@ MotionFit fitted(const MotionSeries& series, MotionPart part,
 
 }  // namespace
 
-MotionCalibration calibrate_motion(std::span<const sim::Trajectory> recordings,
+MotionCalibration calibrate_motion(std::span<const Trajectory> recordings,
                                    const MotionCalibrationSettings& settings,
                                    const std::string& what) {
   MotionCalibration result;

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "platform/calibrate/motion_likelihood.hpp"
-#include "platform/sim/trajectory.hpp"
+#include "platform/sensors/trajectory.hpp"
 
 namespace glint {
 
@@ -56,7 +56,7 @@ struct MotionCalibration {
 
 // Throws InputError, naming `what`, for recordings that are too short or leave a part open: which,
 // and how to move.
-[[nodiscard]] MotionCalibration calibrate_motion(std::span<const sim::Trajectory> recordings,
+[[nodiscard]] MotionCalibration calibrate_motion(std::span<const Trajectory> recordings,
                                                  const MotionCalibrationSettings& settings,
                                                  const std::string& what);
 

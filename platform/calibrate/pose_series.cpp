@@ -11,8 +11,8 @@
 #include "platform/calibrate/sightings.hpp"
 #include "platform/cells/tool_file.hpp"
 #include "platform/input_error.hpp"
+#include "platform/sensors/trajectory.hpp"
 #include "platform/session/frame_source.hpp"
-#include "platform/sim/trajectory.hpp"
 #include "platform/tools/recorded_frames.hpp"
 #include "platform/tools/replay_points.hpp"
 
@@ -120,7 +120,7 @@ PoseSeries load_pose_series(const PoseSource& source) {
     take_points(source, series);
     return series;
   }
-  sim::Trajectory trajectory = sim::load_trajectory(source.poses);
+  Trajectory trajectory = load_trajectory(source.poses);
   series.what = source.poses;
   series.begin = trajectory.begin;
   series.poses = std::move(trajectory.samples);

@@ -69,7 +69,7 @@ Figures figures_for(const std::string& what, const MotionArguments& arguments,
 }
 
 int run_motion(const MotionArguments& arguments) {
-  std::vector<sim::Trajectory> recordings;
+  std::vector<Trajectory> recordings;
   std::string what;
   for (const std::string& path : arguments.poses) {
     PoseSource source;

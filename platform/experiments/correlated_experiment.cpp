@@ -18,8 +18,8 @@
 #include "kernels/motion/tool_motion.hpp"
 #include "platform/calibrate/noise.hpp"
 #include "platform/experiments/motion_experiments.hpp"
+#include "platform/sensors/trajectory.hpp"
 #include "platform/sim/random.hpp"
-#include "platform/sim/trajectory.hpp"
 
 namespace glint {
 namespace {
@@ -161,8 +161,8 @@ ExperimentCase allan_case(const NoiseCalibration& noise) {
 
 CaseList run_correlated(const CaseOptions& options) {
   const auto series = [&](const char* tool) {
-    const sim::Trajectory loaded =
-        sim::load_trajectory(options.data + "/hl2_real/rest_hl2_tool_" + tool + ".tum");
+    const Trajectory loaded =
+        load_trajectory(options.data + "/hl2_real/rest_hl2_tool_" + tool + ".tum");
     std::vector<StampedPose> poses = loaded.samples;
     for (StampedPose& pose : poses) pose.time = loaded.begin + (pose.time - Time{});
     return poses;

@@ -63,7 +63,7 @@ void follow(const NoisyRecording& recording, std::uint64_t seed, Figures& figure
       continue;
     }
     const Gap gap = gap_of(seed, frame / k_cycle_frames);
-    const Pose truth = sim::interpolated(recording.truth, measured.time);
+    const Pose truth = interpolated(recording.truth, measured.time);
     std::vector<MeasuredPoint> points;
     for (std::size_t i = 0; i < gap.markers; ++i) {
       const std::size_t marker = (gap.hidden_from + i) % model.size();
@@ -80,7 +80,7 @@ void follow(const NoisyRecording& recording, std::uint64_t seed, Figures& figure
 
 CaseList run_occlusion(const CaseOptions& options) {
   CaseList list{"occlusion", {}, {}};
-  const std::vector<sim::Trajectory> truths = load_recordings(options);
+  const std::vector<Trajectory> truths = load_recordings(options);
   for (std::size_t i = 0; i < truths.size(); ++i) {
     Figures figures;
     const int draws = options.quick ? 1 : 10;

@@ -70,7 +70,7 @@ void add_ratios(ExperimentCase& glint, const Shares& shares, const PredictionErr
 CaseList run_prediction(const CaseOptions& options) {
   CaseList list{"prediction", {}, {}};
   const PredictionSettings settings;
-  const std::vector<sim::Trajectory> truths = load_recordings(options);
+  const std::vector<Trajectory> truths = load_recordings(options);
   for (std::size_t i = 0; i < truths.size(); ++i) {
     const NoisyRecording measured = noisy(truths[i], settings, options.seed);
     GlintPredictor glint(EstimatorSettings{}.motion);

@@ -11,7 +11,7 @@ namespace {
 // A truth further than this from both recorded neighbours is none.
 constexpr Duration k_gap_max = milliseconds(100);
 
-bool recorded_near(const sim::Trajectory& truth, Time time) {
+bool recorded_near(const Trajectory& truth, Time time) {
   const auto& samples = truth.samples;
   const auto after =
       std::lower_bound(samples.begin(), samples.end(), time,
@@ -28,8 +28,7 @@ bool Judged::operator()(Time time) {
   return time >= from_;
 }
 
-NoisyRecording noisy(sim::Trajectory truth, const PredictionSettings& settings,
-                     std::uint64_t seed) {
+NoisyRecording noisy(Trajectory truth, const PredictionSettings& settings, std::uint64_t seed) {
   NoisyRecording recording;
   recording.truth = std::move(truth);
   const sim::RandomKey shift{seed, sim::Stream::blob, 0}, turn{seed, sim::Stream::blob, 1};
@@ -40,7 +39,7 @@ NoisyRecording noisy(sim::Trajectory truth, const PredictionSettings& settings,
     if (!recorded_near(recording.truth, t)) continue;
     UncertainPose measured;
     measured.time = t;
-    const Pose pose = sim::interpolated(recording.truth, t);
+    const Pose pose = interpolated(recording.truth, t);
     measured.pose.translation =
         pose.translation + settings.position_sigma_m * sim::gaussian_vector(shift, frame);
     measured.pose.rotation =
@@ -65,7 +64,7 @@ std::vector<PredictionError> prediction_errors(const NoisyRecording& recording,
     for (std::size_t h = 0; h < horizons.size(); ++h) {
       const Time target = measured.time + horizons[h];
       if (!recorded_near(recording.truth, target)) continue;
-      const Pose truth = sim::interpolated(recording.truth, target);
+      const Pose truth = interpolated(recording.truth, target);
       const Pose predicted = predictor.predict(target);
       errors[h].position_rms_m += (predicted.translation - truth.translation).squaredNorm();
       errors[h].rotation_rms_rad +=

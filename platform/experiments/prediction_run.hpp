@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "platform/experiments/predictor.hpp"
-#include "platform/sim/trajectory.hpp"
+#include "platform/sensors/trajectory.hpp"
 
 namespace glint {
 
@@ -18,7 +18,7 @@ struct PredictionSettings {
 };
 
 struct NoisyRecording {
-  sim::Trajectory truth;
+  Trajectory truth;
   std::vector<UncertainPose> measured;
 };
 
@@ -35,7 +35,7 @@ class Judged {
   Time last_, from_;
 };
 
-[[nodiscard]] NoisyRecording noisy(sim::Trajectory truth, const PredictionSettings& settings,
+[[nodiscard]] NoisyRecording noisy(Trajectory truth, const PredictionSettings& settings,
                                    std::uint64_t seed);
 
 struct PredictionError {

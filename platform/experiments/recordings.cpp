@@ -7,10 +7,10 @@ constexpr Duration k_quick_length = milliseconds(10'000);
 
 }  // namespace
 
-std::vector<sim::Trajectory> load_recordings(const CaseOptions& options) {
-  std::vector<sim::Trajectory> trajectories;
+std::vector<Trajectory> load_recordings(const CaseOptions& options) {
+  std::vector<Trajectory> trajectories;
   for (const Recording& recording : k_recordings) {
-    trajectories.push_back(sim::load_trajectory(options.data + '/' + recording.file));
+    trajectories.push_back(load_trajectory(options.data + '/' + recording.file));
     if (options.quick)
       std::erase_if(trajectories.back().samples, [](const StampedPose& sample) {
         return sample.time > Time{} + k_quick_length;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "platform/experiments/case_list.hpp"
-#include "platform/sim/trajectory.hpp"
+#include "platform/sensors/trajectory.hpp"
 
 namespace glint {
 
@@ -21,6 +21,6 @@ inline constexpr std::array<Recording, 4> k_recordings = {
 
 // From options.data, in that order; --quick: their first ten seconds. Throws InputError with the
 // first file that is missing or bad.
-[[nodiscard]] std::vector<sim::Trajectory> load_recordings(const CaseOptions& options);
+[[nodiscard]] std::vector<Trajectory> load_recordings(const CaseOptions& options);
 
 }  // namespace glint

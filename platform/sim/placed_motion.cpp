@@ -1,29 +1,9 @@
-#include <cmath>
-#include <utility>
+#include "platform/sim/placed_motion.hpp"
 
-#include "platform/sim/trajectory.hpp"
+#include <utility>
 
 namespace glint::sim {
 namespace {
-
-constexpr Duration k_gap = milliseconds(100);
-
-// Time within the recording: forth, then back, then forth again.
-Time mirrored(Time time, Duration length) {
-  const std::int64_t period = 2 * length.nanoseconds;
-  std::int64_t inside = time.nanoseconds % period;
-  if (inside < 0) inside += period;
-  return Time{inside <= length.nanoseconds ? inside : period - inside};
-}
-
-// Slope at `here` of the parabola through three samples.
-Vector3 slope(const StampedPose& before, const StampedPose& here, const StampedPose& after) {
-  const double left = (here.time - before.time).seconds();
-  const double right = (after.time - here.time).seconds();
-  const Vector3 first = (here.pose.translation - before.pose.translation) / left;
-  const Vector3 second = (after.pose.translation - here.pose.translation) / right;
-  return (right * first + left * second) / (left + right);
-}
 
 class PlacedMotion final : public Motion {
  public:
@@ -59,30 +39,6 @@ class PlacedMotion final : public Motion {
 };
 
 }  // namespace
-
-Pose interpolated(const Trajectory& trajectory, Time time) {
-  const std::vector<StampedPose>& samples = trajectory.samples;
-  const Time inside = mirrored(time, trajectory.length());
-  std::size_t low = 0, high = samples.size() - 1;  // samples[low] <= inside <= samples[high]
-  while (high - low > 1) {
-    const std::size_t middle = low + (high - low) / 2;
-    (samples[middle].time <= inside ? low : high) = middle;
-  }
-  const StampedPose& a = samples[low];
-  const StampedPose& b = samples[high];
-  const Duration span = b.time - a.time;
-  Pose pose = interpolate(a, b, inside);
-  if (span > k_gap || low == 0 || high + 1 == samples.size()) return pose;
-  // Cubic Hermite with the neighbours' slopes.
-  const double h = span.seconds();
-  const double u = (inside - a.time).seconds() / h;
-  const Vector3 out = h * slope(samples[low - 1], a, b);
-  const Vector3 in = h * slope(a, b, samples[high + 1]);
-  const Vector3 whole = b.pose.translation - a.pose.translation;
-  pose.translation = a.pose.translation +
-                     u * (out + u * ((3 * whole - 2 * out - in) + u * (out + in - 2 * whole)));
-  return pose;
-}
 
 MotionPointer placed_motion(Trajectory trajectory, const Placement& placement) {
   return std::make_shared<PlacedMotion>(std::move(trajectory), placement);

@@ -2,6 +2,7 @@
 
 #include "platform/cells/tool_file.hpp"
 #include "platform/sim/hand_motion.hpp"
+#include "platform/sim/placed_motion.hpp"
 #include "platform/sim/scene.hpp"
 #include "platform/sim/tool_body.hpp"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "platform/sensors/trajectory.hpp"
 #include "platform/sim/scenario.hpp"
-#include "platform/sim/trajectory.hpp"
 
 namespace glint::sim {
 

@@ -15,9 +15,8 @@ sim::Scenario scenario_of(const Cell& cell) {
                                 cell.tools.items.begin() + cell.tools.count);
   sim::Scenario scenario;
   if (settings.scenario == "trajectories") {
-    scenario =
-        sim::trajectory_run(cell.camera, tools, sim::load_trajectory(settings.head_trajectory),
-                            sim::load_trajectory(settings.pen_trajectory), settings.pen_scale);
+    scenario = sim::trajectory_run(cell.camera, tools, load_trajectory(settings.head_trajectory),
+                                   load_trajectory(settings.pen_trajectory), settings.pen_scale);
   } else if (settings.scenario == "field") {
     const Cell shipped;
     scenario = sim::field_run(cell.camera, tools,

@@ -16,8 +16,8 @@
 #include "platform/robot/joint_file.hpp"
 #include "platform/sensors/camera.hpp"
 #include "platform/sensors/points_csv.hpp"
+#include "platform/sensors/trajectory.hpp"
 #include "platform/session/recorded_cell.hpp"
-#include "platform/sim/trajectory.hpp"
 #include "schedules/task_model.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/memory_file.hpp"
@@ -89,7 +89,7 @@ void read_json_report(Bytes bytes) {
 
 void read_points(Bytes bytes) { (void)points_from_text(text_of(bytes), "points.csv"); }
 
-void read_trajectory(Bytes bytes) { (void)sim::trajectory_from_text(text_of(bytes), "pen.tum"); }
+void read_trajectory(Bytes bytes) { (void)trajectory_from_text(text_of(bytes), "pen.tum"); }
 
 // What is read is written, and read again as the same.
 void read_candump(Bytes bytes) {

@@ -51,7 +51,7 @@ class SingerAxis {
   Vector3 state_;
 };
 
-sim::Trajectory moved_by(const Hand& hand) {
+Trajectory moved_by(const Hand& hand) {
   std::vector<SingerAxis> shift, turn;
   for (std::uint64_t axis = 0; axis < 3; ++axis) {
     shift.emplace_back(hand.motion.linear_noise_m2_s5, hand.motion.linear_damping_1_s,
@@ -59,7 +59,7 @@ sim::Trajectory moved_by(const Hand& hand) {
     turn.emplace_back(hand.motion.angular_noise_rad2_s5, hand.motion.angular_damping_1_s,
                       sim::RandomKey{hand.seed, sim::Stream::hand, 10 + axis});
   }
-  sim::Trajectory trajectory;
+  Trajectory trajectory;
   trajectory.name = "hand";
   const sim::RandomKey off{hand.seed, sim::Stream::reference, 0};
   const sim::RandomKey turned{hand.seed, sim::Stream::reference, 1};
@@ -193,7 +193,7 @@ TEST(MotionFit, FindsARotationsNoiseAndDampingAndKnowsHowSureItIs) {
 
 TEST(Motion, IsMoreLikelyThanTheBuiltInOneOnWhatWasHeldOut) {
   const Hand hand{.motion = {0.3, 1.5, 60, 10}, .seconds = 18};
-  const sim::Trajectory recording = moved_by(hand);
+  const Trajectory recording = moved_by(hand);
   MotionCalibrationSettings settings;
   settings.noise = hand.noise;
   const MotionCalibration found = calibrate_motion(std::span(&recording, 1), settings, "hand.tum");
@@ -207,18 +207,18 @@ TEST(Motion, IsMoreLikelyThanTheBuiltInOneOnWhatWasHeldOut) {
 
 TEST(Motion, SaysWhatARecordingLeavesOpen) {
   MotionCalibrationSettings settings;
-  const sim::Trajectory few = moved_by({.seconds = 5});
+  const Trajectory few = moved_by({.seconds = 5});
   test::expect_input_error([&] { (void)calibrate_motion(std::span(&few, 1), settings, "few.tum"); },
                            {"few.tum", "expected at least 450", "record for longer"});
   const Hand still{.motion = {1e-12, 3, 1e-9, 12}, .seconds = 12};
-  sim::Trajectory rest = moved_by(still);
+  Trajectory rest = moved_by(still);
   settings.noise = still.noise;
   test::expect_input_error(
       [&] { (void)calibrate_motion(std::span(&rest, 1), settings, "rest.tum"); },
       {"rest.tum", "leaves the shift's", "open", "stand out", "starts, stops and turns"});
   // A tool that is moved and never turned.
   const Hand hand{.seconds = 12};
-  sim::Trajectory slid = moved_by(hand);
+  Trajectory slid = moved_by(hand);
   for (std::size_t i = 0; i < slid.samples.size(); ++i)
     slid.samples[i].pose.rotation = from_rotation_vector(
         hand.noise.rotation_sigma_rad *

@@ -4,6 +4,7 @@
 
 #include "kernels/motion/interpolate.hpp"
 #include "platform/sim/hand_motion.hpp"
+#include "platform/sim/placed_motion.hpp"
 #include "platform/sim/tool_body.hpp"
 #include "small_scene.hpp"
 
@@ -92,6 +93,24 @@ TEST(AttachedMotion, CarriesTheChildAlong) {
   const MotionPointer motion = attached_motion(
       fixed_motion(parent), fixed_motion({Quaternion::Identity(), Vector3(2, 0, 0)}));
   EXPECT_NEAR((motion->pose(Time{}).translation - Vector3(1, 2, 0)).norm(), 0, 1e-12);
+}
+
+TEST(PlacedMotion, IsScaledAboutItsMiddleAndPutAtTheAnchor) {
+  Trajectory path;  // a parabola
+  for (int i = 0; i <= 10; ++i) {
+    const double t = 0.05 * i;
+    path.samples.push_back(
+        {at_ms(50 * i), {from_rotation_vector({0, 0, t}), Vector3(t, t * t, 1)}});
+  }
+  const Pose anchor{Quaternion::Identity(), Vector3(5, 6, 7)};
+  const MotionPointer whole = placed_motion(path, {anchor, 1, 0});
+  const MotionPointer half = placed_motion(path, {anchor, 0.5, 0});
+  const Vector3 from_middle = whole->pose(Time{}).translation - anchor.translation;
+  EXPECT_NEAR(from_middle.norm(), Vector3(0.25, 0.125, 0).norm(), 1e-9);
+  EXPECT_NEAR((half->pose(Time{}).translation - anchor.translation - 0.5 * from_middle).norm(), 0,
+              1e-12);
+  EXPECT_NEAR(rotation_vector(whole->pose(Time{}).rotation).norm(), 0, 1e-12);
+  EXPECT_NEAR(scale_to_half_extent(path, 0.1), 0.4, 1e-12);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "platform/sim/trajectory.hpp"
+#include "platform/sensors/trajectory.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include "platform/input_error.hpp"
 #include "platform/read_file.hpp"
 
-namespace glint::sim {
+namespace glint {
 namespace {
 
 constexpr const char* k_tum = "t x y z qx qy qz qw, separated by blanks";
@@ -91,6 +91,25 @@ StampedPose parse(std::string_view text, const std::string& where, bool commas) 
   return sample;
 }
 
+constexpr Duration k_gap = milliseconds(100);
+
+// Time within the recording: forth, then back, then forth again.
+Time mirrored(Time time, Duration length) {
+  const std::int64_t period = 2 * length.nanoseconds;
+  std::int64_t inside = time.nanoseconds % period;
+  if (inside < 0) inside += period;
+  return Time{inside <= length.nanoseconds ? inside : period - inside};
+}
+
+// Slope at `here` of the parabola through three samples.
+Vector3 slope(const StampedPose& before, const StampedPose& here, const StampedPose& after) {
+  const double left = (here.time - before.time).seconds();
+  const double right = (after.time - here.time).seconds();
+  const Vector3 first = (here.pose.translation - before.pose.translation) / left;
+  const Vector3 second = (after.pose.translation - here.pose.translation) / right;
+  return (right * first + left * second) / (left + right);
+}
+
 }  // namespace
 
 Trajectory trajectory_from_text(const std::string& text, const std::string& name) {
@@ -129,4 +148,28 @@ Trajectory load_trajectory(const std::string& path) {
   return trajectory_from_text(read_file(path, k_data_bytes_max, expected), path);
 }
 
-}  // namespace glint::sim
+Pose interpolated(const Trajectory& trajectory, Time time) {
+  const std::vector<StampedPose>& samples = trajectory.samples;
+  const Time inside = mirrored(time, trajectory.length());
+  std::size_t low = 0, high = samples.size() - 1;  // samples[low] <= inside <= samples[high]
+  while (high - low > 1) {
+    const std::size_t middle = low + (high - low) / 2;
+    (samples[middle].time <= inside ? low : high) = middle;
+  }
+  const StampedPose& a = samples[low];
+  const StampedPose& b = samples[high];
+  const Duration span = b.time - a.time;
+  Pose pose = interpolate(a, b, inside);
+  if (span > k_gap || low == 0 || high + 1 == samples.size()) return pose;
+  // Cubic Hermite with the neighbours' slopes.
+  const double h = span.seconds();
+  const double u = (inside - a.time).seconds() / h;
+  const Vector3 out = h * slope(samples[low - 1], a, b);
+  const Vector3 in = h * slope(a, b, samples[high + 1]);
+  const Vector3 whole = b.pose.translation - a.pose.translation;
+  pose.translation = a.pose.translation +
+                     u * (out + u * ((3 * whole - 2 * out - in) + u * (out + in - 2 * whole)));
+  return pose;
+}
+
+}  // namespace glint

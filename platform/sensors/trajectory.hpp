@@ -1,13 +1,12 @@
-// Recorded motion: TUM text or EuRoC-like CSV, placed into the simulated world.
+// Recorded motion: TUM text or EuRoC-like CSV.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "kernels/motion/interpolate.hpp"
-#include "platform/sim/motion.hpp"
 
-namespace glint::sim {
+namespace glint {
 
 struct Trajectory {
   std::string name;                  // the file, for messages
@@ -31,17 +30,4 @@ struct Trajectory {
 // after the last sample the recording runs on, mirrored in time, so that it never jumps.
 [[nodiscard]] Pose interpolated(const Trajectory& trajectory, Time time);
 
-// The recording's deviations from its own middle (centre of its box, mean orientation), scaled, in
-// the axes of that mean orientation; `anchor` says where its middle is.
-struct Placement {
-  Pose anchor;
-  double position_scale = 1;
-  double rotation_scale = 1;
-};
-
-[[nodiscard]] MotionPointer placed_motion(Trajectory trajectory, const Placement& placement);
-
-// The scale that makes the largest half side of the recording's box this long.
-[[nodiscard]] double scale_to_half_extent(const Trajectory& trajectory, double half_extent_m);
-
-}  // namespace glint::sim
+}  // namespace glint

@@ -1,4 +1,4 @@
-#include "platform/sim/trajectory.hpp"
+#include "platform/sensors/trajectory.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "platform/input_error.hpp"
 
-namespace glint::sim {
+namespace glint {
 namespace {
 
 std::string message_of(const std::string& text) {
@@ -118,19 +118,6 @@ TEST(Trajectory, RunsBackFromItsEndWithoutAJump) {
   }
 }
 
-TEST(Trajectory, IsScaledAboutItsMiddleAndPutAtTheAnchor) {
-  const Trajectory path = parabola();
-  const Pose anchor{Quaternion::Identity(), Vector3(5, 6, 7)};
-  const MotionPointer whole = placed_motion(path, {anchor, 1, 0});
-  const MotionPointer half = placed_motion(path, {anchor, 0.5, 0});
-  const Vector3 from_middle = whole->pose(Time{}).translation - anchor.translation;
-  EXPECT_NEAR(from_middle.norm(), Vector3(0.25, 0.125, 0).norm(), 1e-9);
-  EXPECT_NEAR((half->pose(Time{}).translation - anchor.translation - 0.5 * from_middle).norm(), 0,
-              1e-12);
-  EXPECT_NEAR(rotation_vector(whole->pose(Time{}).rotation).norm(), 0, 1e-12);
-  EXPECT_NEAR(scale_to_half_extent(path, 0.1), 0.4, 1e-12);
-}
-
 TEST(Trajectory, ReadsTheRealRecordings) {
   const char* folder = std::getenv("GLINT_TEST_DATA");
   const std::string path = std::string(folder ? folder : "") + "/trajectories/";
@@ -144,4 +131,4 @@ TEST(Trajectory, ReadsTheRealRecordings) {
 }
 
 }  // namespace
-}  // namespace glint::sim
+}  // namespace glint
