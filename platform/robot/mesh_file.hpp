@@ -33,9 +33,10 @@ struct MeshLimits {
 
 // The file that a URDF's mesh stands for: package://NAME/PATH below one of the package folders, a
 // path relative to the URDF, file://PATH. A description may come from the network: an absolute path
-// must lie in a package folder, a relative one there or in the URDF's folder. Of a package's path
-// as much as is needed may be left out at its beginning: the folder may be the package itself or
-// one inside of it. Throws InputError naming `urdf` and the places that were looked at.
+// must lie in a package folder, a relative one there or in the URDF's folder; both must be files.
+// Of a package's path as much as is needed may be left out at its beginning: the folder may be the
+// package itself or one inside of it. Throws InputError naming `urdf` and the places that were
+// looked at.
 [[nodiscard]] std::string find_mesh(const std::string& name, const RobotFiles& files);
 
 }  // namespace glint

@@ -8,7 +8,7 @@
 namespace glint::sim {
 
 // The recording's deviations from its own middle (centre of its box, mean orientation), scaled, in
-// the axes of that mean orientation; `anchor` says where its middle is.
+// the axes of that mean orientation; `anchor` is that middle's pose.
 struct Placement {
   Pose anchor;
   double position_scale = 1;
