@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 namespace glint {
 namespace {
 
@@ -17,6 +19,31 @@ FrameVerdict check(CheckFrame& node, const FrameStamp& stamp) {
   FrameVerdict verdict;
   node(stamp, verdict);
   return verdict;
+}
+
+// All that a frame states of its time, each field another.
+TEST(StampFrame, TakesTheStampOffAFrame) {
+  const std::vector<std::uint16_t> pixels(6 * 4);
+  Frame frame;
+  frame.reflectivity_16 = {pixels.data(), 6, 4};
+  frame.depth = {pixels.data(), 6, 4};
+  frame.mid_exposure = {11};
+  frame.stamp_sigma = {22};
+  frame.arrival = {33};
+  frame.sequence = 44;
+  StampFrame node;
+  node.width = 6;
+  node.height = 4;
+  FrameStamp stamp;
+  node(frame, stamp);
+  EXPECT_EQ(stamp.reason, Reason::none);
+  EXPECT_EQ(stamp.mid_exposure.nanoseconds, 11);
+  EXPECT_EQ(stamp.sigma.nanoseconds, 22);
+  EXPECT_EQ(stamp.arrival.nanoseconds, 33);
+  EXPECT_EQ(stamp.sequence, 44u);
+  node.height = 5;
+  node(frame, stamp);
+  EXPECT_EQ(stamp.reason, Reason::frame_invalid);
 }
 
 TEST(CheckFrame, AcceptsFramesInOrder) {

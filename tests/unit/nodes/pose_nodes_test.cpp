@@ -74,6 +74,25 @@ TEST_F(Correspond, OpensItsGatesWithTheNoiseThatWasSeenAndNeverClosesThem) {
   }
 }
 
+TEST_F(Correspond, OpensItsGatesAlsoByLittleMoreNoise) {
+  const auto largest_scale = [&](double noises) {
+    predictions_->noise.known = true;
+    predictions_->noise.range_sigma_m = noises * node_->settings.range_sigma_m;
+    double fits = 1, fails = 1.5;
+    for (int i = 0; i < 20; ++i) {
+      const double between = 0.5 * (fits + fails);
+      show_scaled_by(between);
+      (reason(Reason::none) == Reason::none ? fits : fails) = between;
+    }
+    return fits - 1;
+  };
+  const double as_declared = largest_scale(1);
+  EXPECT_GT(as_declared, 0.01);
+  EXPECT_EQ(largest_scale(0.5), as_declared);
+  EXPECT_GT(largest_scale(1.2), 1.1 * as_declared);
+  EXPECT_GT(largest_scale(1.8), 1.5 * as_declared);
+}
+
 // RefinePose may prefer either: a stray in the rivals of two tools would be both tools' marker.
 TEST(AssignMarkers, GivesNoMarkerToTheLabelingsOfTwoTools) {
   const auto labeling = [](std::int16_t a, std::int16_t b, std::int16_t c, double turn) {

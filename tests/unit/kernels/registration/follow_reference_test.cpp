@@ -146,6 +146,28 @@ TEST(FollowReference, IsNotTakenInByARobotThatIsGone) {
   EXPECT_EQ(world.follower.reference(at(1)).T_world_base.translation, k_truth.translation);
 }
 
+// Three times the root of the position's, or the rotation's, three variances.
+TEST(FollowReference, IsUnsureWhereAJumpCouldBeNoise) {
+  const auto outcome = [](double jump_m, double jump_rad, Matrix6& covariance) {
+    World world;
+    world.draw(k_truth);
+    if (jump_m > 0) world.follower.settings.jump_m = jump_m;
+    if (jump_rad > 0) world.follower.settings.jump_rad = jump_rad;
+    world.look(at(1));
+    covariance = world.follower.report().seen.covariance;
+    return world.follower.report().outcome;
+  };
+  Matrix6 seen, again;
+  ASSERT_EQ(outcome(0, 0, seen), FollowOutcome::followed);
+  const double shift = 3 * std::sqrt(seen.topLeftCorner<3, 3>().trace());
+  const double turn = 3 * std::sqrt(seen.bottomRightCorner<3, 3>().trace());
+  EXPECT_EQ(outcome(0.99 * shift, 0, again), FollowOutcome::unsure);
+  EXPECT_NE(outcome(1.01 * shift, 0, again), FollowOutcome::unsure);
+  EXPECT_EQ(outcome(0, 0.99 * turn, again), FollowOutcome::unsure);
+  EXPECT_NE(outcome(0, 1.01 * turn, again), FollowOutcome::unsure);
+  EXPECT_EQ(again, seen);
+}
+
 TEST(FollowReference, WantsAReferenceAndNewerPictures) {
   World world;
   world.draw(k_truth);

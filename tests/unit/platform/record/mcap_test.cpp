@@ -95,6 +95,8 @@ TEST(Mcap, WithoutAMessageIsStillAFile) {
   ASSERT_TRUE(writer.close("closing", {}));
   McapReader reader(path);
   EXPECT_FALSE(reader.next());
+  EXPECT_EQ(reader.file().path(), path);
+  EXPECT_EQ(reader.file().size(), std::filesystem::file_size(path));
 }
 
 TEST(Mcap, OfAnotherKindIsRefusedWithPathAndByte) {

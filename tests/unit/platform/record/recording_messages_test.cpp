@@ -137,6 +137,27 @@ TEST(Recording, RefusesAnOverrunThatIsNoneOfItsKinds) {
   EXPECT_FALSE(read_choice(other.bytes()).has_value());
 }
 
+// Its stamp's sigma is the last field, which older recordings have not.
+TEST(Recording, ReadsAFrameWithoutItsStampsSigmaButNoneWithAPartOfIt) {
+  FrameBuffer buffer = sample_frame(8, 6, 16);
+  Frame frame = buffer.view({100}, {200}, 9);
+  frame.stamp_sigma = {123'456};
+  const FrameLayout layout = whole_frame_layout(frame);
+  std::vector<std::uint8_t> pixels(pixel_bytes(layout));
+  copy_pixels(frame, layout, pixels);
+  CdrWriter writer;
+  write_message(writer, FramePatch{layout, pixels}, PixelPlace::in_message, {});
+  const auto message = writer.bytes();
+  const auto read = read_frame(message, {}, {});
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->stamp_sigma.nanoseconds, 123'456);
+  for (std::size_t missing = 1; missing < 8; ++missing)
+    EXPECT_FALSE(read_frame(message.first(message.size() - missing), {}, {})) << missing;
+  const auto older = read_frame(message.first(message.size() - 8), {}, {});
+  ASSERT_TRUE(older);
+  EXPECT_EQ(older->stamp_sigma.nanoseconds, 0);
+}
+
 // A message as it was written before a stamp had a sigma, before markers could be incomplete, and
 // before they had what a tool's own depth bias needs, turns, and sigmas: its last fields left out.
 TEST(Recording, ReadsMarkersOfOlderRecordings) {
