@@ -93,6 +93,26 @@ TEST_F(Correspond, OpensItsGatesAlsoByLittleMoreNoise) {
   EXPECT_GT(largest_scale(1.8), 1.5 * as_declared);
 }
 
+// Three markers are believed no farther from a prediction than the tool may have got and three
+// sigmas of their ranges.
+TEST_F(Correspond, BelievesFewMarkersOnlyNearAPrediction) {
+  Tool& tool = set_->items[0];
+  tool.marker_count = 4;
+  tool.markers_m[3] = Vector3(0.03, 0.02, 0.04);
+  ASSERT_EQ(prepare_tool(tool), Reason::none);
+  tools_.set(*set_, 2, 0);
+  Prediction& prediction = predictions_->tools[0];
+  prediction.has_prior = true;
+  prediction.reach_m = 0.008;
+  const double gate_m = prediction.reach_m + 3 * node_->settings.range_sigma_m;
+  ASSERT_LT(1.1 * gate_m, node_->settings.prior_gate_m);
+  show_scaled_by(1);
+  for (const double share : {0.9, 1.1}) {
+    prediction.T_camera_tool = {Quaternion::Identity(), Vector3(share * gate_m, 0, 0.5)};
+    EXPECT_EQ(reason(Reason::none) == Reason::none, share < 1) << share;
+  }
+}
+
 // RefinePose may prefer either: a stray in the rivals of two tools would be both tools' marker.
 TEST(AssignMarkers, GivesNoMarkerToTheLabelingsOfTwoTools) {
   const auto labeling = [](std::int16_t a, std::int16_t b, std::int16_t c, double turn) {

@@ -221,6 +221,33 @@ TEST(PlaneSupport, TakesOffAStripeAndLeavesEdgesOn) {
   EXPECT_EQ(support.taken_off(), stripe);
 }
 
+TEST(PlaneSupport, CountsItsStepsAndRefusesSettingsThatFindNothing) {
+  const std::vector<Oriented> points = room(3);
+  const TestCloud cloud = cloud_of(points);
+  TestSearch test(20'000);
+  test.run(cloud.points);
+  PlaneSupport& support = test.support;
+  support.begin(cloud.points, test.search);
+  constexpr int k_most = 500;
+  std::int64_t steps = 0;
+  for (bool done = false; !done; steps += support.steps()) {
+    done = support.step(SliceSize{k_most, k_most});
+    EXPECT_LE(support.steps(), k_most + PlaneSupport::steps_max(PlaneSupportSettings{}));
+  }
+  // Each point costs its share, and on a plane at least a look at itself.
+  std::int64_t on_planes = 0;
+  for (int i = 0; i < cloud.points.count; ++i)
+    on_planes += test.search.plane_of(i) != PlaneSearch::k_no_plane ? 1 : 0;
+  EXPECT_GE(steps, k_support_steps * std::int64_t{cloud.points.count} + k_vote_steps * on_planes);
+  for (const float radius : {0.0f, -1.0f, 1e-40f}) {
+    PlaneSupportSettings settings;
+    settings.radius_m = radius;
+    TestMemory memory(PlaneSupport::bytes(100));
+    EXPECT_EQ(PlaneSupport().prepare(settings, 100, memory.arena()), Reason::out_of_range)
+        << radius;
+  }
+}
+
 // Every pair of points is looked at.
 TEST(PlaneSupport, LeavesOnAPlaneWhatAPlainCountOfNeighboursLeaves) {
   const std::vector<Oriented> points = room(5);

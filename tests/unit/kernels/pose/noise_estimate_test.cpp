@@ -128,6 +128,23 @@ TEST_F(NoiseEstimateTest, DoubtsTheDeclaredNoiseUntilThereAreResiduals) {
   }
 }
 
+// A few residuals as large as declared leave most of the doubt, many leave little.
+TEST_F(NoiseEstimateTest, LosesItsDoubtByDegrees) {
+  const double m2 = k_declared.range_sigma_m * k_declared.range_sigma_m;
+  const double px2 = k_declared.pixel_sigma_px * k_declared.pixel_sigma_px;
+  double before = k_noise_variance_open;
+  for (const double freedom : {1.0, 5.0, 40.0}) {
+    NoiseEstimate estimate;
+    add({{freedom * m2, freedom}, {freedom * px2, freedom}}, k_declared, estimate);
+    ASSERT_TRUE(estimate.known);
+    const double doubt = variance_doubt(estimate, k_declared);
+    EXPECT_GT(doubt, 1) << freedom;
+    EXPECT_LT(doubt, before) << freedom;
+    before = doubt;
+  }
+  EXPECT_LT(before, 2);
+}
+
 TEST_F(NoiseEstimateTest, LearnsNothingFromMarkersThatFixNoPose) {
   const std::vector<WeightedMarker> one(1);
   const MarkerResiduals found =

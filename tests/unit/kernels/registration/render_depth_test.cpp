@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <limits>
 #include <vector>
+
+#include "kernels/registration/seen_points.hpp"
 
 namespace glint::render_depth_test {
 namespace {
@@ -103,6 +107,22 @@ TEST(RenderDepth, EndsAfterItsBudgetOfTests) {
   const std::vector<Face> many(5000, Face{0, 1, 2});
   EXPECT_EQ(picture.render(k_wall, many), Reason::search_full);
   EXPECT_GT(picture.z[picture.at(50, 10)], 0);
+}
+
+TEST(SeenPoints, AreNoMoreThanThereIsRoomFor) {
+  Picture picture;
+  SceneView view;
+  view.camera = picture.camera;
+  view.model = {k_wall, k_two};
+  const DepthBuffer buffer{picture.z, picture.face, picture.corners};
+  std::vector<SeenPoint> all(64 * 48);
+  const int count = seen_points(view, {}, 4, buffer, all);
+  EXPECT_GT(count, 100);
+  std::vector<SeenPoint> few(50);
+  few[40].pixel = -7;
+  EXPECT_EQ(seen_points(view, {}, 4, buffer, std::span(few).first(40)), 40);
+  EXPECT_EQ(few[40].pixel, -7);
+  for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(few[i].pixel, all[i].pixel);
 }
 
 // Far beyond what an integer holds, on each side.
