@@ -99,8 +99,9 @@ void PredictTools::operator()(const Now& now, const graph::Latest<Estimates>& es
       sample.reason = Reason::no_reference;
     }
 
-    const Vector3 arm = moving.pose.rotation * known.arm_m[static_cast<std::size_t>(t)];
-    systematic = moved_covariance(systematic, arm);
+    const TipPlace& tip = known.tips[static_cast<std::size_t>(t)];
+    const Vector3 arm = moving.pose.rotation * tip.arm_m;
+    systematic = tip.systematic_of(systematic, moving.pose.rotation);
     covariance = moved_covariance(covariance, arm) + systematic;
     sample.pose = {moving.pose.rotation, moving.pose.translation + arm};
     sample.velocity_m_s = moving.velocity_m_s + moving.angular_velocity_rad_s.cross(arm);

@@ -197,12 +197,27 @@ struct Track {
   Matrix6 correlated_covariance = Matrix6::Zero();
 };
 
+// Where a tool's tip is.
+struct TipPlace {
+  Vector3 arm_m = Vector3::Zero();  // from the markers' middle, along the tool's axes
+  double sigma_m = 0;               // an axis
+
+  // Of the tip: of the markers' middle, about the axes that `turn` takes the tool's to.
+  [[nodiscard]] Matrix6 systematic_of(const Matrix6& of_middle, const Quaternion& turn) const {
+    Matrix6 covariance = moved_covariance(of_middle, turn * arm_m);
+    covariance.diagonal().head<3>().array() += sigma_m * sigma_m;
+    return covariance;
+  }
+};
+[[nodiscard]] inline TipPlace tip_of(const Tool& tool) {
+  return {tool.tip_m - tool.middle_m(), tool.tip_sigma_m};
+}
+
 // The frame group's result.
 struct Estimates {
   FrameVerdict verdict;
   int tool_count = 0;
-  // From the markers' middle to the tip, along the tool's axes: the tick group needs no tool set.
-  std::array<Vector3, k_tools_max> arm_m;
+  std::array<TipPlace, k_tools_max> tips;  // the tick group needs no tool set
   bool reference_known = false;
   Pose T_world_reference;  // where the reference tool is
   NoiseEstimate noise;     // of the markers

@@ -119,7 +119,7 @@ void TrackTools::operator()(const FrameVerdict& verdict, const Anchor& anchor,
   // to track a tool.
   for (int t = count; t < std::min(estimates.tool_count, k_tools_max); ++t) {
     estimates.tracks[t] = Track{};
-    estimates.arm_m[t] = Vector3::Zero();
+    estimates.tips[t] = {};
   }
   estimates.verdict = verdict;
   estimates.tool_count = count;
@@ -129,7 +129,7 @@ void TrackTools::operator()(const FrameVerdict& verdict, const Anchor& anchor,
   for (int t = 0; t < count; ++t) {
     Track& track = estimates.tracks[t];
     const Tool& shape = set.items[t];
-    estimates.arm_m[t] = shape.tip_m - shape.middle_m();
+    estimates.tips[t] = tip_of(shape);
     track = last.value().tracks[t];
     if (track.identity != shape.identity) exchange(shape, track);
     if (!shape.present()) continue;
@@ -168,10 +168,10 @@ void TrackTools::operator()(const FrameVerdict& verdict, const Anchor& anchor,
   }
 }
 
-Matrix6 tip_covariance(const Track& track, const FittedTool& found, const Vector3& arm_m) noexcept {
+Matrix6 tip_covariance(const Track& track, const FittedTool& found, const TipPlace& tip) noexcept {
   const Matrix6 systematic =
-      moved_covariance(found.systematic.calibration + found.systematic.correlated.sum(),
-                       track.T_camera_tool.rotation * arm_m);
+      tip.systematic_of(found.systematic.calibration + found.systematic.correlated.sum(),
+                        track.T_camera_tool.rotation);
   if (!track.filtered) return found.covariance + systematic;
   Matrix6 covariance;
   for (int i = 0; i < 2; ++i) {
@@ -184,7 +184,7 @@ Matrix6 tip_covariance(const Track& track, const FittedTool& found, const Vector
   const Quaternion camera_base =
       track.T_camera_tool.rotation * track.newest.pose.rotation.conjugate();
   return systematic + moved_covariance(turned_covariance(covariance, camera_base),
-                                       track.T_camera_tool.rotation * arm_m);
+                                       track.T_camera_tool.rotation * tip.arm_m);
 }
 
 }  // namespace glint

@@ -47,8 +47,7 @@ static_assert(graph::Budgeted<TrackTools, Limits>);
 
 // Of the pose that a frame gave, the fit's or the filter's, systematic part included: of the tip,
 // about the camera's axes.
-// arm_m: from the markers' middle to the tip, along the tool's axes.
 [[nodiscard]] Matrix6 tip_covariance(const Track& track, const FittedTool& found,
-                                     const Vector3& arm_m) noexcept;
+                                     const TipPlace& tip) noexcept;
 
 }  // namespace glint

@@ -28,6 +28,8 @@ struct Tool {
   // Standard deviation of a marker's position in the tool, an axis: of a tool that was not measured
   // by `glint calibrate tool`.
   double marker_sigma_m = 0.0003;
+  // Of the tip among the markers, an axis: of one that `glint calibrate pivot` did not find.
+  double tip_sigma_m = 0.0003;
 
   // A slot of the set may be empty.
   [[nodiscard]] bool present() const { return marker_count > 0; }

@@ -14,7 +14,7 @@ namespace glint {
 namespace {
 
 constexpr double k_radius_max_mm = 100.0;
-constexpr double k_marker_sigma_max_mm = 10.0;
+constexpr double k_sigma_max_mm = 10.0;
 
 std::string place_of(const std::string& path, const toml::node& node) {
   return path + ":" + std::to_string(node.source().begin.line);
@@ -68,14 +68,15 @@ std::string text_at(const toml::node& node, const char* key, const std::string& 
 }
 
 void refuse_unknown_keys(const toml::table& table, const std::string& path) {
-  const std::vector<std::string> known = {"name",   "markers_mm", "marker_sigma_mm", "radius_mm",
-                                          "tip_mm", "shape",      "depth_bias"};
+  const std::vector<std::string> known = {"name",      "markers_mm", "marker_sigma_mm",
+                                          "radius_mm", "tip_mm",     "tip_sigma_mm",
+                                          "shape",     "depth_bias"};
   for (const auto& [key, node] : table) {
     if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
     throw InputError(path + ":" + std::to_string(key.source().begin.line) + ": unknown key " +
                      std::string(key.str()) + nearest_name_text(key.str(), known) +
-                     "; expected name, markers_mm, marker_sigma_mm, radius_mm, tip_mm, shape or "
-                     "depth_bias");
+                     "; expected name, markers_mm, marker_sigma_mm, radius_mm, tip_mm, "
+                     "tip_sigma_mm, shape or depth_bias");
   }
 }
 
@@ -126,8 +127,9 @@ Tool tool_from_toml_text(std::string_view text, const std::string& path) {
   tool.tip_m = point_at(required(table, "tip_mm", "a point [x, y, z]", path), "tip_mm", path);
   tool.shape = shape_in(table, path);
   if (const toml::node* sigma = table.get("marker_sigma_mm"))
-    tool.marker_sigma_m =
-        1e-3 * number_at(*sigma, "marker_sigma_mm", 0.0, k_marker_sigma_max_mm, path);
+    tool.marker_sigma_m = 1e-3 * number_at(*sigma, "marker_sigma_mm", 0.0, k_sigma_max_mm, path);
+  if (const toml::node* sigma = table.get("tip_sigma_mm"))
+    tool.tip_sigma_m = 1e-3 * number_at(*sigma, "tip_sigma_mm", 0.0, k_sigma_max_mm, path);
   tool.depth_bias = bias_in(table, path);
   return prepared(tool, place_of(path, markers));
 }

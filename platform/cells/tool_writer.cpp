@@ -50,6 +50,8 @@ std::string tool_toml_text(const Tool& tool, std::string_view comment) {
                 1e3 * tool.marker_sigma_m, 1e3 * tool.marker_radius_m);
   text += sizes;
   text += "tip_mm = " + point_mm(tool.tip_m) + "\n";
+  std::snprintf(sizes, sizeof sizes, "tip_sigma_mm = %.4f\n", 1e3 * tool.tip_sigma_m);
+  text += sizes;
   text += tool.shape == MarkerShape::sphere ? "shape = \"sphere\"\n" : "shape = \"disc\"\n";
   const std::string bias = depth_bias_text(tool.depth_bias);
   return bias.empty() ? text : text + "\n[depth_bias]\n" + bias;

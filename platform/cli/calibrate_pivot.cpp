@@ -1,5 +1,6 @@
 // glint calibrate pivot: the tip of a tool that stands in a dent and is turned about it.
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "platform/calibrate/pivot.hpp"
@@ -66,6 +67,7 @@ int run_pivot(const PivotArguments& arguments) {
   if (series.tool) {
     Tool tool = *series.tool;
     tool.tip_m = result.tip_m;
+    tool.tip_sigma_m = std::sqrt(result.tip_covariance_m2.trace() / 3);
     const std::string from = "tip by glint calibrate pivot from " + series.what + ", sigma " +
                              say_mm(result.tip_sigma_m);
     files.push_back({file_name_of(tool) + ".toml", tool_toml_text(tool, from)});

@@ -19,7 +19,7 @@ constexpr double k_seed_coverage_low = 80;
 void state_exactly(Cell& cell) {
   cell.camera.uncertainty = k_exact_camera;
   cell.robot_sigma_m = cell.robot_sigma_rad = 0;
-  for (Tool& tool : cell.tools.items) tool.marker_sigma_m = 0;
+  for (Tool& tool : cell.tools.items) tool.marker_sigma_m = tool.tip_sigma_m = 0;
 }
 
 // The scenario's motion, noise and events without what the device differs by.

@@ -16,7 +16,7 @@ GlintChain::GlintChain(const Camera& camera, const ChainSetup& setup)
   cell.tools.count = 0;
   for (const Tool& tool : setup.tools)
     cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] = tool;
-  for (Tool& tool : cell.tools.items) tool.marker_sigma_m = 0;
+  for (Tool& tool : cell.tools.items) tool.marker_sigma_m = tool.tip_sigma_m = 0;
   cell.reference = setup.reference;
   cell.head_noise = setup.head_noise;
   configure(cell, *tracker_);
@@ -43,7 +43,7 @@ Result<UncertainPose> GlintChain::followed() const {
   if (!track.seen_now) return {{}, track.reason};
   if (track.base != ReferenceFrame::world) return {{}, Reason::head_pose_missing};
   UncertainPose tip = pose_of(track.motion);
-  const Vector3 arm = tip.pose.rotation * estimates.arm_m[0];
+  const Vector3 arm = tip.pose.rotation * estimates.tips[0].arm_m;
   tip.pose.translation += arm;
   tip.covariance = moved_covariance(tip.covariance + track.head_covariance, arm);
   return {tip};

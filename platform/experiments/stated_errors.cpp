@@ -33,6 +33,8 @@ void draw_below_one_sigma(const Cell& cell, LargeError large, std::uint64_t seed
   for (std::size_t t = 0; t < scenario.tools.size(); ++t) {
     Tool& made = scenario.tools[t].tool;
     const Tool& drawn = cell.tools.items[t];
+    for (int axis = 0; axis < 3; ++axis)
+      made.tip_m(axis) = drawn.tip_m(axis) + even() * drawn.tip_sigma_m;
     for (std::size_t i = 0; i < static_cast<std::size_t>(made.marker_count); ++i) {
       for (int axis = 0; axis < 3; ++axis) {
         const double sigmas =

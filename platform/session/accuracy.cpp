@@ -37,7 +37,7 @@ void state(const Tracker& tracker, int t, const Estimates& estimates, ToolOutcom
   const FittedTool& fitted = tracker.parts<FittedTools>(t % k_tool_slices).tools[i];
   const Labeling& labeling = labeling_of(tracker.token<Assignment>(), fitted, i);
   const Markers& markers = tracker.token<Markers>();
-  const Matrix6 covariance = tip_covariance(estimates.tracks[i], fitted, estimates.arm_m[i]);
+  const Matrix6 covariance = tip_covariance(estimates.tracks[i], fitted, estimates.tips[i]);
   outcome.tip_sigma_m = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
   for (std::size_t m = 0; m < labeling.marker.size(); ++m) {
     if (((fitted.marker_mask >> m) & 1) == 0) continue;

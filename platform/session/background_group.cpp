@@ -59,7 +59,7 @@ TrackedCapsules capsules_of(const Estimates& estimates) {
     const Track& track = estimates.tracks[at];
     if (!track.alive || track.base != ReferenceFrame::world) continue;
     const Pose& T_world_middle = track.motion.pose;
-    const Vector3 arm = T_world_middle.rotation * estimates.arm_m[at];
+    const Vector3 arm = T_world_middle.rotation * estimates.tips[at].arm_m;
     const double length = arm.norm();
     const Vector3 back = length > 0 ? Vector3(arm * (-k_held_behind_m / length)) : Vector3::Zero();
     const Vector3& middle = T_world_middle.translation;

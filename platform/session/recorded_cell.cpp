@@ -43,7 +43,8 @@ json as_json(const ToolSet& set) {
                      {"marker_radius_m", tool.marker_radius_m},
                      {"shape", tool.shape == MarkerShape::sphere ? "sphere" : "disc"},
                      {"tip_m", as_json(tool.tip_m)},
-                     {"marker_sigma_m", tool.marker_sigma_m}});
+                     {"marker_sigma_m", tool.marker_sigma_m},
+                     {"tip_sigma_m", tool.tip_sigma_m}});
     if (tool.depth_bias.is_measured()) tools.back()["depth_bias"] = as_json(tool.depth_bias);
   }
   return tools;
@@ -64,6 +65,7 @@ ToolSet tools_of(const json& tools, const std::string& path) {
     tool.shape = item.at("shape") == "disc" ? MarkerShape::disc : MarkerShape::sphere;
     tool.tip_m = vector_of(item.at("tip_m"));
     tool.marker_sigma_m = item.value("marker_sigma_m", tool.marker_sigma_m);
+    tool.tip_sigma_m = item.value("tip_sigma_m", 0.0);  // older recordings state none
     if (item.contains("depth_bias")) tool.depth_bias = bias_of(item.at("depth_bias"));
     if (const Reason reason = prepare_tool(tool); reason != Reason::none) {
       throw InputError(path + ": tools.json: tool " + name + " is " + std::string(name_of(reason)) +

@@ -64,6 +64,7 @@ void build_inexactly(Draws& draws, ToolBody& body) {
   const double sigma_m = Tool{}.marker_sigma_m;
   for (int i = 0; i < tool.marker_count; ++i)
     tool.markers_m[static_cast<std::size_t>(i)] += sigma_m * draws.vector();
+  tool.tip_m += Tool{}.tip_sigma_m * draws.vector();
   tool.marker_radius_m += k_radius_sigma_m * draws.normal();
 }
 

@@ -21,7 +21,9 @@ Pose with_origin(const Pose& T_frame_tool, const Tool& tool, PoseOrigin origin) 
 // The pose's covariance, of the tip about the camera's axes, as the exported pose has it.
 Matrix6 covariance_of(const FittedTool& fit, const Track& track, const Tool& tool,
                       PoseOrigin origin) {
-  Matrix6 covariance = tip_covariance(track, fit, tool.tip_m - tool.middle_m());
+  TipPlace tip = tip_of(tool);
+  if (origin == PoseOrigin::tool) tip.sigma_m = 0;  // the tip is not where the pose is
+  Matrix6 covariance = tip_covariance(track, fit, tip);
   if (origin == PoseOrigin::tool) {
     covariance = moved_covariance(covariance, track.T_camera_tool.rotation * (-tool.tip_m));
   }

@@ -36,6 +36,7 @@ Eigen::MatrixXd joint_covariance(std::span<const Touch> touches, const StatedErr
   const CameraUncertainty& camera = stated.camera;
   const auto slow = variances(camera.slow_range_m, camera.slow_centroid_px);
   const auto of_place = variances(k_range_ripple_m, k_lens_residual_px);
+  const double tip_m2 = stated.tip_sigma_m * stated.tip_sigma_m;
   const auto n = static_cast<Eigen::Index>(touches.size());
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(3 * n, 3 * n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -47,7 +48,8 @@ Eigen::MatrixXd joint_covariance(std::span<const Touch> touches, const StatedErr
       covariance.block<3, 3>(3 * i, 3 * j) =
           markers * (a.mean.by_markers * slow.asDiagonal() * b.mean.by_markers.transpose()) +
           shared(a, b, stated.head.rest_correlation_s) *
-              (a.mean.by_head * b.mean.by_head.transpose());
+              (a.mean.by_head * b.mean.by_head.transpose()) +
+          tip_m2 * (a.mean.rotation * b.mean.rotation.conjugate()).toRotationMatrix();
     }
     Matrix3 own =
         a.mean.random_m2 + shared(a, a, stated.head.motion_correlation_s) * a.mean.moving_m2;

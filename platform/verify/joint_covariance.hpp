@@ -3,8 +3,9 @@
 // Of the means of sightings, three rows a touch: random noise; each marker's slow errors, two
 // Gauss-Markov processes; the lens's residual and the range's ripple, which differ from place to
 // place; the headset's drift, which returns with its correlation time, and what the head's motion
-// adds. Calibration errors are constant: they are columns of their own.
-// Source: consider parameters: Bierman 1977, chapter VIII; means of a Gauss-Markov process over two
+// adds; the tip's error, which turns with the tool. Calibration errors are constant: they are
+// columns of their own. Source: consider parameters: Bierman 1977, chapter VIII; means of a
+// Gauss-Markov process over two
 //         windows: Brown and Hwang 2012, section 3.6.
 #pragma once
 

@@ -116,7 +116,8 @@ TipSeries sight_tips(RecordedFrames& recorded, std::size_t tool) {
   TipSeries series;
   series.what = recorded.path;
   series.tool = cell.tools.items[tool];
-  series.stated = {cell.camera.uncertainty, cell.camera.correlation, cell.head_noise};
+  series.stated = {cell.camera.uncertainty, cell.camera.correlation, cell.head_noise,
+                   series.tool.tip_sigma_m};
   std::vector<TipSighting> in_camera;
   CalibrationWatch watch(cell);
   HeadWalk walk;

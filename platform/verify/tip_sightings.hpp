@@ -36,6 +36,7 @@ struct StatedErrors {
   CameraUncertainty camera;
   CorrelationTimes correlation;
   HeadNoise head;
+  double tip_sigma_m = 0;  // of the tip among the markers, an axis
 };
 
 struct TipSeries {

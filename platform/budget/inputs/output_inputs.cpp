@@ -40,7 +40,7 @@ class PredictToolsKernel final : public NodeKernel<PredictTools> {
       track.motion.angular_acceleration_rad_s2 = numbers.in_box(40);
       track.motion.covariance = MotionCovariance::Identity() * 1e-4;
       track.marker_mask = 31;
-      known_.arm_m[t] = {0, 0, -0.12};
+      known_.tips[t] = {{0, 0, -0.12}, 3e-4};
     }
     estimates_.set(known_, 1, 0);
     RobotFrame robot;

@@ -15,7 +15,7 @@ class PredictTools : public testing::Test {
   PredictTools() {
     estimates_->tool_count = 1;
     EXPECT_EQ(node_.prepare(), Reason::none);
-    estimates_->arm_m[0] = Vector3(0.1, 0, 0);
+    estimates_->tips[0].arm_m = Vector3(0.1, 0, 0);
     Track& track = estimates_->tracks[0];
     track.alive = true;
     track.seen_now = true;
@@ -203,6 +203,16 @@ TEST_F(PredictTools, GivesTheSystematicPartBesideTheTotal) {
   EXPECT_NEAR(sample.covariance(2, 2), random + sample.systematic(2, 2), 1e-15);
   EXPECT_NEAR(sample.sigma_position_m,
               std::sqrt(sample.covariance.topLeftCorner<3, 3>().trace() / 3), 1e-15);
+}
+
+TEST_F(PredictTools, CountsTheTipAmongSystematicErrors) {
+  const PoseSample before = at(1010);
+  estimates_->tips[0].sigma_m = 4e-3;
+  const PoseSample after = at(1010);
+  Matrix6 added = Matrix6::Zero();
+  added.diagonal().head<3>().setConstant(1.6e-5);
+  EXPECT_LT((after.systematic - before.systematic - added).norm(), 1e-15);
+  EXPECT_LT((after.covariance - before.covariance - added).norm(), 1e-15);
 }
 
 TEST_F(PredictTools, CountsTheRobotsPlaceAmongSystematicErrors) {

@@ -66,7 +66,7 @@ TEST(ToolFile, ReadsEveryKeyOfItsOwnFormat) {
 TEST(ToolFile, RefusesKeysThatAreUnknownOrMissing) {
   EXPECT_EQ(toml_complaint(k_valid + "colour = \"red\"\n"),
             "tool.toml:6: unknown key colour; expected name, markers_mm, marker_sigma_mm, "
-            "radius_mm, tip_mm, shape or depth_bias");
+            "radius_mm, tip_mm, tip_sigma_mm, shape or depth_bias");
   for (const std::string key : {"name", "markers_mm", "radius_mm", "tip_mm"}) {
     const std::string found = toml_complaint(replaced(k_valid, key + " =", "shape2 ="));
     EXPECT_NE(found.find("shape2"), std::string::npos) << found;

@@ -15,11 +15,13 @@ TEST(ToolWriter, WritesWhatIsReadBackTheSame) {
   tool.tip_m = {0.0012345, -0.2, 0.15};
   tool.shape = MarkerShape::disc;
   tool.marker_sigma_m = 0.00012;
+  tool.tip_sigma_m = 0.00034;
   const std::string text = tool_toml_text(tool, "two\nlines = of comment");
   const Tool read = tool_from_toml_text(text, "written.toml");
   EXPECT_EQ(read.name, tool.name);
   EXPECT_EQ(read.shape, tool.shape);
   EXPECT_DOUBLE_EQ(read.marker_sigma_m, 0.00012);
+  EXPECT_DOUBLE_EQ(read.tip_sigma_m, 0.00034);
   EXPECT_EQ(read.marker_radius_m, tool.marker_radius_m);
   EXPECT_LT((read.tip_m - tool.tip_m).norm(), 1e-7);
   ASSERT_EQ(read.marker_count, tool.marker_count);

@@ -24,7 +24,7 @@ constexpr Time k_taken = Time{} + milliseconds(100);
 Estimates seen_pen() {
   Estimates estimates;
   estimates.tool_count = 1;
-  estimates.arm_m.fill(Vector3::Zero());
+  estimates.tips.fill({});
   Track& track = estimates.tracks[0];
   track.alive = track.seen_now = track.has_previous = true;
   track.reason = Reason::none;

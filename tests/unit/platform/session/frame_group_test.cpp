@@ -27,7 +27,7 @@ void expect_equal(const Estimates& found, const Estimates& expected) {
   EXPECT_EQ(found.verdict.reason, expected.verdict.reason);
   ASSERT_EQ(found.tool_count, expected.tool_count);
   if (expected.tool_count == 0) return;
-  EXPECT_EQ(found.arm_m[0], expected.arm_m[0]);
+  EXPECT_EQ(found.tips[0].arm_m, expected.tips[0].arm_m);
   const Track& a = found.tracks[0];
   const Track& b = expected.tracks[0];
   EXPECT_EQ(a.alive, b.alive);

@@ -75,7 +75,7 @@ TEST(Field, DrawsOneDeviceARandomSeed) {
 TEST(Field, DrawsErrorsAsLargeAsTheShippedSettingsState) {
   const CameraUncertainty shipped;
   const Scenario nominal = hand_held_run(hololens2_ahat(), {}, 1);
-  double principal = 0, offset = 0, geometry = 0, robot = 0;
+  double principal = 0, offset = 0, geometry = 0, tip = 0, robot = 0;
   constexpr int k_devices = 200;
   for (std::uint64_t seed = 1; seed <= k_devices; ++seed) {
     const Scenario drawn = field(seed);
@@ -84,6 +84,8 @@ TEST(Field, DrawsErrorsAsLargeAsTheShippedSettingsState) {
     geometry +=
         (drawn.tools[0].tool.markers_m[0] - nominal.tools[0].tool.markers_m[0]).squaredNorm() /
         (3 * k_devices);
+    tip +=
+        (drawn.tools[0].tool.tip_m - nominal.tools[0].tool.tip_m).squaredNorm() / (3 * k_devices);
     robot +=
         (*drawn.localisation.T_stated_world * Vector3(1, 0, 0) - Vector3(1, 0, 0)).squaredNorm() /
         (3 * k_devices);
@@ -91,6 +93,7 @@ TEST(Field, DrawsErrorsAsLargeAsTheShippedSettingsState) {
   EXPECT_NEAR(std::sqrt(principal), shipped.principal_point_px, 0.12 * shipped.principal_point_px);
   EXPECT_NEAR(std::sqrt(offset), shipped.range_offset_m, 0.15 * shipped.range_offset_m);
   EXPECT_NEAR(std::sqrt(geometry), Tool{}.marker_sigma_m, 0.12 * Tool{}.marker_sigma_m);
+  EXPECT_NEAR(std::sqrt(tip), Tool{}.tip_sigma_m, 0.12 * Tool{}.tip_sigma_m);
   EXPECT_NEAR(std::sqrt(robot), 0.003, 0.0004) << "about the robot's base";
 }
 

@@ -42,6 +42,21 @@ TEST(JointCovariance, OfAFastProcessIsFinite) {
   EXPECT_NEAR(covariance(0, 3), 0, 1e-20);
 }
 
+// A wrong tip stands beside the point where the tool leans to: all touches have it in common, and
+// it turns with the tool.
+TEST(JointCovariance, TheTipsErrorTurnsWithTheTool) {
+  TipSeries series = test::series_of({.touches = 2});
+  std::vector<Touch> touches = touches_of(series);
+  const Eigen::MatrixXd without = joint_covariance(touches, series.stated, Places::apart);
+  touches[0].mean.rotation = Quaternion(Eigen::AngleAxisd(0.5, Vector3::UnitX()));
+  touches[1].mean.rotation = Quaternion(Eigen::AngleAxisd(-0.4, Vector3::UnitX()));
+  series.stated.tip_sigma_m = 2e-3;
+  const Eigen::MatrixXd added = joint_covariance(touches, series.stated, Places::apart) - without;
+  EXPECT_NEAR((added.topLeftCorner<3, 3>() - 4e-6 * Matrix3::Identity()).norm(), 0, 1e-18);
+  const Matrix3 turned = Eigen::AngleAxisd(0.9, Vector3::UnitX()).toRotationMatrix();
+  EXPECT_NEAR((added.block<3, 3>(0, 3) - 4e-6 * turned).norm(), 0, 1e-18);
+}
+
 // Lens residual and range ripple are each place's own: a rest does not have them.
 TEST(JointCovariance, OfOnePlaceLeavesOutLensAndRipple) {
   TipSeries series = test::series_of({.touches = 2});
