@@ -106,6 +106,15 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
 }
 
+// What the markers' places leave open of the tool's size, and so of every range.
+Matrix3 covariance_of_size(const Tool& tool) {
+  double spread_m2 = 0;
+  for (int i = 0; i < tool.marker_count; ++i)
+    spread_m2 += (tool.markers_m[static_cast<std::size_t>(i)] - tool.middle_m()).squaredNorm();
+  const Vector3 per_size(DepthBias::k_reference_m, 1, 0);
+  return tool.marker_sigma_m * tool.marker_sigma_m / spread_m2 * per_size * per_size.transpose();
+}
+
 std::string say_counts(double counts) { return say("%.0f", counts); }
 
 void check_span(const DepthCalibration& result, const DepthCalibrationSettings& settings,
@@ -232,6 +241,7 @@ DepthCalibration calibrate_depth(std::span<const Sighting> sightings, const Tool
   check_fit(result, settings, what);
   const double dim_span = quantile(seen.dimness, k_high) - quantile(seen.dimness, k_low);
   check_certainty(result, fit.determined, dim_span, settings, what);
+  result.covariance += covariance_of_size(tool);
   return result;
 }
 

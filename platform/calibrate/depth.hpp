@@ -4,9 +4,10 @@
 // The tool's size and the markers' pixels say how far away it is, a tenth of a pixel in fifty; the
 // bias and every frame's pose are found together by Ceres, each residual in its own noise
 // (kernels/calibrate/depth_residual.hpp), with a Cauchy loss, the noise anew, outliers removed, and
-// without loss again. A wrong focal length or tool size of 0.1 % is 1 mm a metre of the slope; what
-// the poses' noise does in second order, 0.1 mm of the offset, 0.3 mm a metre and 0.4 mm of dim at
-// 0.1 px and 2 mm, is not in the covariance.
+// without loss again. A wrong focal length or tool size of 0.1 % is 1 mm a metre of the slope: the
+// covariance has the tool's, by its marker_sigma_m, and a cell adds its lens's. What the poses'
+// noise does in second order, 0.1 mm of the offset, 0.3 mm a metre and 0.4 mm of dim at 0.1 px and
+// 2 mm, is not in it.
 #pragma once
 
 #include <span>

@@ -150,7 +150,9 @@ PivotResult calibrate_pivot(std::span<const StampedPose> poses, const PivotSetti
   result.position_sigma_m = samples[0].position_sigma_m;
   result.rotation_sigma_rad = samples[0].rotation_sigma_rad;
   result.correlated = correlated(kept, point);
-  result.tip_covariance_m2 = tip_covariance(kept, point) * result.correlated;
+  const Vector3 scaled_m = settings.scale_sigma * (result.tip_m - settings.centre_m);
+  result.tip_covariance_m2 =
+      tip_covariance(kept, point) * result.correlated + scaled_m * scaled_m.transpose();
   result.tip_sigma_m = largest_sigma(result.tip_covariance_m2);
   result.sigma_reached = settings.stop_sigma_m <= 0 || result.tip_sigma_m <= settings.stop_sigma_m;
   check_fit(result, settings, what);

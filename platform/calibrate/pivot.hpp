@@ -20,6 +20,7 @@ struct PivotSettings {
   // A point of the tool whose measured position errs independently of the measured rotation: the
   // middle of its markers. Unknown: the origin.
   Vector3 centre_m = Vector3::Zero();
+  double scale_sigma = 0;        // of all positions, a ratio: moves the tip along its arm
   double stop_sigma_m = 0;       // stop as soon as the tip's sigma is below; 0: use every pose
   double spread_min_rad = 0.05;  // moved less than this, a direction's part of the tip is a guess
   double inlier_chi_square = 16.3;  // of 3 components: one good pose in 1000 is left out

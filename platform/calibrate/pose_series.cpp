@@ -66,44 +66,48 @@ void take_recording(const PoseSource& source, PoseSeries& series) {
   series.unsolved = seen.unsolved;
 }
 
-void take_frames(const PoseSource& source, PoseSeries& series) {
-  RecordedFrames recorded = open_recorded(source.recording, source.cell_file);
-  const std::size_t tool = select_tool(recorded.cell, source.tool);
-  series.tool = recorded.cell.tools.items[tool];
-  std::vector<StampedPose> in_camera, in_world;
-  TrackedFrames tracked =
-      track_frames(recorded, Search::tracked, [&](const ArrivedFrame&, Tracker& tracker) {
-        const Track& track = tracker.output<Estimates>().tracks[tool];
-        if (!track.seen_now) return;
-        (track.base == ReferenceFrame::world ? in_world : in_camera).push_back(track.newest);
-      });
-  const bool world = in_world.size() >= in_camera.size();
-  series.poses = std::move(world ? in_world : in_camera);
-  series.frame = world ? "world" : "camera";
-  if (series.poses.empty()) {
-    throw InputError(source.recording + ": the tool \"" + series.tool->name.data() +
-                     "\" was tracked in none of " + std::to_string(tracked.frames) +
-                     " frames; expected it in view: `glint inspect --recording` names the cause");
-  }
-  series.begin = series.poses.front().time;
-  for (StampedPose& pose : series.poses) pose.time = Time{(pose.time - series.begin).nanoseconds};
-  series.unsolved = tracked.frames - static_cast<int>(series.poses.size());
-  series.failures = std::move(tracked.failures);
-}
-
 bool is_recording(const std::string& path) {
   return std::filesystem::path(path).extension() == ".mcap";
 }
 
 }  // namespace
 
+PoseSeries recorded_poses(RecordedFrames& recorded, std::size_t tool, PoseFrame frame) {
+  PoseSeries series;
+  series.what = recorded.path;
+  series.tool = recorded.cell.tools.items[tool];
+  series.scale_sigma = recorded.cell.camera.uncertainty.range_scale;
+  std::vector<StampedPose> in_camera, in_world;
+  TrackedFrames tracked =
+      track_frames(recorded, Search::tracked, [&](const ArrivedFrame& arrived, Tracker& tracker) {
+        const Track& track = tracker.output<Estimates>().tracks[tool];
+        if (!track.seen_now) return;
+        in_camera.push_back({arrived.frame.mid_exposure, track.T_camera_tool});
+        if (track.base == ReferenceFrame::world) in_world.push_back(track.newest);
+      });
+  if (frame == PoseFrame::by_head)
+    frame = 2 * in_world.size() >= in_camera.size() ? PoseFrame::world : PoseFrame::camera;
+  series.poses = std::move(frame == PoseFrame::world ? in_world : in_camera);
+  series.frame = frame == PoseFrame::world ? "world" : "camera";
+  if (series.poses.empty()) {
+    throw InputError(recorded.path + ": the tool \"" + series.tool->name.data() +
+                     "\" was tracked in none of " + std::to_string(tracked.frames) + " frames" +
+                     (frame == PoseFrame::world ? " with a head pose" : "") +
+                     "; expected it in view: `glint inspect --recording` names the cause");
+  }
+  series.begin = series.poses.front().time;
+  for (StampedPose& pose : series.poses) pose.time = Time{(pose.time - series.begin).nanoseconds};
+  series.unsolved = tracked.frames - static_cast<int>(series.poses.size());
+  series.failures = std::move(tracked.failures);
+  return series;
+}
+
 PoseSeries load_pose_series(const PoseSource& source) {
   check(source);
   PoseSeries series;
   if (!source.recording.empty()) {
-    series.what = source.recording;
-    take_frames(source, series);
-    return series;
+    RecordedFrames recorded = open_recorded(source.recording, source.cell_file);
+    return recorded_poses(recorded, select_tool(recorded.cell, source.tool), source.frame);
   }
   if (is_recording(source.poses)) {
     if (source.of_tip) {

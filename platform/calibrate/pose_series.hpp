@@ -8,8 +8,13 @@
 
 #include "kernels/motion/interpolate.hpp"
 #include "kernels/pose/tool.hpp"
+#include "platform/tools/recorded_frames.hpp"
 
 namespace glint {
+
+// Of recorded frames' poses. By the head: the world where most frames have a head pose, else the
+// camera's frame.
+enum class PoseFrame { by_head, camera, world };
 
 struct PoseSource {
   // TUM text or EuRoC-like CSV, of the tool's frame; or a recording (.mcap) of level blobs or more:
@@ -18,10 +23,10 @@ struct PoseSource {
   std::string points;   // unlabelled marker positions (CSV); needs the tool
   std::string tool;     // a tool file
   bool of_tip = false;  // the poses' origin is the tool's tip, as in a run's tip.tum
-  // Recorded frames of any kind, tracked: the tool by the tracker's fit of each frame, in the world
-  // where most frames have a head pose, else in the camera's frame. The cell file is as
-  // open_recorded() has it, the tool as select_tool().
+  // Recorded frames of any kind, tracked: the tool by the tracker's fit of each frame. The cell
+  // file is as open_recorded() has it, the tool as select_tool().
   std::string recording, cell_file;
+  PoseFrame frame = PoseFrame::by_head;
 };
 
 struct PoseSeries {
@@ -29,13 +34,18 @@ struct PoseSeries {
   Time begin;                      // the first one's, as it stands in the file
   int unsolved = 0;                // point frames without a pose
   std::optional<Tool> tool;
-  std::string what;                   // the file, for messages
-  std::string frame = "as in file";   // that the poses are in: of frames "world" or "camera"
+  double scale_sigma = 0;            // of all positions, as the camera's ranges: of recorded frames
+  std::string what;                  // the file, for messages
+  std::string frame = "as in file";  // that the poses are in: of frames "world" or "camera"
   std::vector<std::string> failures;  // what of the frames could not be read, a line each
 };
 
 // Throws InputError for bad files, none or several of poses, points and recording, points without a
 // tool, of_tip without a tool, and frames in none of which the tool is tracked.
 [[nodiscard]] PoseSeries load_pose_series(const PoseSource& source);
+
+// Of recorded frames: the cell's tool of this number.
+[[nodiscard]] PoseSeries recorded_poses(RecordedFrames& recorded, std::size_t tool,
+                                        PoseFrame frame);
 
 }  // namespace glint

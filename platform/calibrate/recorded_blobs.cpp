@@ -4,6 +4,7 @@
 
 #include "nodes/tracker.hpp"
 #include "platform/calibrate/sightings.hpp"
+#include "platform/calibrate/tool_geometry.hpp"
 #include "platform/cells/cell.hpp"
 #include "platform/input_error.hpp"
 #include "platform/record/recording_reader.hpp"
@@ -68,6 +69,14 @@ BlobSeries recorded_markers(RecordingReader& reader, const std::string& path,
   return series;
 }
 
+// What the search for blobs needs of a tool whose markers are yet to be found: their kind.
+Tool stand_in(Tool tool) {
+  tool.markers_m = {Vector3{0, 0, 0}, Vector3{0.1, 0, 0}, Vector3{0, 0.07, 0}};
+  tool.marker_count = 3;
+  (void)prepare_tool(tool);
+  return tool;
+}
+
 }  // namespace
 
 BlobSeries recorded_blobs(const std::string& path, const std::string& cell_file,
@@ -82,7 +91,11 @@ BlobSeries recorded_blobs(const std::string& path, const std::string& cell_file,
     if (reader.level() == RecordingLevel::blobs) return recorded_markers(reader, path, tool);
   }
   RecordedFrames recorded = open_recorded(path, cell_file);
-  BlobSeries series = series_for(recorded.cell, path, tool);
+  return recorded_blobs(recorded, tool);
+}
+
+BlobSeries recorded_blobs(RecordedFrames& recorded, const std::string& tool) {
+  BlobSeries series = series_for(recorded.cell, recorded.path, tool);
   series.brightness = true;
   // As the live run searched: of level roi no more was kept.
   TrackedFrames tracked =
@@ -92,6 +105,20 @@ BlobSeries recorded_blobs(const std::string& path, const std::string& cell_file,
       });
   series.failures = std::move(tracked.failures);
   return series;
+}
+
+std::vector<PointFrame> recorded_points(RecordedFrames& recorded, const Tool& kind,
+                                        std::vector<std::string>& failures) {
+  set_only_tool(recorded.cell, stand_in(kind));
+  std::vector<PointFrame> frames;
+  TrackedFrames tracked = track_frames(
+      recorded, Search::everywhere, [&](const ArrivedFrame& arrived, Tracker& tracker) {
+        PointFrame frame{arrived.frame.mid_exposure,
+                         marker_centres(tracker.token<Markers>(), kind)};
+        if (!frame.points_m.empty()) frames.push_back(std::move(frame));
+      });
+  failures = std::move(tracked.failures);
+  return frames;
 }
 
 }  // namespace glint

@@ -11,6 +11,7 @@
 #include "kernels/pose/local_rays.hpp"
 #include "kernels/pose/tool.hpp"
 #include "platform/sensors/camera.hpp"
+#include "platform/tools/recorded_frames.hpp"
 
 namespace glint {
 
@@ -68,6 +69,7 @@ struct SightingSeries {
 // are as open_recorded() and select_tool() have them. Throws InputError for bad files.
 [[nodiscard]] BlobSeries recorded_blobs(const std::string& path, const std::string& cell_file,
                                         const std::string& tool);
+[[nodiscard]] BlobSeries recorded_blobs(RecordedFrames& recorded, const std::string& tool);
 
 // A table of blobs (CSV) `time_s,x_px,y_px,range_m,peak`, in which this camera saw them. Pixel
 // centres are at integer + 0.5; ranges are to the surface, radial. Throws InputError.

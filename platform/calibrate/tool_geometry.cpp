@@ -1,6 +1,7 @@
 #include "platform/calibrate/tool_geometry.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -19,10 +20,25 @@ namespace {
 constexpr int k_seeds_max = 5;
 constexpr double k_noise_share_max = 0.1;  // of the tool's size
 constexpr double k_labelled_share_min = 0.5;
+constexpr std::size_t k_sigma_parts = 8;
+constexpr double k_drawn_noise_m = 0.002;  // made beside drawn, and a size that ranges make wrong
 constexpr double k_line_noises = 5;  // beside a line by less than this, nobody knows which way
 constexpr const char* k_on_a_line =
     ": the points that recur are fewer than 3 or lie on a line; expected 3 or more markers that do "
     "not";
+
+Vector3 middle_of(const std::vector<Vector3>& points) {
+  Vector3 middle = Vector3::Zero();
+  for (const Vector3& p : points) middle += p / static_cast<double>(points.size());
+  return middle;
+}
+
+// Sum of squared distances from their middle.
+double spread_m2(const std::vector<Vector3>& points) {
+  double squares = 0;
+  for (const Vector3& p : points) squares += (p - middle_of(points)).squaredNorm();
+  return squares;
+}
 
 Tool tool_of(const std::vector<Vector3>& markers_m) {
   Tool tool;
@@ -82,8 +98,7 @@ double longest_side(const std::vector<Vector3>& markers) {
 // Turns the markers about their middle to their principal axes, the longest first; the farthest
 // marker along x and along y lies on the positive side.
 void turn_to_axes(std::vector<Vector3>& markers) {
-  Vector3 middle = Vector3::Zero();
-  for (const Vector3& m : markers) middle += m / static_cast<double>(markers.size());
+  const Vector3 middle = middle_of(markers);
   Matrix3 spread = Matrix3::Zero();
   for (Vector3& m : markers) {
     m -= middle;
@@ -107,8 +122,7 @@ void turn_to_axes(std::vector<Vector3>& markers) {
 
 // Whether the second of the markers' principal spreads is not clearly more than their noise.
 bool on_a_line(const std::vector<Vector3>& markers, double noise_m) {
-  Vector3 middle = Vector3::Zero();
-  for (const Vector3& m : markers) middle += m / static_cast<double>(markers.size());
+  const Vector3 middle = middle_of(markers);
   Matrix3 spread = Matrix3::Zero();
   for (const Vector3& m : markers) spread += (m - middle) * (m - middle).transpose();
   return symmetric_eigen(spread / static_cast<double>(markers.size())).values[1] <
@@ -126,7 +140,82 @@ void check_enough(const ToolRound& round, std::size_t frames, const std::string&
                    "3 or more of its markers in most frames");
 }
 
-ToolGeometry geometry_of(const ToolRound& round, const ToolGeometrySettings& settings) {
+// The size that was measured apart, or the drawing's; its error moves each marker from the middle.
+void set_size(const ToolGeometrySettings& settings, ToolGeometry& geometry) {
+  const double spread = std::sqrt(spread_m2(geometry.markers_m));
+  double sigma = 0;  // a ratio
+  if (settings.longest_side_m > 0) {
+    geometry.scale = settings.longest_side_m / longest_side(geometry.markers_m);
+    sigma = settings.longest_side_sigma_m / settings.longest_side_m;
+  } else if (settings.drawn) {
+    const Tool& drawn = *settings.drawn;
+    const double drawn_spread = std::sqrt(
+        spread_m2({drawn.markers_m.begin(), drawn.markers_m.begin() + drawn.marker_count}));
+    geometry.scale = drawn_spread / spread;
+    sigma = drawn.marker_sigma_m / drawn_spread;
+  }
+  const Vector3 middle = middle_of(geometry.markers_m);
+  for (std::size_t i = 0; i < geometry.markers_m.size(); ++i) {
+    Vector3& marker = geometry.markers_m[i];
+    marker = middle + geometry.scale * (marker - middle);
+    const double moved_m = sigma * (marker - middle).norm() / std::sqrt(3.0);  // an axis
+    geometry.marker_sigma_m[i] = std::hypot(geometry.scale * geometry.marker_sigma_m[i], moved_m);
+  }
+}
+
+// What slow errors leave of each marker's place, an axis: by the spread of its mean misses over
+// k_sigma_parts parts of the recording; those that change more slowly are stated.
+void count_slow_errors(const ToolRound& round, double slow_range_m, ToolGeometry& geometry) {
+  for (std::size_t marker = 0; marker < geometry.marker_sigma_m.size(); ++marker) {
+    std::array<Vector3, k_sigma_parts> sums;
+    std::array<int, k_sigma_parts> counts{};
+    sums.fill(Vector3::Zero());
+    for (const LabelledPoint& point : round.points) {
+      if (point.marker != marker) continue;
+      const std::size_t part = point.frame * k_sigma_parts / round.frames.size();
+      const Quaternion& turn = round.bundle.poses[point.frame].rotation;
+      sums[part] += turn.conjugate() * bundle_miss(round.bundle, point);
+      ++counts[part];
+    }
+    double squares = 0;
+    for (std::size_t part = 0; part < k_sigma_parts; ++part)
+      squares += counts[part] > 0 ? (sums[part] / counts[part]).squaredNorm() : 0;
+    constexpr double k_parts = k_sigma_parts;
+    double& sigma_m = geometry.marker_sigma_m[marker];
+    sigma_m = std::max(sigma_m, std::sqrt(squares / (3 * (k_parts - 1) * k_parts)));
+    sigma_m = std::hypot(sigma_m, slow_range_m / std::sqrt(3.0));
+  }
+}
+
+// Into the drawing's frame and order.
+void lay_on(const Tool& drawn, const std::string& what, ToolGeometry& geometry) {
+  const PointFrame points{Time{}, geometry.markers_m};
+  const Labeling label = label_segment({&points, 1}, {0, 1}, drawn, k_drawn_noise_m).front();
+  const std::size_t count = geometry.markers_m.size();
+  const auto drawn_count = static_cast<std::size_t>(drawn.marker_count);
+  if (count != drawn_count || static_cast<std::size_t>(label.count) != count) {
+    throw InputError(what + ": " + std::to_string(label.count) + " of " + std::to_string(count) +
+                     " markers found lie within " + say_mm(2 * k_drawn_noise_m) + " of the " +
+                     std::to_string(drawn_count) + " drawn of \"" + drawn.name.data() +
+                     "\"; expected every one: this tool alone, each marker in a fifth of the "
+                     "frames or more");
+  }
+  ToolGeometry named = geometry;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto from = static_cast<std::size_t>(label.marker[i]);
+    named.markers_m[i] = geometry.markers_m[from];
+    named.marker_sigma_m[i] = geometry.marker_sigma_m[from];
+    named.seen[i] = geometry.seen[from];
+  }
+  const std::span<const Vector3> as_drawn(drawn.markers_m.data(), count);
+  const RigidFit fit = fit_rigid(named.markers_m, as_drawn);
+  for (Vector3& marker : named.markers_m) marker = fit.transform * marker;
+  named.drawn_rms_m = fit.rms_m;
+  geometry = std::move(named);
+}
+
+ToolGeometry geometry_of(const ToolRound& round, const ToolGeometrySettings& settings,
+                         const std::string& what) {
   ToolGeometry geometry;
   geometry.markers_m = round.bundle.markers_m;
   geometry.seen = seen_by_marker(round);
@@ -145,16 +234,30 @@ ToolGeometry geometry_of(const ToolRound& round, const ToolGeometrySettings& set
   std::vector<StampedPose> poses;
   for (const Pose& pose : round.bundle.poses) poses.push_back({Time{}, pose});
   geometry.turn_rad = rotation_spread(poses).spread_rad[0];
-  turn_to_axes(geometry.markers_m);
-  if (settings.longest_side_m > 0) {
-    geometry.scale = settings.longest_side_m / longest_side(geometry.markers_m);
-    for (Vector3& marker : geometry.markers_m) marker *= geometry.scale;
-    for (double& sigma : geometry.marker_sigma_m) sigma *= geometry.scale;
+  count_slow_errors(round, settings.slow_range_m, geometry);
+  set_size(settings, geometry);
+  if (settings.drawn) {
+    lay_on(*settings.drawn, what, geometry);
+  } else {
+    turn_to_axes(geometry.markers_m);
   }
   return geometry;
 }
 
 }  // namespace
+
+double slow_range_of_mean(std::span<const PointFrame> frames, const Camera& camera) {
+  if (frames.empty()) return 0;
+  const double seconds = std::max((frames.back().time - frames.front().time).seconds(), 1e-3);
+  // Of the mean of a Gauss-Markov process, as a share of its variance.
+  const auto share = [&](double correlation_s) {
+    const double x = correlation_s / seconds;
+    return 2 * x * (1 - x * (1 - std::exp(-1 / x)));
+  };
+  const CameraUncertainty& sigma = camera.uncertainty;
+  return sigma.slow_range_m * std::sqrt(sigma.fast_share * share(camera.correlation.fast_s) +
+                                        (1 - sigma.fast_share) * share(camera.correlation.slow_s));
+}
 
 ToolGeometry calibrate_tool(std::span<const PointFrame> frames,
                             const ToolGeometrySettings& settings, const std::string& what) {
@@ -191,7 +294,7 @@ ToolGeometry calibrate_tool(std::span<const PointFrame> frames,
   }
   check_enough(round, frames.size(), what);
 
-  ToolGeometry geometry = geometry_of(round, settings);
+  ToolGeometry geometry = geometry_of(round, settings, what);
   geometry.frames = static_cast<int>(frames.size());
   geometry.segments = static_cast<int>(segments.size());
   for (const PointFrame& frame : frames) geometry.points += static_cast<int>(frame.points_m.size());

@@ -68,8 +68,28 @@ ValidRange cosines_of(const ValidRange& degrees) {
   return {cosine(degrees.to), cosine(degrees.from)};
 }
 
-// Of the focal length by which the ranges were measured, as a ratio.
-constexpr double k_lens_scale = 0.001;
+// Two standard deviations that a file states beside its table; nothing where it states neither.
+std::optional<std::array<double, 2>> two_sigmas(const NamedFile& file, const char* first,
+                                                const char* second) {
+  const toml::table root = parse_toml(file.text, file.path);
+  if (!root.contains(first) && !root.contains(second)) return {};
+  const auto sigma = [&](const char* key) {
+    const std::optional<double> found = root[key].value<double>();
+    if (!found || !(*found >= 0)) {
+      complain(file.path, 1,
+               std::string(key) +
+                   " is missing or no standard deviation; expected a "
+                   "number of 0 or more beside the other one");
+    }
+    return *found;
+  };
+  return {{sigma(first), sigma(second)}};
+}
+
+// What an offset and a slope leave of an error with a period over the range, of 1 mm: Foix, Alenya,
+// Torras, "Lock-in Time-of-Flight (ToF) Cameras: A Survey", IEEE Sensors Journal 11 (2011),
+// section II.
+constexpr double k_range_shape_m = 0.0007;
 
 Vector3 vector_of(const std::vector<double>& values) { return {values[0], values[1], values[2]}; }
 
@@ -81,22 +101,27 @@ DepthBias depth_bias_of(const NamedFile& file) {
 }
 
 void read_range_uncertainty(const NamedFile& file, CameraUncertainty& uncertainty) {
-  const toml::table root = parse_toml(file.text, file.path);
-  if (!root.contains("offset_sigma_mm") && !root.contains("mm_per_m_sigma")) return;
-  const auto sigma = [&](const char* key) {
-    const std::optional<double> found = root[key].value<double>();
-    if (!found || !(*found >= 0)) {
-      complain(file.path, 1,
-               std::string(key) +
-                   " is missing or no standard deviation; expected a "
-                   "number of 0 or more beside the other one");
-    }
-    return *found;
-  };
-  const double offset_mm = sigma("offset_sigma_mm"), per_metre_mm = sigma("mm_per_m_sigma");
-  uncertainty.range_offset_m =
-      std::hypot(1e-3 * offset_mm, k_lens_scale * DepthBias::k_reference_m);
-  uncertainty.range_scale = std::hypot(1e-3 * per_metre_mm, k_lens_scale);
+  const std::optional<std::array<double, 2>> sigmas =
+      two_sigmas(file, "offset_sigma_mm", "mm_per_m_sigma");
+  if (!sigmas) return;
+  state_range_uncertainty(1e-3 * (*sigmas)[0], 1e-3 * (*sigmas)[1], uncertainty);
+}
+
+void state_range_uncertainty(double offset_sigma_m, double slope_sigma,
+                             CameraUncertainty& uncertainty) {
+  const double lens = uncertainty.focal_scale;
+  const double lens_m = lens * DepthBias::k_reference_m;
+  uncertainty.range_offset_m = std::sqrt(offset_sigma_m * offset_sigma_m + lens_m * lens_m +
+                                         k_range_shape_m * k_range_shape_m);
+  uncertainty.range_scale = std::hypot(slope_sigma, lens);
+}
+
+void read_lens_uncertainty(const NamedFile& file, CameraUncertainty& uncertainty) {
+  const std::optional<std::array<double, 2>> sigmas =
+      two_sigmas(file, "principal_point_sigma_px", "focal_sigma");
+  if (!sigmas) return;
+  uncertainty.principal_point_px = (*sigmas)[0];
+  uncertainty.focal_scale = (*sigmas)[1];
 }
 
 CameraModel lens_of(const NamedFile& file, const CameraModel& camera) {

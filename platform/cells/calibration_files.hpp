@@ -18,12 +18,18 @@ namespace glint {
 
 // [depth_bias]: of the markers in use.
 [[nodiscard]] DepthBias depth_bias_of(const NamedFile& file);
-// Of the same file: the bias's standard deviations, where it states them, and what the focal length
-// by which the ranges were measured adds.
+// Of the same file: the bias's standard deviations, where it states them.
 void read_range_uncertainty(const NamedFile& file, CameraUncertainty& uncertainty);
 
 // [camera]: another lens for a camera of the same picture size.
 [[nodiscard]] CameraModel lens_of(const NamedFile& file, const CameraModel& camera);
+
+// What standard deviations of a bias's offset and of its slope leave open of all ranges, with the
+// focal length by which they were measured, and the error over the range that neither follows.
+void state_range_uncertainty(double offset_sigma_m, double slope_sigma,
+                             CameraUncertainty& uncertainty);
+// Of [camera]'s file: what it states of the principal point and the focal length.
+void read_lens_uncertainty(const NamedFile& file, CameraUncertainty& uncertainty);
 
 // [motion]: noise and damping; the rest is as built in.
 [[nodiscard]] MotionSettings motion_of(const NamedFile& file);

@@ -95,8 +95,10 @@ void CellParser::read_simulator(const toml::table* table) {
   if (table == nullptr) return;
   TomlReader reader(*table, cell.file, "simulator.");
   SimulatorSettings& sim = cell.simulator;
-  sim.scenario = reader.one_of("scenario", sim.scenario,
-                               {"default", "still", "touches", "trajectories", "field"});
+  sim.scenario =
+      reader.one_of("scenario", sim.scenario,
+                    {"default", "still", "touches", "trajectories", "field", "field_board",
+                     "field_turn", "field_pivot", "field_rest", "field_look"});
   sim.duration_s = reader.real("duration_s", sim.duration_s, 0.1, 3600);
   sim.seed = static_cast<std::uint64_t>(reader.integer("seed", 1, 0, INT64_MAX));
   sim.pen_scale = reader.real("pen_scale", sim.pen_scale, 0.001, 10);
@@ -112,12 +114,13 @@ void CellParser::read_simulator(const toml::table* table) {
   sim.head_trajectory = path("head_trajectory");
   sim.pen_trajectory = path("pen_trajectory");
   sim.background = path("background");
+  sim.drawn = path("drawn");
   reader.done();
   constexpr double k_field_s_min = 5;
-  if (sim.scenario == "field" && sim.duration_s < k_field_s_min) {
+  if (sim.scenario.starts_with("field") && sim.duration_s < k_field_s_min) {
     throw InputError(cell.file + ":" + std::to_string(reader.line_of("duration_s")) +
                      ": simulator.duration_s: found " + std::to_string(sim.duration_s) +
-                     "; expected at least 5 for scenario \"field\"");
+                     "; expected at least 5 for scenario \"" + sim.scenario + "\"");
   }
   if (sim.scenario == "trajectories" &&
       (sim.head_trajectory.empty() || sim.pen_trajectory.empty())) {

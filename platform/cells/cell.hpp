@@ -71,9 +71,13 @@ struct SourceSettings {
 
 // Where simulated frames come from; everything else about the simulator has one declared default.
 struct SimulatorSettings {
-  std::string scenario = "default";  // default, still, touches, trajectories, or field
+  // default, still, touches, trajectories, field; and of the field's device field_turn, _pivot,
+  // _rest
+  std::string scenario = "default";
   double duration_s = 60;
   std::uint64_t seed = 1;
+  // A cell file: the field's device and tools differ from what it states; empty: from this cell.
+  std::string drawn;
   std::string head_trajectory, pen_trajectory;  // files; scenario = "trajectories"
   double pen_scale = 1.0;                       // pen motion is scaled into view
   // Of each marker's image in each frame, the range's at 0.5 m; nothing: the camera model's.

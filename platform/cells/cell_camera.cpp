@@ -181,10 +181,13 @@ void read_camera(const toml::table* table, Cell& cell, const CellFileReader& fil
   }
   if (!lens.empty() || files.carries(k_lens_key)) {
     const std::string name = lens.empty() ? std::string(k_lens_key) + ".toml" : lens;
-    cell.camera.model = lens_of(files.named_file(name, k_lens_key), cell.camera.model);
+    const NamedFile file = files.named_file(name, k_lens_key);
+    cell.camera.model = lens_of(file, cell.camera.model);
+    use_own_lens(cell);
+    read_lens_uncertainty(file, cell.camera.uncertainty);
   }
   const bool rays_carried = files.carried != nullptr && files.carried->rays != nullptr;
-  if (names_lens(cell) || !cell.ray_table.empty() || rays_carried) use_own_lens(cell);
+  if (!cell.ray_table.empty() || rays_carried) use_own_lens(cell);
   read_depth_bias(reader, cell, files);
   read_uncertainty(reader, cell, files);
   reader.done();

@@ -101,6 +101,8 @@ int run_boards(const CameraArguments& arguments) {
                         {"images_used", fit.images_used},
                         {"corners", fit.corners},
                         {"board_tilt_deg", fit.tilt_rad * k_degrees_per_radian},
+                        {"principal_point_sigma_px", fit.principal_point_sigma_px},
+                        {"focal_sigma", fit.focal_sigma},
                         {"camera", lens_figures(fit.model)}};
   const std::vector<std::size_t> shape{static_cast<std::size_t>(fit.model.height),
                                        static_cast<std::size_t>(fit.model.width), 3};

@@ -17,6 +17,7 @@ void add_calibrate_bias(CLI::App& calibrate, int& exit_code);
 void add_calibrate_depth(CLI::App& calibrate, int& exit_code);
 void add_calibrate_motion(CLI::App& calibrate, int& exit_code);
 void add_calibrate_camera(CLI::App& calibrate, int& exit_code);
+void add_calibrate_headset(CLI::App& calibrate, int& exit_code);
 void add_calibrate_noise(CLI::App& calibrate, int& exit_code);
 
 struct CalibrationOutput {

@@ -30,19 +30,15 @@ struct RestSeries {
   std::vector<std::string> failures;
 };
 
-// The tracker's fit of each frame, in the camera's frame: camera and tool rest.
+// Camera and tool rest.
 RestSeries recorded_series(const NoiseArguments& arguments) {
   RecordedFrames recorded = open_recorded(arguments.recording, arguments.config);
   RestSeries series;
   series.tool = select_tool(recorded.cell, arguments.tool);
-  series.what = arguments.recording;
-  TrackedFrames tracked =
-      track_frames(recorded, Search::tracked, [&](const ArrivedFrame& arrived, Tracker& tracker) {
-        const Track& track = tracker.output<Estimates>().tracks[series.tool];
-        if (track.seen_now)
-          series.poses.push_back({arrived.frame.mid_exposure, track.T_camera_tool});
-      });
-  series.failures = std::move(tracked.failures);
+  PoseSeries found = recorded_poses(recorded, series.tool, PoseFrame::camera);
+  series.poses = std::move(found.poses);
+  series.what = std::move(found.what);
+  series.failures = std::move(found.failures);
   series.cell = std::move(recorded.cell);
   return series;
 }

@@ -17,14 +17,9 @@ namespace {
 struct PivotArguments {
   PoseSource source;
   CalibrationOutput output;
+  std::string frame = "by_head";
   double sigma_mm = 0;
 };
-
-Vector3 middle_of(const Tool& tool) {
-  Vector3 sum = Vector3::Zero();
-  for (int i = 0; i < tool.marker_count; ++i) sum += tool.markers_m[static_cast<std::size_t>(i)];
-  return sum / tool.marker_count;
-}
 
 Figures figures_for(const PoseSeries& series, const PivotResult& result) {
   return {{"source", series.what},
@@ -45,8 +40,14 @@ Figures figures_for(const PoseSeries& series, const PivotResult& result) {
           {"sigma_reached", result.sigma_reached}};
 }
 
+PoseFrame frame_of(const std::string& name) {
+  if (name == "camera") return PoseFrame::camera;
+  return name == "world" ? PoseFrame::world : PoseFrame::by_head;
+}
+
 int run_pivot(const PivotArguments& arguments) {
-  const PoseSource& source = arguments.source;
+  PoseSource source = arguments.source;
+  source.frame = frame_of(arguments.frame);
   if (source.poses.empty() && source.points.empty() && source.recording.empty()) {
     throw InputError(
         "calibrate pivot: expected one of --poses FILE, --points FILE and --recording SOURCE");
@@ -54,7 +55,8 @@ int run_pivot(const PivotArguments& arguments) {
   const PoseSeries series = load_pose_series(source);
   PivotSettings settings;
   settings.stop_sigma_m = 1e-3 * arguments.sigma_mm;
-  if (series.tool) settings.centre_m = middle_of(*series.tool);
+  if (series.tool) settings.centre_m = series.tool->middle_m();
+  settings.scale_sigma = series.scale_sigma;
   const PivotResult result = calibrate_pivot(series.poses, settings, series.what);
 
   const Figures figures = figures_for(series, result);
@@ -87,12 +89,17 @@ void add_calibrate_pivot(CLI::App& calibrate, int& exit_code) {
       "  glint calibrate pivot --poses out/tip.tum --of-tip --tool pen.toml --sigma-mm 0.1\n"
       "  glint calibrate pivot --points markers.csv --tool probe.toml --json pivot.json\n"
       "  glint calibrate pivot --recording frames --config cell.toml --tool probe.toml\n"
+      "  glint calibrate pivot --recording frames --config cell.toml --frame camera --out out\n"
       "--recording: the poses are in the world where most frames have a head pose, else in the\n"
-      "camera's frame, which then must not move; `frame` in the table.\n"
+      "camera's frame, which then must not move; `frame` in the table. Of a headset on a stand\n"
+      "--frame camera: its own drift then does not count.\n"
       "With --tool the folder also gets NAME.toml, the tool with its new tip, for a cell's tools.\n"
       "Ends with 1 where --sigma-mm is not reached.");
   add_pose_options(*command, arguments->source);
   add_recording_options(*command, arguments->source.recording, arguments->source.cell_file);
+  command->add_option("--frame", arguments->frame, "of the poses of --recording")
+      ->check(CLI::IsMember({"by_head", "camera", "world"}))
+      ->capture_default_str();
   command
       ->add_option("--sigma-mm", arguments->sigma_mm,
                    "stop as soon as the tip is known this well; 0: use every pose")

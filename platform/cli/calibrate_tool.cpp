@@ -4,24 +4,23 @@
 #include <utility>
 #include <vector>
 
-#include "nodes/tracker.hpp"
 #include "platform/calibrate/say.hpp"
 #include "platform/calibrate/tool_geometry.hpp"
+#include "platform/cells/tool_file.hpp"
 #include "platform/cells/tool_formats.hpp"
 #include "platform/cells/tool_writer.hpp"
 #include "platform/cli/calibrate_commands.hpp"
 #include "platform/cli/output_file.hpp"
 #include "platform/in_range.hpp"
 #include "platform/input_error.hpp"
-#include "platform/session/frame_source.hpp"
 #include "platform/tools/recorded_frames.hpp"
 
 namespace glint {
 namespace {
 
 struct ToolArguments {
-  std::string points, recording, config, name = "tool", shape = "sphere";
-  double radius_mm = 5.75, longest_mm = 0, noise_mm = 1.0;
+  std::string points, recording, config, like, name = "tool", shape = "sphere";
+  double radius_mm = 5.75, longest_mm = 0, longest_sigma_mm = 0.1, noise_mm = 1.0;
   CalibrationOutput output;
 };
 
@@ -40,6 +39,7 @@ Figures figures_for(const ToolArguments& arguments, const ToolGeometry& found) {
           {"seen_in_frames", found.seen},
           {"noise_mm", 1e3 * found.noise_m},
           {"scale", found.scale},
+          {"drawn_rms_mm", 1e3 * found.drawn_rms_m},
           {"least_turn_deg", found.turn_rad * k_degrees_per_radian},
           {"frames", found.frames},
           {"frames_used", found.frames_used},
@@ -48,48 +48,42 @@ Figures figures_for(const ToolArguments& arguments, const ToolGeometry& found) {
           {"segments", found.segments}};
 }
 
-// What the search for blobs needs of a tool whose markers are yet to be found: their kind.
-Tool stand_in(Tool tool) {
-  tool.markers_m = {Vector3{0, 0, 0}, Vector3{0.1, 0, 0}, Vector3{0, 0.07, 0}};
-  tool.marker_count = 3;
-  (void)prepare_tool(tool);
-  return tool;
+std::vector<PointFrame> points_for(const ToolArguments& arguments, const Tool& tool,
+                                   ToolGeometrySettings& settings,
+                                   std::vector<std::string>& failures) {
+  if (arguments.recording.empty()) return load_points(arguments.points);
+  RecordedFrames recorded = open_recorded(arguments.recording, arguments.config);
+  std::vector<PointFrame> points = recorded_points(recorded, tool, failures);
+  settings.slow_range_m = slow_range_of_mean(points, recorded.cell.camera);
+  return points;
 }
 
-// In the camera's frame: a rigid tool needs no head pose.
-std::vector<PointFrame> recorded_points(const ToolArguments& arguments, const Tool& tool,
-                                        std::vector<std::string>& failures) {
-  RecordedFrames recorded = open_recorded(arguments.recording, arguments.config);
-  set_only_tool(recorded.cell, stand_in(tool));
-  std::vector<PointFrame> frames;
-  TrackedFrames tracked = track_frames(
-      recorded, Search::everywhere, [&](const ArrivedFrame& arrived, Tracker& tracker) {
-        PointFrame frame{arrived.frame.mid_exposure,
-                         marker_centres(tracker.token<Markers>(), tool)};
-        if (!frame.points_m.empty()) frames.push_back(std::move(frame));
-      });
-  failures = std::move(tracked.failures);
-  return frames;
+// All but the markers: the drawing's, or a new one's.
+Tool tool_to_fill(const ToolArguments& arguments) {
+  if (!arguments.like.empty()) return named_tool(arguments.like);
+  Tool tool;
+  set_name(tool, arguments.name, "--name");
+  tool.marker_radius_m = 1e-3 * arguments.radius_mm;
+  tool.shape = arguments.shape == "disc" ? MarkerShape::disc : MarkerShape::sphere;
+  return tool;
 }
 
 int run_tool(const ToolArguments& arguments) {
   if (arguments.points.empty() == arguments.recording.empty()) {
     throw InputError("calibrate tool: expected either --points FILE or --recording SOURCE");
   }
-  Tool tool;  // refused for its name before anything is computed
-  set_name(tool, arguments.name, "--name");
-  tool.marker_radius_m = 1e-3 * arguments.radius_mm;
-  tool.shape = arguments.shape == "disc" ? MarkerShape::disc : MarkerShape::sphere;
+  Tool tool = tool_to_fill(arguments);  // refused before anything is computed
   ToolGeometrySettings settings;
   settings.noise_m = 1e-3 * arguments.noise_mm;
   settings.longest_side_m = 1e-3 * arguments.longest_mm;
+  settings.longest_side_sigma_m = 1e-3 * arguments.longest_sigma_mm;
+  if (!arguments.like.empty()) settings.drawn = tool;
   std::vector<std::string> failures;
   const std::string& source = source_of(arguments);
-  const ToolGeometry found =
-      calibrate_tool(arguments.recording.empty() ? load_points(arguments.points)
-                                                 : recorded_points(arguments, tool, failures),
-                     settings, source);
+  const std::vector<PointFrame> points = points_for(arguments, tool, settings, failures);
+  const ToolGeometry found = calibrate_tool(points, settings, source);
 
+  tool.marker_count = 0;
   for (const Vector3& marker : found.markers_m) {
     tool.markers_m[static_cast<std::size_t>(tool.marker_count++)] = marker;
   }
@@ -98,8 +92,10 @@ int run_tool(const ToolArguments& arguments) {
   tool.marker_sigma_m = std::sqrt(squares / static_cast<double>(found.marker_sigma_m.size()));
   std::vector<double> residuals_mm;
   for (const double residual : found.residuals_m) residuals_mm.push_back(1e3 * residual);
-  const std::string from = "by glint calibrate tool from " + source +
-                           ": about the markers' middle; the tip is not known yet (pivot)";
+  const std::string from =
+      "by glint calibrate tool from " + source +
+      (settings.drawn ? ": the tip is where it was drawn (pivot)"
+                      : ": about the markers' middle; the tip is not known yet (pivot)");
   finish_calibration(
       arguments.output, figures_for(arguments, found),
       {{file_name_of(tool) + ".toml", tool_toml_text(tool, from)},
@@ -118,17 +114,28 @@ void add_calibrate_tool(CLI::App& calibrate, int& exit_code) {
       "Examples:\n"
       "  glint calibrate tool --points markers.csv --name probe --longest-mm 88 --out out\n"
       "  glint calibrate tool --recording frames --config cell.toml --radius-mm 6 --name probe\n"
+      "  glint calibrate tool --recording frames --config cell.toml --like pen.toml\n"
       "markers.csv: time_s,x_m,y_m,z_m, one unlabelled marker a row; some may be missing, strays\n"
       "may be among them. --recording: all blobs with a range, in the camera's frame; --radius-mm\n"
-      "and --shape are then what their centres lie behind the surface by. The folder gets "
-      "NAME.toml, for a cell's tools, and a plot.");
+      "and --shape are then what their centres lie behind the surface by. --like: a tool that was\n"
+      "drawn; its frame, tip, order of markers and, without --longest-mm, its size hold on. The\n"
+      "folder gets NAME.toml, for a cell's tools, and a plot.");
   command->add_option("--points", arguments->points, "marker positions (CSV)");
   add_recording_options(*command, arguments->recording, arguments->config);
-  command->add_option("--name", arguments->name, "of the tool")->capture_default_str();
+  CLI::Option* like = command->add_option(
+      "--like", arguments->like, "the tool as it was drawn (.toml, .rom, .ini), or pen (built in)");
+  command->add_option("--name", arguments->name, "of the tool")
+      ->excludes(like)
+      ->capture_default_str();
   command
       ->add_option("--longest-mm", arguments->longest_mm,
                    "the known distance of the two markers farthest apart; 0: as measured")
       ->check(in_range(0.0, 2000.0));
+  command
+      ->add_option("--longest-sigma-mm", arguments->longest_sigma_mm,
+                   "standard deviation of that distance")
+      ->check(in_range(0.0, 100.0))
+      ->capture_default_str();
   command
       ->add_option("--noise-mm", arguments->noise_mm,
                    "of a measured marker, an axis, roughly; it is found anew")
@@ -136,9 +143,11 @@ void add_calibrate_tool(CLI::App& calibrate, int& exit_code) {
       ->capture_default_str();
   command->add_option("--radius-mm", arguments->radius_mm, "of a marker, for the tool file")
       ->check(in_range(0.0, 100.0))
+      ->excludes(like)
       ->capture_default_str();
   command->add_option("--shape", arguments->shape, "of a marker, for the tool file")
       ->check(CLI::IsMember({"sphere", "disc"}))
+      ->excludes(like)
       ->capture_default_str();
   add_output_options(*command, arguments->output);
   command->callback([arguments, &exit_code] { exit_code = run_tool(*arguments); });

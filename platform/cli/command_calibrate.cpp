@@ -61,6 +61,7 @@ void add_calibrate(CLI::App& app, int& exit_code) {
   add_calibrate_motion(*command, exit_code);
   add_calibrate_camera(*command, exit_code);
   add_calibrate_noise(*command, exit_code);
+  add_calibrate_headset(*command, exit_code);
 }
 
 }  // namespace glint

@@ -21,7 +21,12 @@ struct DepthScene {
   std::uint64_t seed = 1;
 };
 
-inline Tool scene_tool() { return default_pen(); }
+// Made as it is drawn.
+inline Tool scene_tool() {
+  Tool tool = default_pen();
+  tool.marker_sigma_m = 0;
+  return tool;
+}
 
 class SceneNumbers {
  public:

@@ -78,6 +78,24 @@ TEST(Depth, KnowsHowSureItIs) {
   EXPECT_NEAR(sum, 1, 0.4);
 }
 
+// The tool's size is a ruler as exact as its markers' places: 0.3 mm an axis over its spread.
+TEST(Depth, CountsWhatTheToolsPlacesLeaveOfItsSize) {
+  const DepthScene scene{.frames = 150};
+  Tool drawn = test::scene_tool();
+  const SightingSeries seen = find_tool(test::blobs_of(scene), drawn, {});
+  const Matrix3 exact = calibrate_depth(seen.sightings, drawn, {}, "scene.mcap").covariance;
+  drawn.marker_sigma_m = 0.0003;
+  const Matrix3 more = calibrate_depth(seen.sightings, drawn, {}, "scene.mcap").covariance - exact;
+  double spread_m2 = 0;
+  for (int i = 0; i < drawn.marker_count; ++i)
+    spread_m2 += (drawn.markers_m[static_cast<std::size_t>(i)] - drawn.middle_m()).squaredNorm();
+  const double size2 = 0.0003 * 0.0003 / spread_m2;
+  EXPECT_NEAR(more(1, 1), size2, 1e-3 * size2);
+  EXPECT_NEAR(more(0, 1), 0.5 * size2, 1e-3 * size2);
+  EXPECT_NEAR(more(0, 0), 0.25 * size2, 1e-3 * size2);
+  EXPECT_NEAR(more(2, 2), 0, 1e-3 * size2);
+}
+
 TEST(Depth, LeavesOutRangesThatFitNothing) {
   const DepthScene scene{.frames = 300};
   SightingSeries seen = find_tool(test::blobs_of(scene), test::scene_tool(), {});

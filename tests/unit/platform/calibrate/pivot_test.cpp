@@ -49,6 +49,19 @@ TEST(Pivot, KnowsHowSureItIs) {
   EXPECT_NEAR(sum / k_runs, 3.0, 1.0);
 }
 
+// Positions that are all too long by a part move the tip by that part of its arm.
+TEST(Pivot, CountsAScaleAlongTheArm) {
+  const TurnSettings turn;
+  PivotSettings settings;
+  const PivotResult exact = calibrate_pivot(turned_poses(turn, 200), settings, "exact");
+  settings.scale_sigma = 0.01;
+  const PivotResult scaled = calibrate_pivot(turned_poses(turn, 200), settings, "scaled");
+  const Vector3 arm = exact.tip_m - settings.centre_m;
+  const Matrix3 more = scaled.tip_covariance_m2 - exact.tip_covariance_m2;
+  EXPECT_NEAR(arm.normalized().dot(more * arm.normalized()), 1e-4 * arm.squaredNorm(), 1e-9);
+  EXPECT_NEAR(more.trace(), 1e-4 * arm.squaredNorm(), 1e-9);
+}
+
 TEST(Pivot, IsNotDrawnTowardsTheCentreByNoisyRotations) {
   Vector3 mean = Vector3::Zero();
   constexpr int k_runs = 40;

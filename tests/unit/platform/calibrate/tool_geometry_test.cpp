@@ -28,6 +28,7 @@ struct Recording {
   double strays = 0.1;    // frames with one
   double turn_rad = 0.5;  // amplitude about each axis
   int jump_at = -1;       // the tool is put elsewhere
+  double slow_m = 0;      // each marker's own error, with a period of 3 s
 };
 
 std::vector<PointFrame> recorded(const Recording& how) {
@@ -43,7 +44,10 @@ std::vector<PointFrame> recorded(const Recording& how) {
       pose = Pose{from_rotation_vector({0, 0, 3.0}), {0.4, 0.1, 0.2}} * pose;
     }
     PointFrame frame{Time{static_cast<std::int64_t>(1e9 * t)}, {}};
-    for (const Vector3& marker : how.markers) {
+    double phase = 0;
+    for (const Vector3& made : how.markers) {
+      phase += 1;
+      const Vector3 marker = made + how.slow_m * std::sin(2 * t + phase) * Vector3(0.5, 0.7, 0.5);
       const bool seen = sim::uniform(key, ++draw) >= how.missing;
       const Vector3 noise = how.noise_m * sim::gaussian_vector(key, 100'000 + draw);
       if (seen) frame.points_m.push_back(pose * marker + noise);
@@ -91,6 +95,37 @@ TEST(ToolGeometry, KnowsHowSureItIs) {
   }
 }
 
+// Errors that do not average out over frames count for less of them.
+TEST(ToolGeometry, IsLessSureOfSlowErrors) {
+  const ToolGeometry quick = calibrate_tool(recorded({}), {}, "quick.csv");
+  Recording how;
+  how.slow_m = 0.001;
+  const ToolGeometry slow = calibrate_tool(recorded(how), {}, "slow.csv");
+  for (std::size_t i = 0; i < k_four.size(); ++i) {
+    EXPECT_GT(slow.marker_sigma_m[i], 2.5 * quick.marker_sigma_m[i]) << i;
+    EXPECT_LT(slow.marker_sigma_m[i], 0.0003) << i;
+  }
+}
+
+// Of the mean: all of an error that hardly changes, a small part of one that changes at once.
+TEST(ToolGeometry, IsToldWhatSlowErrorsOfTheRangesLeave) {
+  const std::vector<PointFrame> frames{{Time{}, {}}, {Time{40'000'000'000}, {}}};
+  Camera camera;
+  camera.uncertainty.slow_range_m = 0.001;
+  camera.uncertainty.fast_share = 0;
+  camera.correlation.slow_s = 1e5;
+  EXPECT_NEAR(slow_range_of_mean(frames, camera), 0.001, 1e-6);
+  camera.correlation.slow_s = 0.2;
+  EXPECT_NEAR(slow_range_of_mean(frames, camera), 0.001 * std::sqrt(2 * 0.2 / 40), 1e-6);
+  ToolGeometrySettings settings;
+  settings.slow_range_m = 0.0004;
+  const ToolGeometry plain = calibrate_tool(recorded({}), {}, "plain.csv"),
+                     stated = calibrate_tool(recorded({}), settings, "stated.csv");
+  for (std::size_t i = 0; i < k_four.size(); ++i)
+    EXPECT_NEAR(stated.marker_sigma_m[i],
+                std::hypot(plain.marker_sigma_m[i], 0.0004 / std::sqrt(3.0)), 1e-9);
+}
+
 TEST(ToolGeometry, KeepsANearlySymmetricToolApartFromItsMirrorOverAJump) {
   Recording how;
   how.markers = k_grid;
@@ -111,6 +146,54 @@ TEST(ToolGeometry, ScalesToAKnownSide) {
   const ToolGeometry found = calibrate_tool(recorded(how), settings, "short.csv");
   EXPECT_NEAR(found.scale, 1 / 0.98, 0.001);
   EXPECT_LT(error_of(found.markers_m, k_four), 0.00006);
+}
+
+Tool drawn_tool(const std::vector<Vector3>& markers) {
+  Tool tool;
+  for (const Vector3& marker : markers)
+    tool.markers_m[static_cast<std::size_t>(tool.marker_count++)] = marker;
+  EXPECT_EQ(prepare_tool(tool), Reason::none);
+  return tool;
+}
+
+// Markers off by 0.4 mm, ranges that make it 1.2 % too small: the drawing's frame, order and size.
+TEST(ToolGeometry, IsLaidOnItsDrawing) {
+  const std::vector<Vector3> drawn{
+      {0.01, 0.02, 0.1}, {0.08, 0.02, 0.13}, {0.03, 0.09, 0.12}, {-0.04, 0.05, 0.18}, {0, 0, 0.2}};
+  std::vector<Vector3> made = drawn;
+  for (std::size_t i = 0; i < made.size(); ++i)
+    made[i] += 0.0004 * sim::gaussian_vector({11, sim::Stream::hand, 1}, i);
+  ToolGeometrySettings settings;
+  settings.drawn = drawn_tool(drawn);
+  const RigidFit as_made = fit_rigid(made, drawn);
+  Recording how;
+  how.markers = made;
+  for (Vector3& marker : how.markers) marker *= 0.988;
+  const ToolGeometry found = calibrate_tool(recorded(how), settings, "drawn.csv");
+  ASSERT_EQ(found.markers_m.size(), drawn.size());
+  EXPECT_NEAR(found.scale, 1 / 0.988, 0.006);
+  EXPECT_NEAR(found.drawn_rms_m, as_made.rms_m, 0.0001);
+  double off_m = 0;
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const Vector3 off = found.markers_m[i] - as_made.transform * made[i];
+    off_m = std::max(off_m, off.norm());
+    // The size is as sure as the drawing, 0.3 mm over 0.19 m.
+    EXPECT_GT(found.marker_sigma_m[i], 0.00002);
+    EXPECT_LT(found.marker_sigma_m[i], 0.0002);
+  }
+  EXPECT_LT(off_m, 0.0004);
+
+  settings.longest_side_m = (made[1] - made[3]).norm();
+  const ToolGeometry sized = calibrate_tool(recorded(how), settings, "sized.csv");
+  for (std::size_t i = 0; i < drawn.size(); ++i)
+    EXPECT_LT((sized.markers_m[i] - as_made.transform * made[i]).norm(), 0.0001) << i;
+}
+
+TEST(ToolGeometry, RefusesAnotherToolThanTheDrawnOne) {
+  ToolGeometrySettings settings;
+  settings.drawn = drawn_tool(k_grid);
+  test::expect_input_error([&] { (void)calibrate_tool(recorded({}), settings, "other.csv"); },
+                           {"other.csv", "of 4 markers found", "6 drawn"});
 }
 
 TEST(ToolGeometry, RefusesWhatIsNoToolInMotion) {

@@ -82,13 +82,31 @@ TEST(CalibrationFiles, GiveACellTheUncertaintyOfItsRanges) {
   };
   const CameraUncertainty measured =
       uncertainty_by("offset_sigma_mm = 0.4\nmm_per_m_sigma = 2.0\n" + bias);
-  EXPECT_NEAR(measured.range_offset_m, std::hypot(0.0004, 0.0005), 1e-12);
-  EXPECT_NEAR(measured.range_scale, std::hypot(0.002, 0.001), 1e-12);
+  // With the focal length of another unit's lens, 0.3 %, and a range's period.
+  EXPECT_NEAR(measured.range_offset_m, std::hypot(0.0004, 0.0015, 0.0007), 1e-12);
+  EXPECT_NEAR(measured.range_scale, std::hypot(0.002, 0.003), 1e-12);
   EXPECT_THROW((void)uncertainty_by("offset_sigma_mm = -1\nmm_per_m_sigma = 2\n" + bias),
                InputError);
   EXPECT_THROW((void)uncertainty_by("offset_sigma_mm = 1\n" + bias), InputError);
   const CameraUncertainty unstated = uncertainty_by(bias);
   EXPECT_EQ(unstated.range_offset_m, CameraUncertainty{}.range_offset_m);
+}
+
+TEST(CalibrationFiles, GiveACellTheUncertaintyOfItsLens) {
+  const auto uncertainty_by = [](const std::string& text) {
+    return cell_with("[camera]\nfile = \"camera.toml\"\n", {{"camera.file", text}})
+        .camera.uncertainty;
+  };
+  const CameraUncertainty own = uncertainty_by(k_lens);
+  EXPECT_EQ(own.principal_point_px, 0.5);
+  EXPECT_EQ(own.focal_scale, 0.001);
+  const CameraUncertainty stated =
+      uncertainty_by("principal_point_sigma_px = 0.8\nfocal_sigma = 0.002\n" + k_lens);
+  EXPECT_EQ(stated.principal_point_px, 0.8);
+  EXPECT_EQ(stated.focal_scale, 0.002);
+  EXPECT_THROW((void)uncertainty_by("principal_point_sigma_px = 0.8\n" + k_lens), InputError);
+  EXPECT_THROW((void)uncertainty_by("principal_point_sigma_px = 1\nfocal_sigma = -1\n" + k_lens),
+               InputError);
 }
 
 TEST(CalibrationFiles, GiveACellItsMarkersCorrelatedErrors) {
