@@ -15,8 +15,10 @@ constexpr double k_lens_residual_px = 0.1;
 constexpr double k_wiggle_m = 0.001;
 constexpr double k_radius_sigma_m = 0.0001;
 constexpr double k_head_sigma_s = 0.005;
-constexpr double k_lay_down_s = 0.8;      // 2.8 m/s at most
-constexpr double k_drift_factor_max = 3;  // and its inverse
+constexpr std::uint64_t k_calibrating_hand = 1000;  // its motion is another than that of work
+const Vector3 k_put_away_m{-2, 0, 0};               // behind the headset
+constexpr double k_lay_down_s = 0.8;                // 2.8 m/s at most
+constexpr double k_drift_factor_max = 3;            // and its inverse
 
 // Draws one after the other.
 class Draws {
@@ -64,8 +66,10 @@ void build_inexactly(Draws& draws, ToolBody& body) {
   const double sigma_m = Tool{}.marker_sigma_m;
   for (int i = 0; i < tool.marker_count; ++i)
     tool.markers_m[static_cast<std::size_t>(i)] += sigma_m * draws.vector();
+  const Vector3 drawn_tip_m = tool.tip_m;
   tool.tip_m += Tool{}.tip_sigma_m * draws.vector();
   tool.marker_radius_m += k_radius_sigma_m * draws.normal();
+  put_tip_at(drawn_tip_m, Quaternion::Identity(), body);
 }
 
 void add_events(Draws& draws, double duration_s, Scenario& scenario) {
@@ -75,10 +79,44 @@ void add_events(Draws& draws, double duration_s, Scenario& scenario) {
   scenario.aways.push_back({interval(begin(3), 3), 0, Vector3(0, 0, -1.2), k_lay_down_s});
 }
 
+HandSettings calibrating_hand(FieldTask task) {
+  HandSettings hand;
+  hand.rest_fraction = 0.05;
+  hand.slowest_hz = 0.05;
+  hand.fastest_hz = 0.5;
+  hand.turn_rms_rad = 0.3;
+  hand.stroke_rms_m = task == FieldTask::turn ? 0.1 : 0;
+  return hand;
+}
+
+// The device and the tool as they are; all else as the user prepares it.
+void prepare(FieldTask task, std::uint64_t seed, Scenario& scenario) {
+  const Time begin;
+  scenario.clutter.clear();
+  if (task != FieldTask::look) scenario.head = fixed_motion(scenario.head->pose(begin));
+  ToolBody& body = scenario.tools.front();
+  const Pose T_world_tool = body.motion->pose(begin);
+  if (task == FieldTask::board) {
+    body.motion = fixed_motion({T_world_tool.rotation, k_put_away_m});
+    scenario.board = Chessboard{};
+    scenario.board->motion = board_motion(scenario.head->pose(begin), *scenario.board, seed);
+    return;
+  }
+  if (task == FieldTask::rest || task == FieldTask::look) {
+    body.motion = fixed_motion(T_world_tool);
+    return;
+  }
+  HandSettings hand = calibrating_hand(task);
+  hand.T_world_tool = T_world_tool;
+  hand.grip_m = task == FieldTask::pivot ? body.tool.tip_m : body.tool.middle_m();
+  body.motion = hand_motion(hand, seed, k_calibrating_hand);
+}
+
 }  // namespace
 
 Scenario field_run(const Camera& camera, const std::vector<Tool>& tools,
-                   const RobotPlacement& robot, double duration_s, std::uint64_t seed) {
+                   const RobotPlacement& robot, double duration_s, std::uint64_t seed,
+                   FieldTask task) {
   Draws draws(seed);
   Scenario scenario = hand_held_run(camera, tools, seed);
   scenario.device = device(draws, seed);
@@ -96,7 +134,11 @@ Scenario field_run(const Camera& camera, const std::vector<Tool>& tools,
   const Vector3 turn = robot.sigma_rad * draws.vector();
   const Pose off{from_rotation_vector(turn), robot.sigma_m * draws.vector()};
   head.T_stated_world = robot.T_world_robot * off * robot.T_world_robot.inverse();
-  add_events(draws, duration_s, scenario);
+  if (task == FieldTask::work) {
+    add_events(draws, duration_s, scenario);
+  } else {
+    prepare(task, seed, scenario);
+  }
   return scenario;
 }
 

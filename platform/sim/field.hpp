@@ -19,10 +19,21 @@ struct RobotPlacement {
   double sigma_m = 0, sigma_rad = 0;
 };
 
-// A hand that rests and draws, clutter, a drop to 5 Hz for 4 s, a hidden tool for 1 s and one that
-// is laid down for 3 s, at times that the random seed chooses. duration_s: at least 5.
+// What the user does.
+enum class FieldTask {
+  work,   // draws
+  board,  // shows a chessboard: calibrate camera
+  turn,   // turns the tool to all sides, near and far: calibrate depth and tool
+  pivot,  // tilts it to all sides, its tip in a dent: calibrate pivot
+  rest,   // lays it down: calibrate noise
+  look    // and moves the head about it: calibrate headset
+};
+
+// Of work: a hand that rests and draws, clutter, a drop to 5 Hz for 4 s, a hidden tool for 1 s and
+// one that is laid down for 3 s, at times that the random seed chooses. Of the others: the headset
+// on a stand, the tool alone in view. duration_s: at least 5.
 [[nodiscard]] Scenario field_run(const Camera& camera, const std::vector<Tool>& tools,
-                                 const RobotPlacement& robot, double duration_s,
-                                 std::uint64_t seed);
+                                 const RobotPlacement& robot, double duration_s, std::uint64_t seed,
+                                 FieldTask task = FieldTask::work);
 
 }  // namespace glint::sim

@@ -30,6 +30,7 @@ enum class Stream : std::uint64_t {
   device = 13,
   field = 14,
   touches = 15,
+  chessboard = 16,
 };
 
 [[nodiscard]] constexpr std::uint64_t mixed(std::uint64_t x) {

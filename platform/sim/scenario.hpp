@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "kernels/pose/tool.hpp"
 #include "platform/sensors/camera.hpp"
+#include "platform/sim/chessboard.hpp"
 #include "platform/sim/device_errors.hpp"
 #include "platform/sim/localisation.hpp"
 #include "platform/sim/motion.hpp"
@@ -68,6 +70,7 @@ struct Scenario {
   ReferenceSettings reference;
   Room room;
   BackgroundFrame background;  // replaces the room if not empty
+  std::optional<Chessboard> board;
   std::vector<Clutter> clutter;
   std::vector<OcclusionEvent> occlusions;
   std::vector<AwayEvent> aways;

@@ -1,6 +1,7 @@
 #include "platform/sim/simulator.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "platform/sim/room_drawer.hpp"
@@ -17,7 +18,9 @@ struct Simulator::Parts {
         rays(scenario.camera.model),
         room(scenario.camera.model),
         sensor(scenario.camera, scenario.noise, scenario.seed),
-        localisation(scenario.localisation, scenario.head, scenario.duration, scenario.seed) {}
+        localisation(scenario.localisation, scenario.head, scenario.duration, scenario.seed) {
+    if (scenario.board) board.emplace(scenario.camera.model, scenario.device);
+  }
 
   void draw_background(const Pose& T_world_camera, Planes& planes) const {
     if (scenario.background.empty()) {
@@ -36,6 +39,7 @@ struct Simulator::Parts {
   RoomDrawer room;
   Sensor sensor;
   Localisation localisation;
+  std::optional<ChessboardDrawer> board;
 };
 
 Simulator::Simulator(Scenario scenario) : parts_(std::make_unique<Parts>(std::move(scenario))) {}
@@ -83,6 +87,11 @@ void Simulator::render(int i, SimFrame& out) const {
   Planes& planes = out.scratch;
   planes.resize(model.width, model.height);
   parts.draw_background(out.truth.T_world_camera, planes);
+  if (parts.board) {
+    const Chessboard& board = *parts.scenario.board;
+    const Pose T_world_board = board.motion->pose(out.truth.mid_exposure);
+    parts.board->draw(board, out.truth.T_world_camera.inverse() * T_world_board, planes);
+  }
 
   Scene scene;
   build_scene(parts.scenario, out.truth.mid_exposure, out.sequence, scene);

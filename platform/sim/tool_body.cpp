@@ -153,4 +153,20 @@ ToolBody held_tool(const Tool& tool, const Grip& grip, const SignalSettings& sig
   return body;
 }
 
+void put_tip_at(const Vector3& stated_m, const Quaternion& turn, ToolBody& body) {
+  const Pose T_made_stated{turn, body.tool.tip_m - turn * stated_m};
+  const Pose T_stated_made = T_made_stated.inverse();
+  body.tool.tip_m = stated_m;
+  for (int i = 0; i < body.tool.marker_count; ++i) {
+    Vector3& marker = body.tool.markers_m[static_cast<std::size_t>(i)];
+    marker = T_stated_made * marker;
+  }
+  for (Capsule& part : body.parts) {
+    part.a = T_stated_made * part.a;
+    part.b = T_stated_made * part.b;
+  }
+  body.disc_normal = T_stated_made.rotation * body.disc_normal;
+  body.motion = attached_motion(body.motion, fixed_motion(T_made_stated));
+}
+
 }  // namespace glint::sim

@@ -24,4 +24,8 @@ struct Grip {
 [[nodiscard]] ToolBody held_tool(const Tool& tool, const Grip& grip, const SignalSettings& signal,
                                  MotionPointer motion);
 
+// The same body in a frame that is turned, and shifted so that its tip, as made, lies where it is
+// stated: truth and estimate are then of the same point and of the same axes.
+void put_tip_at(const Vector3& stated_m, const Quaternion& turn, ToolBody& body);
+
 }  // namespace glint::sim

@@ -1,27 +1,70 @@
 #include "platform/sources/scenario_of.hpp"
 
+#include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
+#include "kernels/pose/rigid_fit.hpp"
+#include "platform/input_error.hpp"
 #include "platform/sensors/frame_files.hpp"
 #include "platform/sim/field.hpp"
 #include "platform/sim/scenarios.hpp"
+#include "platform/sim/tool_body.hpp"
 #include "platform/sim/touches.hpp"
 
 namespace glint {
+namespace {
+
+std::optional<sim::FieldTask> field_task(const std::string& scenario) {
+  using sim::FieldTask;
+  if (scenario == "field") return FieldTask::work;
+  if (scenario == "field_board") return FieldTask::board;
+  if (scenario == "field_turn") return FieldTask::turn;
+  if (scenario == "field_pivot") return FieldTask::pivot;
+  if (scenario == "field_rest") return FieldTask::rest;
+  if (scenario == "field_look") return FieldTask::look;
+  return {};
+}
+
+}  // namespace
+
+sim::Scenario scenario_of(const Cell& cell, const Cell& drawn) {
+  Cell device = drawn;
+  device.simulator = cell.simulator;
+  device.simulator.drawn.clear();
+  sim::Scenario scenario = scenario_of(device);
+  // A tool's axes are those of its file, as its markers lie.
+  for (std::size_t i = 0; i < scenario.tools.size(); ++i) {
+    const Tool& stated = cell.tools.items[i];
+    sim::ToolBody& body = scenario.tools[i];
+    const auto count = static_cast<std::size_t>(stated.marker_count);
+    if (stated.marker_count != body.tool.marker_count) {
+      throw InputError(cell.file + ": simulator.drawn: its tool \"" + body.tool.name.data() +
+                       "\" has " + std::to_string(body.tool.marker_count) + " markers; expected " +
+                       std::to_string(count) + ", as \"" + stated.name.data() + "\" here");
+    }
+    const RigidFit fit = fit_rigid(std::span(stated.markers_m).first(count),
+                                   std::span(body.tool.markers_m).first(count));
+    sim::put_tip_at(stated.tip_m, fit.transform.rotation, body);
+  }
+  return scenario;
+}
 
 sim::Scenario scenario_of(const Cell& cell) {
   const SimulatorSettings& settings = cell.simulator;
+  if (!settings.drawn.empty()) return scenario_of(cell, load_cell(settings.drawn));
   const std::vector<Tool> tools(cell.tools.items.begin(),
                                 cell.tools.items.begin() + cell.tools.count);
   sim::Scenario scenario;
   if (settings.scenario == "trajectories") {
     scenario = sim::trajectory_run(cell.camera, tools, load_trajectory(settings.head_trajectory),
                                    load_trajectory(settings.pen_trajectory), settings.pen_scale);
-  } else if (settings.scenario == "field") {
+  } else if (const auto task = field_task(settings.scenario)) {
     const Cell shipped;
     scenario = sim::field_run(cell.camera, tools,
                               {cell.T_world_robot, shipped.robot_sigma_m, shipped.robot_sigma_rad},
-                              settings.duration_s, settings.seed);
+                              settings.duration_s, settings.seed, *task);
   } else if (settings.scenario == "still") {
     scenario = sim::still_run(cell.camera, tools);
   } else if (settings.scenario == "touches") {

@@ -9,4 +9,9 @@ namespace glint {
 // Throws InputError for a trajectory or background file that cannot be used.
 [[nodiscard]] sim::Scenario scenario_of(const Cell& cell);
 
+// The device and the tools that another cell's statements draw, of which `cell` states what their
+// calibrations found: each tool's axes and tip are where `cell` has them. Throws InputError: a tool
+// with another number of markers.
+[[nodiscard]] sim::Scenario scenario_of(const Cell& cell, const Cell& drawn);
+
 }  // namespace glint

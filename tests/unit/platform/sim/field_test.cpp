@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include "platform/sensors/camera.hpp"
+#include "platform/sim/chessboard.hpp"
 #include "platform/sim/scenarios.hpp"
 #include "platform/sim/scene.hpp"
+#include "platform/sim/tool_body.hpp"
 
 namespace glint::sim {
 namespace {
@@ -76,16 +78,20 @@ TEST(Field, DrawsErrorsAsLargeAsTheShippedSettingsState) {
   const CameraUncertainty shipped;
   const Scenario nominal = hand_held_run(hololens2_ahat(), {}, 1);
   double principal = 0, offset = 0, geometry = 0, tip = 0, robot = 0;
+  const Tool& stated = nominal.tools[0].tool;
+  const auto count = static_cast<double>(stated.marker_count);
   constexpr int k_devices = 200;
   for (std::uint64_t seed = 1; seed <= k_devices; ++seed) {
     const Scenario drawn = field(seed);
     principal += drawn.device.principal_point_px.squaredNorm() / (2 * k_devices);
     offset += drawn.device.range_offset_m * drawn.device.range_offset_m / k_devices;
-    geometry +=
-        (drawn.tools[0].tool.markers_m[0] - nominal.tools[0].tool.markers_m[0]).squaredNorm() /
-        (3 * k_devices);
-    tip +=
-        (drawn.tools[0].tool.tip_m - nominal.tools[0].tool.tip_m).squaredNorm() / (3 * k_devices);
+    // In the tool's frame the tip lies where it is stated, all markers beside.
+    const Tool& made = drawn.tools[0].tool;
+    EXPECT_EQ(made.tip_m, stated.tip_m);
+    const Vector3 off = made.middle_m() - stated.middle_m();
+    const Vector3 own = made.markers_m[0] - stated.markers_m[0] - off;
+    geometry += own.squaredNorm() / (3 * k_devices) / (1 - 1 / count);
+    tip += off.squaredNorm() / (3 * k_devices);
     robot +=
         (*drawn.localisation.T_stated_world * Vector3(1, 0, 0) - Vector3(1, 0, 0)).squaredNorm() /
         (3 * k_devices);
@@ -93,7 +99,9 @@ TEST(Field, DrawsErrorsAsLargeAsTheShippedSettingsState) {
   EXPECT_NEAR(std::sqrt(principal), shipped.principal_point_px, 0.12 * shipped.principal_point_px);
   EXPECT_NEAR(std::sqrt(offset), shipped.range_offset_m, 0.15 * shipped.range_offset_m);
   EXPECT_NEAR(std::sqrt(geometry), Tool{}.marker_sigma_m, 0.12 * Tool{}.marker_sigma_m);
-  EXPECT_NEAR(std::sqrt(tip), Tool{}.tip_sigma_m, 0.12 * Tool{}.tip_sigma_m);
+  const double tip_sigma_m =
+      std::hypot(Tool{}.tip_sigma_m, Tool{}.marker_sigma_m / std::sqrt(count));
+  EXPECT_NEAR(std::sqrt(tip), tip_sigma_m, 0.12 * tip_sigma_m);
   EXPECT_NEAR(std::sqrt(robot), 0.003, 0.0004) << "about the robot's base";
 }
 
@@ -124,6 +132,88 @@ TEST(Field, MovesEachMarkersImageAndRangeByTheDevicesErrors) {
     EXPECT_GT(error.shift_px.norm(), 0.1);
   }
   EXPECT_EQ(markers, drawn.tools[0].tool.marker_count);
+}
+
+// The same device as at work, the tool alone, the head on a stand unless it looks about.
+TEST(Field, ShowsTheSameDeviceForEachCalibration) {
+  const Scenario work = field(3);
+  for (const FieldTask task :
+       {FieldTask::board, FieldTask::turn, FieldTask::pivot, FieldTask::rest, FieldTask::look}) {
+    const Scenario shown = field_run(
+        hololens2_ahat(), {}, {{Quaternion::Identity(), {1, 0, 0}}, 0.003, 0.005}, 30, 3, task);
+    EXPECT_EQ(shown.device.principal_point_px, work.device.principal_point_px);
+    EXPECT_EQ(shown.device.range_offset_m, work.device.range_offset_m);
+    EXPECT_EQ(shown.tools[0].tool.markers_m[2], work.tools[0].tool.markers_m[2]);
+    EXPECT_EQ(shown.localisation.rest_position_m, work.localisation.rest_position_m);
+    EXPECT_TRUE(shown.clutter.empty());
+    EXPECT_TRUE(shown.occlusions.empty() && shown.aways.empty() && shown.timing.slow.empty());
+    EXPECT_EQ(shown.board.has_value(), task == FieldTask::board);
+    const auto moved = [&](const MotionPointer& motion, const Vector3& point) {
+      return (motion->pose(at_s(12)) * point - motion->pose(at_s(3)) * point).norm();
+    };
+    const ToolBody& body = shown.tools[0];
+    EXPECT_EQ(moved(shown.head, Vector3::Zero()) > 0.001, task == FieldTask::look);
+    if (task == FieldTask::pivot) {
+      EXPECT_LT(moved(body.motion, body.tool.tip_m), 0.0005);
+      EXPECT_GT(moved(body.motion, body.tool.markers_m[0]), 0.01);
+    }
+    if (task == FieldTask::turn) {
+      EXPECT_GT(moved(body.motion, body.tool.tip_m), 0.02);
+    }
+    if (task == FieldTask::rest) {
+      EXPECT_EQ(moved(body.motion, body.tool.markers_m[0]), 0);
+    }
+  }
+}
+
+TEST(ToolBody, IsTheSameInAFrameWhoseTipIsAsStated) {
+  Scenario scenario = field(8);
+  ToolBody& body = scenario.tools[0];
+  const ToolBody before = body;
+  const Quaternion turn = Quaternion(1, 0.02, -0.01, 0.03).normalized();
+  put_tip_at({0.001, 0.002, -0.003}, turn, body);
+  EXPECT_EQ(body.tool.tip_m, Vector3(0.001, 0.002, -0.003));
+  const Pose was = before.motion->pose(at_s(4)), is = body.motion->pose(at_s(4));
+  EXPECT_LT((was * before.tool.tip_m - is * body.tool.tip_m).norm(), 1e-12);
+  EXPECT_LT((was * before.tool.markers_m[3] - is * body.tool.markers_m[3]).norm(), 1e-12);
+  EXPECT_LT((was * before.parts[0].a - is * body.parts[0].a).norm(), 1e-12);
+  EXPECT_LT((was.rotation * before.disc_normal - is.rotation * body.disc_normal).norm(), 1e-12);
+  EXPECT_NEAR(was.rotation.angularDistance(is.rotation), 2 * std::acos(turn.w()), 1e-9);
+}
+
+// Half way from black to white at a corner, whatever the lens and the tilt are.
+TEST(Chessboard, HasItsCornersWhereTheDevicesLensPutsThem) {
+  const CameraModel model = hololens2_ahat().model;
+  DeviceErrors device;
+  device.exists = true;
+  device.principal_point_px = {2.3, -1.4};
+  device.focal_scale = 0.004;
+  Chessboard board;
+  board.white_signal = 2000;
+  board.black_signal = 0;
+  const Pose T_camera_board{Quaternion(0.95, 0.2, -0.15, 0.1).normalized(), {-0.1, -0.06, 0.4}};
+  Planes planes;
+  planes.resize(model.width, model.height);
+  ChessboardDrawer(model, device).draw(board, T_camera_board, planes);
+  for (const auto& [column, row] : {std::pair(1, 1), std::pair(4, 3), std::pair(7, 4)}) {
+    const Vector3 corner = T_camera_board * Vector3(0.025 * column, 0.025 * row, 0);
+    const Vector2 ideal = project(model, corner).value;
+    const Vector2 pixel =
+        ideal + marker_error(device, ideal, {model.cx, model.cy}, 0, 0, {}).shift_px;
+    // The plane of the four pixels around it.
+    const Vector2 at = pixel - Vector2(0.5, 0.5);
+    const int x = static_cast<int>(at.x()), y = static_cast<int>(at.y());
+    const auto counts = [&](int i, int j) {
+      const std::size_t k = planes.at(x + i, y + j);
+      const double range = static_cast<double>(planes.range_m[k]);
+      return static_cast<double>(planes.signal[k]) * range * range / 0.25;
+    };
+    const double u = at.x() - x, v = at.y() - y;
+    const double seen = (1 - v) * ((1 - u) * counts(0, 0) + u * counts(1, 0)) +
+                        v * ((1 - u) * counts(0, 1) + u * counts(1, 1));
+    EXPECT_NEAR(seen, 1000, 60) << column << " " << row;
+    EXPECT_GT(std::abs(counts(3, 0) - 1000) + std::abs(counts(0, 3) - 1000), 500);
+  }
 }
 
 }  // namespace
