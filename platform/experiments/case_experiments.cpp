@@ -53,7 +53,7 @@ std::span<const CaseExperiment> case_experiments() {
       {"acquire", "how soon a tool is found among more bright spots than the cell has blobs for",
        false, run_acquisition},
       {"field", "devices that differ from what their cells state, judged at the output", false,
-       run_field},
+       run_field, true},
       {"warnings", "whether a run names the calibration error that a device has", false,
        run_warnings},
       {"verify", "touches of known points by devices as stated, and with one error of four sigma",

@@ -2,6 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <memory>
+
+#include "platform/calibrate/headset.hpp"
+#include "platform/experiments/field_calibration.hpp"
+#include "platform/sources/scenario_of.hpp"
+#include "platform/sources/simulated_source.hpp"
+#include "tests/unit/platform/calibrate/expect_message.hpp"
 #include "tests/unit/platform/sensors/temporary_folder.hpp"
 
 namespace glint {
@@ -26,6 +34,66 @@ TEST(Field, StatesTheErrorsOfADeviceThatIsNotWhatItsCellStates) {
   EXPECT_GT(drawn.stated_m2 / static_cast<double>(drawn.count),
             4 * drawn.random_m2 / static_cast<double>(drawn.count));
   EXPECT_DOUBLE_EQ(exact.stated_m2, exact.random_m2) << "an exact calibration leaves nothing open";
+}
+
+// A device after its user's calibrations: each of what they found lies nearer to what is so, within
+// a few of the standard deviations that are stated.
+TEST(Field, CalibrationsFindADevicesErrorsAndStateWhatTheyLeave) {
+  const Cell drawn = field_cell(9, 30);
+  const Cell cell = calibrated_field_cell(drawn, {8, 40, 20, 30, 25});
+  const sim::Scenario device = scenario_of(drawn);
+  const CameraUncertainty& stated = cell.camera.uncertainty;
+
+  Vector2 off_px = Vector2::Zero();
+  int rays = 0;
+  for (double x = -0.4; x < 0.5; x += 0.2) {
+    for (double y = -0.4; y < 0.5; y += 0.2) {
+      const Vector3 ray(x, y, 1);
+      const Vector2 ideal = project(drawn.camera.model, ray).value;
+      const Vector2 middle(drawn.camera.model.cx, drawn.camera.model.cy);
+      sim::DeviceErrors lens = device.device;
+      lens.slow_centroid_px = 0;
+      off_px += project(cell.camera.model, ray).value - ideal -
+                sim::marker_error(lens, ideal, middle, 0.5, 0, {}).shift_px;
+      ++rays;
+    }
+  }
+  EXPECT_LT(off_px.norm() / rays, 4 * stated.principal_point_px);
+  EXPECT_LT(stated.principal_point_px, drawn.camera.uncertainty.principal_point_px);
+
+  const auto range_error = [&](const Cell& known) {
+    return device.device.range_offset_m + 0.5 * device.device.range_scale -
+           known.camera.depth.bias.offset_m;
+  };
+  EXPECT_LT(std::abs(range_error(cell)), 4 * std::hypot(stated.range_offset_m, 0.001));
+  EXPECT_LT(stated.range_offset_m, 0.5 * drawn.camera.uncertainty.range_offset_m);
+
+  const sim::Scenario judged = scenario_of(cell, drawn);
+  const Tool &made = judged.tools[0].tool, &tool = cell.tools.items[0];
+  EXPECT_EQ(made.tip_m, tool.tip_m);
+  double geometry_m2 = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(tool.marker_count); ++i) {
+    const Vector3 off = tool.markers_m[i] - tool.middle_m() - made.markers_m[i] + made.middle_m();
+    geometry_m2 += off.squaredNorm() / (3 * tool.marker_count);
+  }
+  EXPECT_LT(std::sqrt(geometry_m2), 4 * tool.marker_sigma_m);
+  EXPECT_LT(tool.marker_sigma_m, drawn.tools.items[0].marker_sigma_m);
+  EXPECT_LT((made.middle_m() - tool.middle_m()).norm(), 6 * tool.tip_sigma_m) << "the tip's error";
+
+  const double drift =
+      device.localisation.rest_position_m / sim::LocalisationSettings{}.rest_position_m;
+  const double found = cell.head_noise.rest_position_m / drawn.head_noise.rest_position_m;
+  EXPECT_GT(found, 0.7 * drift);
+  EXPECT_LT(found, 2.5 * drift);
+}
+
+TEST(Field, TheHeadsetsDriftNeedsAToolThatRestsInView) {
+  Cell asked = field_cell(9, 5);
+  asked.simulator.scenario = "field_board";
+  const sim::Simulator nothing(scenario_of(asked));
+  RecordedFrames recorded{"empty.mcap", asked, std::make_unique<SimulatedSource>(nothing)};
+  test::expect_input_error([&] { (void)calibrate_headset(recorded, 0); },
+                           {"empty.mcap", "in too few of", "lay the tool down"});
 }
 
 }  // namespace
