@@ -129,6 +129,9 @@ TEST(MovingLeastSquares, SaysWhenThereIsNoRoomAndWhenCandidatesWereUsedUp) {
   EXPECT_EQ(test.run(points, 50, 100), std::vector<Point>(all.begin(), all.begin() + 100));
   EXPECT_EQ(test.smoothing.dropped(), 300);
   EXPECT_EQ(test.smoothing.reason(), Reason::cloud_full);
+  (void)test.run(points, 50, 399);
+  EXPECT_EQ(test.smoothing.dropped(), 1);
+  EXPECT_EQ(test.smoothing.reason(), Reason::cloud_full);
   MovingLeastSquaresSettings few;
   few.candidates_max = 40;
   TestSmoothing cut(400, few);

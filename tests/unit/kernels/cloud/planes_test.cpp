@@ -361,6 +361,12 @@ TEST(Planes, RefuseWhatTheyCannotWorkWith) {
   settings.planes_max = k_planes_max + 1;
   EXPECT_EQ(search.prepare(settings, 10, memory.arena()), Reason::out_of_range);
   settings = {};
+  settings.scored_max = 0;
+  EXPECT_EQ(search.prepare(settings, 10, memory.arena()), Reason::out_of_range);
+  settings.scored_max = 1;
+  TestMemory own(PlaneSearch::bytes(10));
+  EXPECT_EQ(PlaneSearch().prepare(settings, 10, own.arena()), Reason::none);
+  settings = {};
   settings.gate.threshold_m = k_not_a_number;
   EXPECT_EQ(search.prepare(settings, 10, memory.arena()), Reason::out_of_range);
   EXPECT_EQ(search.prepare({}, 100'000, memory.arena()), Reason::not_prepared);

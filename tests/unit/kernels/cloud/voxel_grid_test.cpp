@@ -142,6 +142,27 @@ TEST(VoxelGrid, LooksAtAsManySlotsAsDeclaredAndDropsWhatHasNoneThere) {
   EXPECT_EQ(test.grid.reason(), Reason::cloud_full) << "although there are voxels left";
 }
 
+// A voxel holds its lower boundary and not its upper one, on both sides of zero.
+TEST(VoxelGrid, PutsAPointOnABoundaryIntoTheVoxelAbove) {
+  TestGrid test(8, 0.125f);
+  test.add(TestCloud(std::vector<Point>{
+      {0, 0, 0}, {0.0625f, 0, 0}, {0.125f, 0, 0}, {-0.125f, 0, 0}, {-0.0625f, 0, 0}}));
+  EXPECT_EQ(test.written(),
+            (std::vector<Point>{{0.03125f, 0, 0}, {0.125f, 0, 0}, {-0.09375f, 0, 0}}));
+}
+
+TEST(VoxelGrid, CountsAnewWhenPreparedAgain) {
+  TestGrid test(1, 1.0f);
+  test.add(TestCloud(std::vector<Point>{{0, 0, 0}, {1.5f, 0, 0}, {k_not_a_number, 0, 0}}));
+  EXPECT_EQ(test.grid.dropped(), 1);
+  EXPECT_EQ(test.grid.reason(), Reason::cloud_full) << "one is enough";
+  TestMemory memory(VoxelGrid::bytes(4));
+  ASSERT_EQ(test.grid.prepare({1.0f}, 4, memory.arena()), Reason::none);
+  EXPECT_EQ(test.grid.dropped(), 0);
+  EXPECT_EQ(test.grid.out_of_range(), 0);
+  EXPECT_EQ(test.grid.reason(), Reason::none);
+}
+
 TEST(VoxelGrid, ForgetsAllWhenCleared) {
   TestGrid test(300), fresh(300);
   test.add(TestCloud(random_points(300, 0.1f, 3)));

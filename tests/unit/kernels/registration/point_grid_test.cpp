@@ -84,5 +84,20 @@ TEST(PointGrid, TakesTheFirstOfPointsInOnePlaceAndEndsInACrowd) {
   EXPECT_EQ(grid.nearest({1, 1, 1.01f}, 0.1f).index, 0);
 }
 
+// Its cells, and each point that it looks at.
+TEST(PointGrid, TakesItsStepsFromTheBudget) {
+  const auto steps_for = [](int points) {
+    PointGrid grid;
+    EXPECT_EQ(grid.prepare(100), Reason::none);
+    EXPECT_EQ(grid.build(std::vector<Vector3f>(static_cast<std::size_t>(points), {1, 1, 1}), 0.1),
+              Reason::none);
+    StepBudget budget(1'000'000);
+    EXPECT_EQ(grid.nearest({1, 1, 1.01f}, 0.1f, budget).index, 0);
+    return 1'000'000 - budget.left();
+  };
+  EXPECT_EQ(steps_for(90) - steps_for(10), 80 * k_grid_point_steps);
+  EXPECT_GE(steps_for(10), k_grid_find_steps + 10 * k_grid_point_steps);
+}
+
 }  // namespace
 }  // namespace glint::point_grid_test
