@@ -1,13 +1,13 @@
 #include "platform/calibrate/board.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "platform/calibrate/board_lens.hpp"
 #include "platform/calibrate/say.hpp"
 #include "platform/input_error.hpp"
 #include "platform/sensors/picture_file.hpp"
@@ -15,9 +15,7 @@
 namespace glint {
 namespace {
 
-const cv::Size k_corner_window(4, 4);  // half of it: no neighbour is so near
-constexpr int k_board_parts = 9;
-constexpr std::size_t k_corners_min = 6;      // of a picture, without a part
+const cv::Size k_corner_window(4, 4);         // half of it: no neighbour is so near
 constexpr double k_white_percentile = 0.999;  // a lamp does not make the board dark
 
 // Eight bits, the brightest thousandth white.
@@ -72,23 +70,6 @@ double tilt_of(const std::vector<cv::Mat>& rotations) {
   double squares = 0;
   for (const Vector3& normal : normals) squares += normal.cross(sum.normalized()).squaredNorm();
   return std::sqrt(squares / static_cast<double>(normals.size()));
-}
-
-CameraModel model_of(const cv::Mat& matrix, const cv::Mat& distortion, const cv::Size& size,
-                     Lens lens) {
-  CameraModel model;
-  model.lens = lens;
-  model.width = size.width;
-  model.height = size.height;
-  model.fx = matrix.at<double>(0, 0);
-  model.fy = matrix.at<double>(1, 1);
-  model.cx = matrix.at<double>(0, 2) + 0.5;  // OpenCV's pixel centres are at integers
-  model.cy = matrix.at<double>(1, 2) + 0.5;
-  const int count = lens == Lens::rational ? 8 : 5;
-  for (int i = 0; i < count; ++i) {
-    model.distortion[static_cast<std::size_t>(i)] = distortion.at<double>(i);
-  }
-  return model;
 }
 
 // A board that was found.
@@ -169,134 +150,30 @@ std::vector<cv::Point3f> board_points(const BoardSettings& settings) {
   return board;
 }
 
-// Of each picture: corners, and where they are on the board.
-struct Seen {
-  std::vector<std::vector<cv::Point2f>> corners;
-  std::vector<std::vector<cv::Point3f>> boards;
-};
-
-struct Solved {
-  cv::Mat matrix, distortion;
-  std::vector<cv::Mat> rotations, translations;
-};
-
-// From a start: a rational lens has other minima far away.
-Solved solve(const Seen& seen, const cv::Size& size, const BoardSettings& settings,
-             const Solved* start) {
-  Solved solved;
-  int flags = cv::CALIB_USE_QR;
-  if (start != nullptr) {
-    flags |= cv::CALIB_USE_INTRINSIC_GUESS;
-    solved.matrix = start->matrix.clone();
-    solved.distortion = cv::Mat::zeros(1, 8, CV_64F);
-    for (int i = 0; i < static_cast<int>(start->distortion.total()) && i < 8; ++i)
-      solved.distortion.at<double>(i) = start->distortion.at<double>(i);
-    if (settings.lens == Lens::rational) flags |= cv::CALIB_RATIONAL_MODEL;
-    if (settings.lens == Lens::brown) solved.distortion = start->distortion.clone();
-  }
-  cv::calibrateCamera(seen.boards, seen.corners, size, solved.matrix, solved.distortion,
-                      solved.rotations, solved.translations, flags);
-  return solved;
-}
-
-// How another lens's pixels lie beside this one's, at corners that were seen: shifted, and wider.
-Vector3 difference(const CameraModel& lens, const CameraModel& other,
-                   const std::vector<std::vector<cv::Point2f>>& seen) {
-  Matrix3 normal = Matrix3::Zero();
-  Vector3 sums = Vector3::Zero();
-  for (const std::vector<cv::Point2f>& corners : seen) {
-    for (const cv::Point2f& corner : corners) {
-      const Vector2 pixel(corner.x + 0.5, corner.y + 0.5);
-      const Result<Vector3> ray = unproject(lens, pixel);
-      const Result<Vector2> moved = ray ? project(other, ray.value) : Result<Vector2>{};
-      if (!ray || !moved) continue;
-      for (int axis = 0; axis < 2; ++axis) {
-        Vector3 row = Vector3::Zero();
-        row[axis] = 1;
-        row[2] = pixel[axis] - (axis == 0 ? lens.cx : lens.cy);
-        normal += row * row.transpose();
-        sums += row * (moved.value[axis] - pixel[axis]);
-      }
-    }
-  }
-  return normal.ldlt().solve(sums);
-}
-
-// Where a part of what was seen ends: a third and two thirds of all.
-std::array<float, 2> thirds_of(const std::vector<std::vector<cv::Point2f>>& seen,
-                               float cv::Point2f::*axis) {
-  std::vector<float> values;
-  for (const std::vector<cv::Point2f>& corners : seen)
-    for (const cv::Point2f& corner : corners) values.push_back(corner.*axis);
-  std::sort(values.begin(), values.end());
-  return {values[values.size() / 3], values[2 * values.size() / 3]};
-}
-
-// Each time one of 3 x 3 parts of the picture is left out: what the lens has and its model has not
-// is alike nearby, not from picture to picture.
-void find_sigmas(const Seen& seen, const cv::Size& size, const BoardSettings& settings,
-                 const Solved& all, BoardFit& fit) {
-  const std::array<float, 2> right = thirds_of(seen.corners, &cv::Point2f::x),
-                             down = thirds_of(seen.corners, &cv::Point2f::y);
-  const auto third = [](float value, const std::array<float, 2>& ends) {
-    return (value > ends[0] ? 1 : 0) + (value > ends[1] ? 1 : 0);
-  };
-  std::vector<Vector3> found;
-  Vector3 mean = Vector3::Zero();
-  CameraModel whole = fit.model;
-  whole.field_tangent_max = 0;
-  for (int part = 0; part < k_board_parts; ++part) {
-    Seen rest;
-    for (std::size_t i = 0; i < seen.corners.size(); ++i) {
-      std::vector<cv::Point2f> corners;
-      std::vector<cv::Point3f> board;
-      for (std::size_t k = 0; k < seen.corners[i].size(); ++k) {
-        const cv::Point2f& corner = seen.corners[i][k];
-        if (3 * third(corner.y, down) + third(corner.x, right) == part) continue;
-        corners.push_back(corner);
-        board.push_back(seen.boards[i][k]);
-      }
-      if (corners.size() < k_corners_min) continue;
-      rest.corners.push_back(std::move(corners));
-      rest.boards.push_back(std::move(board));
-    }
-    const Solved solved = solve(rest, size, settings, &all);
-    const CameraModel other = model_of(solved.matrix, solved.distortion, size, settings.lens);
-    found.push_back(difference(whole, other, seen.corners));
-    mean += found.back() / double{k_board_parts};
-  }
-  Vector3 squares = Vector3::Zero();
-  for (const Vector3& one : found) squares += (one - mean).cwiseAbs2();
-  squares *= double{k_board_parts - 1} / double{k_board_parts};
-  fit.principal_point_sigma_px = std::sqrt(0.5 * (squares[0] + squares[1]));
-  fit.focal_sigma = std::sqrt(squares[2]);
-}
-
 BoardFit fit_lens(const Views& views, const BoardSettings& settings) {
   require_boards(views, settings);
-  Seen all;
+  BoardCorners all;
   const std::vector<cv::Point3f> board = board_points(settings);
   for (const View& view : views.found) all.corners.push_back(view.seen);
   all.boards.assign(all.corners.size(), board);
-  Solved solved = solve(all, views.size, settings, nullptr);
-  if (settings.lens == Lens::rational) solved = solve(all, views.size, settings, &solved);
-  const auto& [matrix, distortion, rotations, translations] = solved;
   const std::vector<std::vector<cv::Point2f>>& seen = all.corners;
+  const BoardLens lens = solve_lens(all, views.size, settings.lens);
   BoardFit fit;
-  fit.tilt_rad = tilt_of(rotations);
+  fit.tilt_rad = tilt_of(lens.rotations);
   if (fit.tilt_rad < settings.tilt_min_rad) {
     throw InputError(views.what + ": the board's normal moved by only " +
                      say_degrees(fit.tilt_rad) +
                      " rms, so the focal length stays open; expected at least " +
                      say_degrees(settings.tilt_min_rad) + ": tilt the board to all sides");
   }
-  fit.model = model_of(matrix, distortion, views.size, settings.lens);
+  fit.model = lens.model;
   fit.images = static_cast<int>(views.searched);
   fit.images_used = static_cast<int>(seen.size());
   double sum = 0;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     std::vector<cv::Point2f> projected;
-    cv::projectPoints(board, rotations[i], translations[i], matrix, distortion, projected);
+    cv::projectPoints(board, lens.rotations[i], lens.translations[i], lens.matrix, lens.distortion,
+                      projected);
     double squares = 0;
     for (std::size_t k = 0; k < projected.size(); ++k) {
       const cv::Point2f miss = projected[k] - seen[i][k];
@@ -312,7 +189,9 @@ BoardFit fit_lens(const Views& views, const BoardSettings& settings) {
     sum += squares;
   }
   fit.rms_px = std::sqrt(sum / (2.0 * fit.corners));
-  find_sigmas(all, views.size, settings, solved, fit);
+  const LensSigmas sigmas = lens_sigmas(all, views.size, lens);
+  fit.principal_point_sigma_px = sigmas.principal_point_px;
+  fit.focal_sigma = sigmas.focal;
   return fit;
 }
 

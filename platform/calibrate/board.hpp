@@ -26,8 +26,7 @@ struct BoardFit {
   double rms_px = 0;   // an axis
   double most_px = 0;  // of |error|
   double tilt_rad = 0;
-  // Standard deviations of what rays all turn by, an axis, and of what they all are wider by, a
-  // ratio: by the jackknife over nine parts of the picture (Efron 1982, chapter 3).
+  // LensSigmas of board_lens.hpp.
   double principal_point_sigma_px = 0, focal_sigma = 0;
   int images = 0, images_used = 0, corners = 0;
   std::vector<double> image_rms_px;  // of |error|, of each image used

@@ -6,11 +6,11 @@
 #include <map>
 #include <numeric>
 
-#include "kernels/pose/rigid_fit.hpp"
 #include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/frame_labels.hpp"
 #include "platform/calibrate/rotation_spread.hpp"
 #include "platform/calibrate/say.hpp"
+#include "platform/calibrate/tool_frame.hpp"
 #include "platform/calibrate/tool_round.hpp"
 #include "platform/input_error.hpp"
 
@@ -21,24 +21,10 @@ constexpr int k_seeds_max = 5;
 constexpr double k_noise_share_max = 0.1;  // of the tool's size
 constexpr double k_labelled_share_min = 0.5;
 constexpr std::size_t k_sigma_parts = 8;
-constexpr double k_drawn_noise_m = 0.002;  // made beside drawn, and a size that ranges make wrong
 constexpr double k_line_noises = 5;  // beside a line by less than this, nobody knows which way
 constexpr const char* k_on_a_line =
     ": the points that recur are fewer than 3 or lie on a line; expected 3 or more markers that do "
     "not";
-
-Vector3 middle_of(const std::vector<Vector3>& points) {
-  Vector3 middle = Vector3::Zero();
-  for (const Vector3& p : points) middle += p / static_cast<double>(points.size());
-  return middle;
-}
-
-// Sum of squared distances from their middle.
-double spread_m2(const std::vector<Vector3>& points) {
-  double squares = 0;
-  for (const Vector3& p : points) squares += (p - middle_of(points)).squaredNorm();
-  return squares;
-}
 
 Tool tool_of(const std::vector<Vector3>& markers_m) {
   Tool tool;
@@ -88,38 +74,6 @@ NamedFrames begin_with(std::span<const PointFrame> frames, const Segment& segmen
   return best;
 }
 
-double longest_side(const std::vector<Vector3>& markers) {
-  double longest = 0;
-  for (const Vector3& a : markers)
-    for (const Vector3& b : markers) longest = std::max(longest, (a - b).norm());
-  return longest;
-}
-
-// Turns the markers about their middle to their principal axes, the longest first; the farthest
-// marker along x and along y lies on the positive side.
-void turn_to_axes(std::vector<Vector3>& markers) {
-  const Vector3 middle = middle_of(markers);
-  Matrix3 spread = Matrix3::Zero();
-  for (Vector3& m : markers) {
-    m -= middle;
-    spread += m * m.transpose();
-  }
-  const SymmetricEigen principal = symmetric_eigen(spread);
-  Matrix3 axes;
-  for (int axis = 0; axis < 2; ++axis) {
-    Vector3 direction = principal.vectors.col(2 - axis);
-    const auto farther = [&](const Vector3& a, const Vector3& b) {
-      return std::abs(direction.dot(a)) < std::abs(direction.dot(b));
-    };
-    if (direction.dot(*std::max_element(markers.begin(), markers.end(), farther)) < 0) {
-      direction = -direction;
-    }
-    axes.row(axis) = direction.transpose();
-  }
-  axes.row(2) = axes.row(0).cross(axes.row(1));
-  for (Vector3& m : markers) m = axes * m;
-}
-
 // Whether the second of the markers' principal spreads is not clearly more than their noise.
 bool on_a_line(const std::vector<Vector3>& markers, double noise_m) {
   const Vector3 middle = middle_of(markers);
@@ -138,29 +92,6 @@ void check_enough(const ToolRound& round, std::size_t frames, const std::string&
                    std::to_string(frames) + " frames fit one rigid tool, within " +
                    say_mm(round.noise_m) + "; expected at least half of them: one tool alone, " +
                    "3 or more of its markers in most frames");
-}
-
-// The size that was measured apart, or the drawing's; its error moves each marker from the middle.
-void set_size(const ToolGeometrySettings& settings, ToolGeometry& geometry) {
-  const double spread = std::sqrt(spread_m2(geometry.markers_m));
-  double sigma = 0;  // a ratio
-  if (settings.longest_side_m > 0) {
-    geometry.scale = settings.longest_side_m / longest_side(geometry.markers_m);
-    sigma = settings.longest_side_sigma_m / settings.longest_side_m;
-  } else if (settings.drawn) {
-    const Tool& drawn = *settings.drawn;
-    const double drawn_spread = std::sqrt(
-        spread_m2({drawn.markers_m.begin(), drawn.markers_m.begin() + drawn.marker_count}));
-    geometry.scale = drawn_spread / spread;
-    sigma = drawn.marker_sigma_m / drawn_spread;
-  }
-  const Vector3 middle = middle_of(geometry.markers_m);
-  for (std::size_t i = 0; i < geometry.markers_m.size(); ++i) {
-    Vector3& marker = geometry.markers_m[i];
-    marker = middle + geometry.scale * (marker - middle);
-    const double moved_m = sigma * (marker - middle).norm() / std::sqrt(3.0);  // an axis
-    geometry.marker_sigma_m[i] = std::hypot(geometry.scale * geometry.marker_sigma_m[i], moved_m);
-  }
 }
 
 // What slow errors leave of each marker's place, an axis: by the spread of its mean misses over
@@ -187,33 +118,6 @@ void count_slow_errors(const ToolRound& round, double slow_range_m, ToolGeometry
   }
 }
 
-// Into the drawing's frame and order.
-void lay_on(const Tool& drawn, const std::string& what, ToolGeometry& geometry) {
-  const PointFrame points{Time{}, geometry.markers_m};
-  const Labeling label = label_segment({&points, 1}, {0, 1}, drawn, k_drawn_noise_m).front();
-  const std::size_t count = geometry.markers_m.size();
-  const auto drawn_count = static_cast<std::size_t>(drawn.marker_count);
-  if (count != drawn_count || static_cast<std::size_t>(label.count) != count) {
-    throw InputError(what + ": " + std::to_string(label.count) + " of " + std::to_string(count) +
-                     " markers found lie within " + say_mm(2 * k_drawn_noise_m) + " of the " +
-                     std::to_string(drawn_count) + " drawn of \"" + drawn.name.data() +
-                     "\"; expected every one: this tool alone, each marker in a fifth of the "
-                     "frames or more");
-  }
-  ToolGeometry named = geometry;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto from = static_cast<std::size_t>(label.marker[i]);
-    named.markers_m[i] = geometry.markers_m[from];
-    named.marker_sigma_m[i] = geometry.marker_sigma_m[from];
-    named.seen[i] = geometry.seen[from];
-  }
-  const std::span<const Vector3> as_drawn(drawn.markers_m.data(), count);
-  const RigidFit fit = fit_rigid(named.markers_m, as_drawn);
-  for (Vector3& marker : named.markers_m) marker = fit.transform * marker;
-  named.drawn_rms_m = fit.rms_m;
-  geometry = std::move(named);
-}
-
 ToolGeometry geometry_of(const ToolRound& round, const ToolGeometrySettings& settings,
                          const std::string& what) {
   ToolGeometry geometry;
@@ -236,11 +140,7 @@ ToolGeometry geometry_of(const ToolRound& round, const ToolGeometrySettings& set
   geometry.turn_rad = rotation_spread(poses).spread_rad[0];
   count_slow_errors(round, settings.slow_range_m, geometry);
   set_size(settings, geometry);
-  if (settings.drawn) {
-    lay_on(*settings.drawn, what, geometry);
-  } else {
-    turn_to_axes(geometry.markers_m);
-  }
+  set_frame(settings, what, geometry);
   return geometry;
 }
 

@@ -2,21 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "kernels/angles.hpp"
 #include "platform/experiments/field_calibration.hpp"
+#include "platform/experiments/field_runs.hpp"
 #include "platform/session/simulated_run.hpp"
 #include "platform/sources/scenario_of.hpp"
 
 namespace glint {
 namespace {
 
-constexpr int k_seeds = 40, k_seeds_quick = 2;
+constexpr int k_field_seeds = 40, k_field_seeds_quick = 2;
 constexpr double k_duration_s = 30, k_duration_quick_s = 8;
 constexpr double k_coverage_min = 88, k_sharpness_max = 3;
 constexpr double k_seed_coverage_low = 80;
@@ -78,19 +77,12 @@ OutputErrors sum_of(const OutputErrors& a, const OutputErrors& b) {
   return sum;
 }
 
-// One run: of a device and a random seed.
-struct FieldRun {
-  FieldDevice device = FieldDevice::drawn;
-  std::uint64_t seed = 0;
-  std::uint64_t ticks = 0;
-  std::int64_t trackable = 0, fresh = 0, gross_fits = 0;
-  OutputErrors measured, predicted;
-};
-
-FieldRun run_of(FieldDevice device, std::uint64_t seed, const SessionResult& result) {
+FieldRun run_of(FieldDevice device, std::uint64_t seed, double duration_s,
+                const SessionResult& result) {
   FieldRun run;
   run.device = device;
   run.seed = seed;
+  run.duration_s = duration_s;
   for (const RateFigures& rate : result.by_rate->tools[0]) {
     run.ticks += rate.ticks;
     run.measured = sum_of(run.measured, rate.of_measured);
@@ -188,50 +180,6 @@ ExperimentCase case_of(FieldDevice device, const Tally& tally, const FieldBars& 
            {"seeds_below_80", "", static_cast<double>(tally.seeds_low)}}};
 }
 
-// A file of finished runs, a line each; a line that is cut short is skipped: its run is done again.
-class FinishedRuns {
- public:
-  explicit FinishedRuns(const std::string& path) : path_(path) {
-    std::ifstream in(path);
-    for (std::string line; std::getline(in, line);) {
-      std::istringstream fields(line);
-      FieldRun run;
-      int device = 0;
-      std::string end;
-      fields >> device >> run.seed >> run.ticks >> run.trackable >> run.fresh >> run.gross_fits;
-      for (OutputErrors* errors : {&run.measured, &run.predicted})
-        fields >> errors->count >> errors->inside_position >> errors->inside_rotation >>
-            errors->gross >> errors->square_m2 >> errors->square_rad2 >> errors->stated_m2 >>
-            errors->stated_rad2 >> errors->log_score;
-      run.device = static_cast<FieldDevice>(device);
-      if (fields >> end && end == "end") runs_.push_back(run);
-    }
-  }
-  [[nodiscard]] const FieldRun* find(FieldDevice device, std::uint64_t seed) const {
-    const auto found = std::find_if(runs_.begin(), runs_.end(), [&](const FieldRun& run) {
-      return run.device == device && run.seed == seed;
-    });
-    return found == runs_.end() ? nullptr : &*found;
-  }
-  const FieldRun& add(const FieldRun& run) {
-    std::ofstream out(path_, std::ios::app);
-    out.precision(17);
-    out << static_cast<int>(run.device) << ' ' << run.seed << ' ' << run.ticks << ' '
-        << run.trackable << ' ' << run.fresh << ' ' << run.gross_fits;
-    for (const OutputErrors* errors : {&run.measured, &run.predicted})
-      out << ' ' << errors->count << ' ' << errors->inside_position << ' '
-          << errors->inside_rotation << ' ' << errors->gross << ' ' << errors->square_m2 << ' '
-          << errors->square_rad2 << ' ' << errors->stated_m2 << ' ' << errors->stated_rad2 << ' '
-          << errors->log_score;
-    out << " end\n";
-    return runs_.emplace_back(run);
-  }
-
- private:
-  std::string path_;
-  std::vector<FieldRun> runs_;
-};
-
 }  // namespace
 
 Cell field_cell(std::uint64_t seed, double duration_s) {
@@ -268,7 +216,9 @@ SessionResult run_field_device(FieldDevice device, std::uint64_t seed, double du
 
 CaseList run_field(const CaseOptions& options) {
   const bool calibrated = options.tries > 0;
-  const int seeds = calibrated ? options.tries : options.quick ? k_seeds_quick : k_seeds;
+  const int seeds = calibrated      ? options.tries
+                    : options.quick ? k_field_seeds_quick
+                                    : k_field_seeds;
   const double duration_s = options.quick ? k_duration_quick_s : k_duration_s;
   const std::vector<FieldDevice> devices =
       calibrated ? std::vector{FieldDevice::calibrated, FieldDevice::known}
@@ -279,11 +229,11 @@ CaseList run_field(const CaseOptions& options) {
   for (int i = 0; i < seeds; ++i) {
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
     for (std::size_t d = 0; d < devices.size(); ++d) {
-      const FieldRun* run = calibrated ? finished.find(devices[d], seed) : nullptr;
+      const FieldRun* run = calibrated ? finished.find(devices[d], seed, duration_s) : nullptr;
       FieldRun fresh;
       if (run == nullptr) {
-        fresh =
-            run_of(devices[d], seed, run_field_device(devices[d], seed, duration_s, options.out));
+        fresh = run_of(devices[d], seed, duration_s,
+                       run_field_device(devices[d], seed, duration_s, options.out));
         run = calibrated ? &finished.add(fresh) : &fresh;
       }
       tallies[d].add(*run);

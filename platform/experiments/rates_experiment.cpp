@@ -7,7 +7,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_rates_runs = 100, k_runs_quick = 2;
+constexpr int k_rates_runs = 100, k_rates_runs_quick = 2;
 
 struct RatesCase {
   const char* name;
@@ -55,7 +55,7 @@ ExperimentCase graph_case(const std::string& name, const GraphTally& graph) {
 
 CaseList run_rates(const CaseOptions& options) {
   CaseList list{"rates", {}, {}};
-  const int runs = options.quick ? k_runs_quick : k_rates_runs;
+  const int runs = options.quick ? k_rates_runs_quick : k_rates_runs;
   const auto all = cases();
   for (std::size_t k = 0; k < all.size(); ++k) {
     RatesTally tally;

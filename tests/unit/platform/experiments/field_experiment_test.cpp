@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <memory>
 
 #include "platform/calibrate/headset.hpp"
 #include "platform/experiments/field_calibration.hpp"
+#include "platform/experiments/field_runs.hpp"
+#include "platform/input_error.hpp"
 #include "platform/sources/scenario_of.hpp"
 #include "platform/sources/simulated_source.hpp"
 #include "tests/unit/platform/calibrate/expect_message.hpp"
@@ -85,6 +88,35 @@ TEST(Field, CalibrationsFindADevicesErrorsAndStateWhatTheyLeave) {
   const double found = cell.head_noise.rest_position_m / drawn.head_noise.rest_position_m;
   EXPECT_GT(found, 0.7 * drift);
   EXPECT_LT(found, 2.5 * drift);
+}
+
+// As after a power cut: the line that is not whole is done again, what follows it is kept.
+TEST(Field, RunsThatAreDoneAreNotDoneAgain) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.path("runs.txt");
+  FieldRun run;
+  run.device = FieldDevice::calibrated;
+  run.duration_s = 30;
+  run.measured.count = 1234;
+  run.predicted.log_score = -1.0 / 3;
+  for (const std::uint64_t seed : {7, 8, 9}) {
+    run.seed = seed;
+    if (seed == 8) {
+      std::ofstream(path, std::ios::app) << "\n1 8 30 500 4";
+      continue;
+    }
+    FinishedRuns(path).add(run);
+  }
+  const FinishedRuns read(path);
+  const FieldRun* found = read.find(FieldDevice::calibrated, 9, 30);
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(found->measured.count, 1234u);
+  EXPECT_EQ(found->predicted.log_score, -1.0 / 3);
+  EXPECT_NE(read.find(FieldDevice::calibrated, 7, 30), nullptr);
+  EXPECT_EQ(read.find(FieldDevice::calibrated, 8, 30), nullptr);
+  EXPECT_EQ(read.find(FieldDevice::known, 9, 30), nullptr);
+  EXPECT_EQ(read.find(FieldDevice::calibrated, 9, 8), nullptr);
+  EXPECT_THROW(FinishedRuns(folder.path("")).add(run), InputError);
 }
 
 TEST(Field, TheHeadsetsDriftNeedsAToolThatRestsInView) {
