@@ -10,7 +10,7 @@ namespace glint {
 namespace {
 
 constexpr int k_board_parts = 9;
-constexpr std::size_t k_corners_min = 6;  // of a picture, without a part
+constexpr std::size_t k_corners_left = 3;  // one of so many: fewer, near a line, fix no board
 
 CameraModel model_of(const cv::Mat& matrix, const cv::Mat& distortion, const cv::Size& size,
                      Lens lens) {
@@ -107,12 +107,13 @@ LensSigmas lens_sigmas(const BoardCorners& seen, const cv::Size& size, const Boa
         corners.push_back(corner);
         board.push_back(seen.boards[i][k]);
       }
-      if (corners.size() < k_corners_min) continue;
+      if (k_corners_left * corners.size() < seen.corners[i].size()) continue;
       rest.corners.push_back(std::move(corners));
       rest.boards.push_back(std::move(board));
     }
+    // Beyond what it saw a lens may be anything.
     const BoardLens other = solve(rest, size, all.model.lens, &all);
-    found.push_back(difference(all.model, other.model, seen.corners));
+    found.push_back(difference(all.model, other.model, rest.corners));
     mean += found.back() / double{k_board_parts};
   }
   Vector3 squares = Vector3::Zero();

@@ -216,9 +216,9 @@ SessionResult run_field_device(FieldDevice device, std::uint64_t seed, double du
 
 CaseList run_field(const CaseOptions& options) {
   const bool calibrated = options.tries > 0;
-  const int seeds = calibrated      ? options.tries
-                    : options.quick ? k_field_seeds_quick
-                                    : k_field_seeds;
+  const int asked = calibrated ? options.tries : k_field_seeds;
+  const int quick = calibrated ? 1 : k_field_seeds_quick;
+  const int seeds = options.quick ? quick : asked;
   const double duration_s = options.quick ? k_duration_quick_s : k_duration_s;
   const std::vector<FieldDevice> devices =
       calibrated ? std::vector{FieldDevice::calibrated, FieldDevice::known}
