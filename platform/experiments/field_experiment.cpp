@@ -16,6 +16,7 @@ namespace glint {
 namespace {
 
 constexpr int k_field_seeds = 40, k_field_seeds_quick = 2;
+constexpr CalibrationSeconds k_quick_calibrations{8, 20, 20, 30, 25};
 constexpr double k_duration_s = 30, k_duration_quick_s = 8;
 constexpr double k_coverage_min = 88, k_sharpness_max = 3;
 constexpr double k_seed_coverage_low = 80;
@@ -201,7 +202,8 @@ SessionResult run_field_device(FieldDevice device, std::uint64_t seed, double du
   Cell cell = drawn;
   sim::Scenario scenario = scenario_of(drawn);
   if (device == FieldDevice::calibrated) {
-    cell = calibrated_field_cell(drawn);
+    cell = calibrated_field_cell(
+        drawn, duration_s < k_duration_s ? k_quick_calibrations : CalibrationSeconds{});
     scenario = scenario_of(cell, drawn);
   }
   if (device == FieldDevice::known) know_all(scenario, cell);
