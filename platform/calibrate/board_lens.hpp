@@ -1,4 +1,4 @@
-// A lens from the corners of boards, by OpenCV, and how well it is known.
+// A lens from the corners of boards, by OpenCV, and its standard deviations.
 #pragma once
 
 #include <opencv2/core.hpp>

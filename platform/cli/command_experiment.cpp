@@ -101,8 +101,8 @@ void add_experiment(CLI::App& app, int& exit_code) {
     }
     if (experiment.counts_tries) {
       sub.add_option("--tries", arguments->tries,
-                     "tries in all classes together, in place of the other cases; finished ones "
-                     "are in --out and not run again")
+                     "tries in all classes together (of field: devices), in place of the other "
+                     "cases; finished ones are in --out and not run again")
           ->check(in_range(1, 1'000'000));
     }
     sub.callback(

@@ -89,10 +89,8 @@ void take_ranges(const Cell& drawn, double seconds, Cell& cell) {
   const DepthCalibration found =
       calibrate_depth(seen.sightings, *series.tool, settings, "field_turn");
   cell.camera.depth.bias = found.bias;
-  CameraUncertainty& sigma = cell.camera.uncertainty;
-  sigma.range_offset_m =
-      std::hypot(std::sqrt(found.covariance(0, 0)), sigma.focal_scale * DepthBias::k_reference_m);
-  sigma.range_scale = std::hypot(std::sqrt(found.covariance(1, 1)), sigma.focal_scale);
+  state_range_uncertainty(std::sqrt(found.covariance(0, 0)), std::sqrt(found.covariance(1, 1)),
+                          cell.camera.uncertainty);
 }
 
 void take_tip(const Cell& drawn, double seconds, Cell& cell) {

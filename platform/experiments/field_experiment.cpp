@@ -37,8 +37,8 @@ void build_exactly(const Cell& cell, sim::Scenario& scenario) {
     scenario.tools[i].tool = cell.tools.items[i];
 }
 
-// The errors that are constant are known, so gone; those that are not are stated as drawn.
-void know_all(sim::Scenario& scenario, Cell& cell) {
+// The errors that are constant are corrected; those that are not are stated as drawn.
+void correct_all(sim::Scenario& scenario, Cell& cell) {
   const sim::LocalisationSettings drawn = scenario.localisation, declared;
   const double drift = drawn.rest_position_m / declared.rest_position_m;
   sim::DeviceErrors slow;
@@ -123,8 +123,8 @@ const char* name_of(FieldDevice device) {
       return "uncalibrated devices";
     case FieldDevice::calibrated:
       return "calibrated devices";
-    case FieldDevice::known:
-      return "the same, their errors known";
+    case FieldDevice::oracle:
+      return "the same, an oracle";
     default:
       return "the same without their errors";
   }
@@ -206,7 +206,7 @@ SessionResult run_field_device(FieldDevice device, std::uint64_t seed, double du
         drawn, duration_s < k_duration_s ? k_quick_calibrations : CalibrationSeconds{});
     scenario = scenario_of(cell, drawn);
   }
-  if (device == FieldDevice::known) know_all(scenario, cell);
+  if (device == FieldDevice::oracle) correct_all(scenario, cell);
   if (device == FieldDevice::exact) {
     build_exactly(cell, scenario);
     state_exactly(cell);
@@ -223,7 +223,7 @@ CaseList run_field(const CaseOptions& options) {
   const int seeds = options.quick ? quick : asked;
   const double duration_s = options.quick ? k_duration_quick_s : k_duration_s;
   const std::vector<FieldDevice> devices =
-      calibrated ? std::vector{FieldDevice::calibrated, FieldDevice::known}
+      calibrated ? std::vector{FieldDevice::calibrated, FieldDevice::oracle}
                  : std::vector{FieldDevice::drawn, FieldDevice::exact};
   FinishedRuns finished(options.out + "/field_runs.txt");
   std::vector<Tally> tallies(devices.size());

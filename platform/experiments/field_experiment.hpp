@@ -4,8 +4,8 @@
 // them for 30 s with the shipped settings, uncalibrated. Judged at the output: every tick's pose
 // against truth, in the robot's frame, at the actuation time. A second row judges the same runs
 // without the device's errors, their settings stated as exact: what noise, motion and the
-// headset's drift leave. With tries, so many seeds after their user's calibrations, beside the same
-// devices with all constant errors known; finished runs stand in field_runs.txt.
+// headset's drift leave. With tries, so many seeds after their user's calibrations, beside an
+// oracle on the same devices; finished runs stand in field_runs.txt.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,9 @@
 
 namespace glint {
 
-// As drawn and uncalibrated; after its user's calibrations (field_calibration.hpp); its errors
-// known to the tracker; without errors.
-enum class FieldDevice { drawn, calibrated, known, exact };
+// As drawn and uncalibrated; after its user's calibrations (field_calibration.hpp); an
+// oracle, for which every constant error is corrected; without errors.
+enum class FieldDevice { drawn, calibrated, oracle, exact };
 
 // The built-in cell with the device of a random seed; nothing leaves the process.
 [[nodiscard]] Cell field_cell(std::uint64_t seed, double duration_s);

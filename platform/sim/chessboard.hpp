@@ -25,7 +25,7 @@ struct Chessboard {
 
 class ChessboardDrawer {
  public:
-  // Nothing is looked up where the device's lens is as stated; it is where a board is drawn.
+  // Computes the ray of each pixel by the device's own lens.
   ChessboardDrawer(const CameraModel& model, const DeviceErrors& device);
   void draw(const Chessboard& board, const Pose& T_camera_board, Planes& planes) const;
 

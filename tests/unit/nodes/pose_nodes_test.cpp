@@ -36,6 +36,21 @@ class Correspond : public testing::Test {
     markers_->count = 3;
   }
 
+  // By how much the tool's markers may stand too far apart and are still the tool's, where the
+  // noise is so many times the declared one.
+  double largest_scale(double range_noises, double pixel_noises) {
+    predictions_->noise.known = true;
+    predictions_->noise.range_sigma_m = range_noises * node_->settings.range_sigma_m;
+    predictions_->noise.pixel_sigma_px = pixel_noises * node_->settings.pixel_sigma_px;
+    double fits = 1, fails = 1.5;
+    for (int i = 0; i < 20; ++i) {
+      const double between = 0.5 * (fits + fails);
+      show_scaled_by(between);
+      (reason(Reason::none) == Reason::none ? fits : fails) = between;
+    }
+    return fits - 1;
+  }
+
   std::unique_ptr<ToolSet> set_ = std::make_unique<ToolSet>();
   graph::Latest<ToolSet> tools_;
   std::unique_ptr<Markers> markers_ = std::make_unique<Markers>();
@@ -75,44 +90,21 @@ TEST_F(Correspond, OpensItsGatesWithTheNoiseThatWasSeenAndNeverClosesThem) {
 }
 
 TEST_F(Correspond, OpensItsGatesAlsoByLittleMoreNoise) {
-  const auto largest_scale = [&](double noises) {
-    predictions_->noise.known = true;
-    predictions_->noise.range_sigma_m = noises * node_->settings.range_sigma_m;
-    double fits = 1, fails = 1.5;
-    for (int i = 0; i < 20; ++i) {
-      const double between = 0.5 * (fits + fails);
-      show_scaled_by(between);
-      (reason(Reason::none) == Reason::none ? fits : fails) = between;
-    }
-    return fits - 1;
-  };
-  const double as_declared = largest_scale(1);
+  const double as_declared = largest_scale(1, 1);
   EXPECT_GT(as_declared, 0.01);
-  EXPECT_EQ(largest_scale(0.5), as_declared);
-  EXPECT_GT(largest_scale(1.2), 1.1 * as_declared);
-  EXPECT_GT(largest_scale(1.8), 1.5 * as_declared);
+  EXPECT_EQ(largest_scale(0.5, 1), as_declared);
+  EXPECT_GT(largest_scale(1.2, 1), 1.1 * as_declared);
+  EXPECT_GT(largest_scale(1.8, 1), 1.5 * as_declared);
 }
 
 // Across the ray pixels count as ranges do along it.
 TEST_F(Correspond, OpensItsGatesWithThePixelsNoiseToo) {
-  const auto largest_scale = [&](double noises) {
-    predictions_->noise.known = true;
-    predictions_->noise.range_sigma_m = node_->settings.range_sigma_m;
-    predictions_->noise.pixel_sigma_px = noises * node_->settings.pixel_sigma_px;
-    double fits = 1, fails = 1.5;
-    for (int i = 0; i < 20; ++i) {
-      const double between = 0.5 * (fits + fails);
-      show_scaled_by(between);
-      (reason(Reason::none) == Reason::none ? fits : fails) = between;
-    }
-    return fits - 1;
-  };
   node_->settings.focal_px = 250;
   node_->settings.pixel_sigma_px = 0.1;
   node_->settings.max_rms_m = 1;
-  const double as_declared = largest_scale(1);
-  EXPECT_EQ(largest_scale(0.1), as_declared);
-  EXPECT_GT(largest_scale(40), 1.1 * as_declared);
+  const double as_declared = largest_scale(1, 1);
+  EXPECT_EQ(largest_scale(1, 0.1), as_declared);
+  EXPECT_GT(largest_scale(1, 40), 1.1 * as_declared);
 }
 
 // Three markers are believed no farther from a prediction than the tool may have got and three

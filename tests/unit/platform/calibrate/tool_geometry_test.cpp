@@ -108,7 +108,7 @@ TEST(ToolGeometry, IsLessSureOfSlowErrors) {
 }
 
 // Of the mean: all of an error that hardly changes, a small part of one that changes at once.
-TEST(ToolGeometry, IsToldWhatSlowErrorsOfTheRangesLeave) {
+TEST(ToolGeometry, CountsWhatSlowErrorsOfTheRangesLeave) {
   const std::vector<PointFrame> frames{{Time{}, {}}, {Time{40'000'000'000}, {}}};
   Camera camera;
   camera.uncertainty.slow_range_m = 0.001;

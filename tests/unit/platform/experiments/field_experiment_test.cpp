@@ -114,7 +114,7 @@ TEST(Field, RunsThatAreDoneAreNotDoneAgain) {
   EXPECT_EQ(found->predicted.log_score, -1.0 / 3);
   EXPECT_NE(read.find(FieldDevice::calibrated, 7, 30), nullptr);
   EXPECT_EQ(read.find(FieldDevice::calibrated, 8, 30), nullptr);
-  EXPECT_EQ(read.find(FieldDevice::known, 9, 30), nullptr);
+  EXPECT_EQ(read.find(FieldDevice::oracle, 9, 30), nullptr);
   EXPECT_EQ(read.find(FieldDevice::calibrated, 9, 8), nullptr);
   EXPECT_THROW(FinishedRuns(folder.path("")).add(run), InputError);
 }
