@@ -9,8 +9,8 @@
 namespace glint {
 namespace {
 
-// The reference moves along a line, however far the step turns: the covariance of position and
-// rotation is linear, as the filter's equations are.
+// Moves the reference point along a straight line, whatever the step's rotation: the covariance of
+// position and rotation is linear, as the filter's equations are.
 Pose stepped(const Pose& x, const Vector6& step, const Vector3& lever, const Vector3& reference_m) {
   const Vector3 turn = step.tail<3>();
   const Vector3 reference = x * reference_m + step.head<3>() + turn.cross(lever);
@@ -20,7 +20,7 @@ Pose stepped(const Pose& x, const Vector6& step, const Vector3& lever, const Vec
   return out;
 }
 
-// The step from x that lowers chi-square most, and the covariance there.
+// Gauss-Newton step from x, and the covariance at x.
 NearPose solved(const NormalEquations& normal, const Pose& x, const Vector3& mean_m,
                 const Vector3& reference_m) {
   NearPose near;

@@ -1,17 +1,20 @@
-// What a tool's markers say near where the tool is expected, for a filter that expects it there.
+// MAP pose of a tool from its markers and the motion filter's prediction, with the markers' own
+// information there (relinearised measurement, IEKF).
 //
-// What:     the pose x with the least sum of chi-square and squared distance from the expectation,
-//           both in sigmas; the step that the markers alone would take from x, and their own
-//           information there. A filter with the same expectation that is given x moved by this
-//           step, with the inverse of this information, ends at x: the expectation counts once.
-//           Face-on, between the two minima of a flat tool, x is the pose that faces the camera.
-// Cost:     one weighted fit of steps_max steps at most, a 6x6 factor.
-// Worst:    a start that needs all its steps.
-// Accuracy: first order about x. Markers nearly on a line, or a flat tool seen face-on, tell little
-//           of a turn that only a cosine shows: their likelihood has two summits, each surer than
-//           what lies between. A fit to the markers alone stands on one of them and states that
-//           one's sureness; time after time the one on the expectation's side, so that a filter
-//           walks there, sure of itself. About x they say as little as they know.
+// What:     the pose x that minimises chi-square plus the squared Mahalanobis distance from the
+//           prediction; the Gauss-Newton step of the markers alone from x; their information matrix
+//           at x. A filter with the same prediction takes x moved by this step as its measurement,
+//           with the inverse of this information as covariance. Its update then ends at x, so the
+//           prediction counts once. For a flat tool seen face-on, face_on() gives x, midway between
+//           the two minima.
+// Cost:     one weighted fit of at most steps_max steps, a 6x6 factor.
+// Worst:    an initial guess that needs all its steps.
+// Accuracy: first order about x. Markers nearly on a line, or a flat tool seen face-on, determine a
+//           rotation only through its cosine. Their likelihood then has two maxima, each with a
+//           smaller covariance than the poses between them. A fit to the markers alone converges to
+//           one maximum and returns the covariance of that one. Frame after frame this is the
+//           maximum on the prediction's side, so the filter drifts there and becomes overconfident.
+//           The information at x is consistent.
 // Source:   the iterated extended Kalman filter: Bell and Cathey 1993, The iterated Kalman filter
 //           update as a Gauss-Newton method, IEEE Transactions on Automatic Control 38(2).
 #pragma once
@@ -24,31 +27,34 @@
 
 namespace glint {
 
-// The reference straight on from x, however far the step turns. degenerate: the markers show
-// nothing of a direction.
+// x moved by the markers' Gauss-Newton step. The reference point moves along a straight line,
+// whatever the step's rotation. Reason::degenerate if the markers do not determine a direction.
 struct NearPose {
   Pose T_camera_tool;
-  Matrix6 covariance = Matrix6::Zero();  // of the reference, as fit_covariance.hpp
+  Matrix6 covariance = Matrix6::Zero();  // of (reference, rotation), as in fit_covariance.hpp
   double chi_square = 0;                 // at x
   Reason reason = Reason::none;
 };
 
-// The markers' own near x. chi_square: of the markers and the expectation at x, of three numbers a
-// marker. degenerate: the expectation's covariance is none, too.
+// near_pose() at the MAP pose x. chi_square: of the markers and the prediction at x, with three
+// degrees of freedom per marker. Reason::degenerate also if the prediction's covariance is not
+// positive definite.
 struct AgreedPose : NearPose {
   int steps = 0;
 };
 
-// A flat tool turned about the markers' mean until it faces the camera. There, and only there, the
-// linear equations hold for both of its minima: a tilt shows in the ranges alone.
+// Rotates a flat tool about the markers' mean until it faces the camera, midway between the pose
+// and its depth flip. Only there do the linear equations hold for both minima: a tilt shows in the
+// ranges alone.
 [[nodiscard]] Pose face_on(std::span<const WeightedMarker> markers,
                            const Pose& T_camera_tool) noexcept GLINT_NONBLOCKING;
 
-// Of one marker or more, from their linear equations about x.
+// Gauss-Newton step of the markers alone, linearised at x. Requires at least one marker.
+// reference_m: tool frame.
 [[nodiscard]] NearPose near_pose(std::span<const WeightedMarker> markers, const Pose& x,
                                  const Vector3& reference_m) noexcept GLINT_NONBLOCKING;
 
-// Of one marker or more.
+// Requires at least one marker.
 [[nodiscard]] AgreedPose agreed_pose(std::span<const WeightedMarker> markers,
                                      const ExpectedPose& expected,
                                      int steps_max) noexcept GLINT_NONBLOCKING;

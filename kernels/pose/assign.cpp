@@ -11,7 +11,7 @@ namespace {
 
 using MarkerSet = std::bitset<k_blobs_max>;
 
-// All markers are looked at, so that every test costs the same.
+// Tests all markers without an early exit: the cost is data independent.
 bool is_free(const Labeling& labeling, const MarkerSet& taken) {
   unsigned hits = 0;
   for (const std::int16_t marker : labeling.marker) {
@@ -21,7 +21,7 @@ bool is_free(const Labeling& labeling, const MarkerSet& taken) {
   return hits == 0;
 }
 
-// Moves `at` to the tool's best labeling that is still free, or to the end. Returns the tests.
+// Advances `at` to the tool's best free labeling, or to the end. Returns the number of tests.
 int seek_free(const Labelings& labelings, const MarkerSet& taken, int& at) {
   const int count = std::min(labelings.count, k_labelings_max);
   int tests = 0;

@@ -13,21 +13,22 @@
 namespace glint {
 namespace {
 
-// Where a sphere curls away the depth of a pixel says little about its own middle.
+// Upper limit on s / radius: near the limb a pixel's depth differs from that at its centre.
 constexpr double k_curl_part = 0.95;
-// The inner half counts as there if this part of its pixels has depth.
+// The inner disc is used if at least this part of its pixels has usable depth.
 constexpr double k_inner_valid_part = 0.25;
-// So many ranges say as much of their spread as what is declared of one.
+// Weight of the declared pixel variance beside the observed spread, in ranges.
 constexpr double k_declared_worth = 2;
-// Bias of the front point on a sphere of the nominal radius; by the ring; by the ring of one that
-// is saturated all over, where only pixels are left that a wall behind them shares. See the header.
+// Range bias on a sphere of the nominal radius: from the inner disc; from the annulus; from the
+// annulus of a fully saturated sphere, whose remaining pixels are mixed with the background. See
+// the header.
 constexpr double k_bias_m = 0.0001, k_ring_bias_m = 0.001, k_saturated_bias_m = 0.0035;
-// A blob is more than one marker if it is larger by this than a disc that the lens widens by
-// k_widening_px.
+// A blob is more than one marker if its area exceeds by this factor that of a disc, widened by
+// k_widening_px in the lens.
 constexpr double k_merged_part = 1.5;
 constexpr double k_widening_px = 1.0;
 
-// To the front points of a sphere (radius > 0) of which the samples' pixels see other points.
+// Reduces ranges to the nearest surface point of a sphere (radius > 0).
 TwoDoubles fronts_of(const DepthSamples& samples, std::size_t at, double wrapped_m,
                      double radius_m) {
   const TwoDoubles range =
@@ -40,8 +41,9 @@ TwoDoubles fronts_of(const DepthSamples& samples, std::size_t at, double wrapped
   return range - (depth - both(0.5) * beside / (range + both(radius_m)));
 }
 
-// The mean of the samples' fronts; of those again that count, with what the sensor left out of
-// every range: a pixel's distance beside the middle grows with its range.
+// Robust mean of the samples, reduced to the nearest surface point. unwrapped() averages the
+// inliers again with the wrap distance added: a pixel's distance from the centre ray grows with its
+// range.
 class FrontMean {
  public:
   FrontMean(const DepthSamples& samples, double radius_m, double unit_m)
@@ -49,13 +51,14 @@ class FrontMean {
     for (std::size_t i = 0; i < count_; i += 2) {
       store_two(fronts_of(samples, i, 0, radius_m), &fronts_[i]);
     }
-    // Never narrower than one step of the sensor's counting.
+    // The gate is at least one depth count.
     found_ = robust_mean(fronts_, samples.count, unit_m);
-    // What stands where a pair needs it must not count.
+    // The padding of an odd count must not be an inlier.
     if (count_ % 2 == 1) fronts_[count_] = std::numeric_limits<double>::infinity();
   }
   [[nodiscard]] double value() const { return found_.mean; }
-  // Of the mean of n ranges with the spread s: s / sqrt(n), where few tell little of s.
+  // Variance of the mean of n ranges with the spread s: s^2 / n; for small n the declared variance
+  // also enters, since few ranges do not determine s.
   [[nodiscard]] double variance(double declared_sigma_m) const {
     const double spread = found_.gate / 3, n = std::max(found_.near, 1);
     return (n * spread * spread + k_declared_worth * declared_sigma_m * declared_sigma_m) /
@@ -77,14 +80,14 @@ class FrontMean {
   RobustMean found_;
 };
 
-// By what factor the blob's radius at this range misses the nominal one; 1 fits best.
+// Ratio (>= 1) between the blob's radius at this range and the nominal one; 1 fits best.
 double size_misfit(const DepthView& view, double radius_m, double front_m) {
   const double steradian = view.blob.area_px * view.rays.steradian_per_pixel();
   const double ratio = std::sqrt(steradian / std::numbers::pi) * (front_m + radius_m) / radius_m;
   return ratio >= 1 ? ratio : 1 / std::max(ratio, 1e-9);
 }
 
-// A blob cut by the border tells nothing by its size.
+// The size of a blob cut by the image border is not usable.
 bool has_wrapped(const DepthView& view, double radius_m, double front_m) {
   const double wrap_m = view.depth.wrap_range_m;
   if (!(wrap_m > 0) || !(radius_m > 0)) return false;
@@ -92,7 +95,7 @@ bool has_wrapped(const DepthView& view, double radius_m, double front_m) {
   return size_misfit(view, radius_m, front_m + wrap_m) < size_misfit(view, radius_m, front_m);
 }
 
-// Fills in the range; gives the work it took.
+// Computes the range; returns the loop counts.
 BackProjectWork measure_range(const DepthView& view, const NominalMarker& nominal,
                               const MarkerWorkLimits& most, Marker& out) {
   BackProjectWork work;
@@ -133,12 +136,13 @@ BackProjectWork measure_range(const DepthView& view, const NominalMarker& nomina
   return work;
 }
 
-// The part of a ray's change that still is one where the ray has moved by a little.
+// Component of a ray's change that is perpendicular to the slightly moved ray.
 Vector3 beside_ray(const Vector3& ray, const Vector3& change) {
   return change - ray * ray.dot(change);
 }
 
-// By what it now is known to be: a sphere's centre, or more than one marker.
+// Moves a sphere's centroid to the projection of its centre. Flags a blob larger than one marker
+// and inflates its sigma.
 void correct_centroid(const DepthView& view, const SphereShift& shift, const NominalMarker& nominal,
                       Marker& out) {
   if (!(nominal.radius_m > 0) || !(out.surface_range_m > 0)) return;

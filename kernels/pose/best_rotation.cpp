@@ -7,19 +7,19 @@
 namespace glint {
 namespace {
 
-// A right singular vector of C whose singular value lies apart from both others, and whether it is
-// the largest; else it is the smallest.
+// Right singular vector of C whose singular value is separated from both others, and whether that
+// is the largest; otherwise it is the smallest.
 LoneVector lone_vector(const Matrix3& c) {
   return lone_eigenvector({c.col(0).squaredNorm(), c.col(1).squaredNorm(), c.col(2).squaredNorm(),
                            c.col(0).dot(c.col(1)), c.col(0).dot(c.col(2)), c.col(1).dot(c.col(2))});
 }
 
-// A right singular vector and C times it.
+// A right singular vector v and b = C v.
 struct Singular {
   Vector3 v, b;
 };
 
-// The two largest, the largest first.
+// The two with the largest singular values, in descending order.
 struct LargestTwo {
   Singular first, second;
 };
@@ -28,7 +28,7 @@ LargestTwo largest_two(const Matrix3& c) {
   const Vector3& n = lone.v;
   const auto [p, q] = directions_across(n);
   const Vector3 cp = c * p, cq = c * q;
-  // One plane rotation makes what C carries them to orthogonal, the longer one first.
+  // One plane rotation makes their images under C orthogonal; the longer one comes first.
   const double apart = cp.squaredNorm() - cq.squaredNorm();
   const double twice = 2 * cp.dot(cq);
   const bool alike = !(std::abs(apart) + std::abs(twice) > 0);

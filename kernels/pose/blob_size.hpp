@@ -1,17 +1,19 @@
-// How far a marker's middle may be from its blob's, as the blob's size tells.
+// Centroid error of a merged or partially occluded marker, from the area of its blob.
 //
-// What:     by how much the blob is larger or smaller than the marker's disc, as a strip along half
-//           its rim. What all markers of a tool have of it is smear, or too little light; what one
-//           has beyond is another disc that merged with it, what one lacks is hidden. The middle of
-//           two equal discs d apart lies d / 2 beside either, and they cover 2 r d more than one: a
-//           strip of 2 d / pi. Where half a disc is gone the rest's middle is 0.85 of the missing
-//           strip away, where little is gone a little more, where much is gone less: 0.8.
-// Cost:     a root and some twenty operations.
-// Worst:    none is worse than another.
-// Accuracy: drawn discs of 2 to 5 px (`BlobSize.*`): merged with an equal one their middle is off
-//           by 1.35 px an axis, rms, where 1.38 are stated, half hidden by 1.38 where 1.38 are. A
-//           strip below k_strip_noise_px, up to half a pixel of the middle, is not noticed.
-// Source:   the area of two overlapping discs, first order in their distance; the middle of a
+// What:     the blob's excess or lack of area against the marker's disc, as a rim offset along half
+//           its rim. The part common to all markers of a tool is motion blur or low signal. An
+//           individual excess is a second, merged disc; an individual lack is occlusion. The centre
+//           of two equal discs d apart is d / 2 from either, and they cover 2 r d more than one: a
+//           rim offset of 2 d / pi. Where half a disc is hidden, the centroid of the rest is 0.85
+//           of the missing rim offset away; a little more if little is hidden, less if much is:
+//           0.8.
+// Cost:     a square root and about twenty operations.
+// Worst:    data independent.
+// Accuracy: drawn discs of 2 to 5 px (`BlobSize.*`), rms centroid error per axis: 1.35 px where
+//           1.38 are stated for a disc merged with an equal one, 1.38 px where 1.38 are stated for
+//           a half-hidden one. A rim offset below k_strip_noise_px, up to half a pixel of the
+//           centroid, is not detected.
+// Source:   the area of two overlapping discs, first order in their distance; the centroid of a
 //           disc's segment, e.g. Bronshtein and Semendyayev, Handbook of Mathematics, section 3.3.
 #pragma once
 
@@ -25,18 +27,18 @@
 
 namespace glint {
 
-// The optics and a threshold below half the brightness widen a disc by so much all round.
+// Rim offset on all sides that the optics and a threshold below half the brightness cause.
 inline constexpr double k_rim_px = 0.3;
-// Of a strip, what pixels that just count or just do not may make.
+// Rim offset that pixels near the threshold may cause.
 inline constexpr double k_strip_noise_px = 0.7;
-// How far a strip moves the middle.
+// Offset of the centroid relative to the rim offset.
 inline constexpr double k_moved_by_merging = 0.25 * std::numbers::pi, k_moved_by_hiding = 0.8;
-// The range of a merged blob may be the other's, as far as a correspondence takes it for the
-// marker's: evenly within 8 sigmas.
+// Variance factor of a merged blob's range. The range may be the other marker's, within the 8 sigma
+// that the correspondence accepts: uniform distribution.
 inline constexpr double k_merged_range_growth = 8.0 * 8.0 / 3;
 
-// The strip's width in pixels, negative where some of the disc is not seen. 0 where there is no
-// image, or only a part of one; never negative for a flat marker, which a tilt narrows.
+// Returns the rim offset in pixels, negative if part of the disc is hidden. Returns 0 without an
+// image or if the blob touches the border. Never negative for a flat marker, which a tilt narrows.
 [[nodiscard]] inline double strip_px(const Marker& marker, const LocalRays& rays, const Tool& tool,
                                      double range_m) noexcept GLINT_NONBLOCKING {
   const double steradian = rays.steradian_per_pixel();
@@ -49,14 +51,14 @@ inline constexpr double k_merged_range_growth = 8.0 * 8.0 / 3;
   return tool.shape == MarkerShape::sphere ? strip : std::max(strip, 0.0);
 }
 
-// What a tool's seen markers have in common.
+// Rim offset common to a tool's visible markers.
 struct CommonStrip {
   double least_px = 1e9, most_px = -1e9;
   void add(double strip_px) noexcept {
     least_px = std::min(least_px, strip_px);
     most_px = std::max(most_px, strip_px);
   }
-  // The strip that is this marker's alone.
+  // Rim offset of this marker beyond the common one.
   [[nodiscard]] double beyond(double strip_px) const noexcept {
     return strip_px - std::clamp(strip_px, std::min(most_px, 0.0), std::max(least_px, 0.0));
   }
@@ -69,7 +71,7 @@ struct CommonStrip {
   return own_strip_px < -k_strip_noise_px;
 }
 
-// Adds what the marker's own strip says.
+// Inflates the variance by the marker's own rim offset.
 inline void widen(MarkerVariance& variance, double own_strip_px) noexcept GLINT_NONBLOCKING {
   const bool merged = is_merged(own_strip_px);
   if (!merged && !is_partly_hidden(own_strip_px)) return;

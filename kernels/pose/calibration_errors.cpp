@@ -11,8 +11,8 @@
 namespace glint {
 namespace {
 
-// One residual: its value, its derivatives by the pose (normal_equations.hpp), and minus those by
-// the errors in sigmas.
+// One residual: its value, its derivatives by the pose (normal_equations.hpp), and the negative
+// derivatives by the errors, in sigmas.
 struct Row {
   double residual = 0;
   Vector6 by_pose = Vector6::Zero();
@@ -20,16 +20,17 @@ struct Row {
 };
 using Rows = std::array<Row, 3 * k_markers_per_tool_max>;
 
-// A fit that neither its noise (chi-square of 42 degrees of freedom, 1e-3: 16 markers) nor errors
-// so many times as large as stated explain is a wrong labeling or a wrong minimum.
+// Limits of chi-square: of the noise (42 degrees of freedom, significance level 1e-3: 16 markers),
+// plus that of errors so many times their declared size. Above the sum, the labeling or the minimum
+// is wrong.
 constexpr double k_noise_chi_square_max = 76, k_errors_most = 8;
 
-// So many fits see about the same lens residual, and the same part of the ripple.
+// Number of neighbouring fits that share a lens residual, and a part of the range ripple.
 constexpr double k_fits_a_residual = 4, k_fits_a_ripple = 16;
 
 double square_of(double x) { return x * x; }
 
-// What is the same for all residuals of a marker.
+// Quantities common to all residuals of a marker.
 struct Place {
   const LocalRays& rays;
   Matrix3 rotation;
@@ -46,7 +47,7 @@ void set_row(double residual, const Vector3& gradient, const Place& place, doubl
       marker_sigma_m * (place.rotation.transpose() * gradient);
 }
 
-// The residual across the ray along `across`, where the measured ray may be turned.
+// Residual perpendicular to the ray, along `across`; camera errors rotate the measured ray.
 void set_across(const Vector3& across, const WeightedMarker& marker, const Vector3& point,
                 const Place& place, const CameraUncertainty& camera, double marker_sigma_m,
                 Row& row) {
@@ -105,7 +106,7 @@ Result<OptimalFit> add_fit(std::span<const WeightedMarker> markers, std::span<co
   }
   const Result<PoseFactor> factor = pose_factor(normal);
   if (!factor) return {{}, Reason::degenerate};
-  // Each column less what a pose explains of it.
+  // Remove from each column the part that the pose explains.
   Vector6 residual_pose = Vector6::Zero();
   Eigen::Matrix<double, 6, k_calibration_errors> pose_by_errors;
   pose_by_errors.setZero();
@@ -140,7 +141,7 @@ Result<OptimalFit> add_fit(std::span<const WeightedMarker> markers, std::span<co
     errors->ranges_m += range_m / static_cast<double>(count);
     ++errors->fits;
   }
-  // From the markers' mean to the tool's origin.
+  // Move the reference from the markers' mean to the tool's origin.
   const Quaternion turn = from_rotation_vector(-residual_pose.tail<3>());
   const Vector3 mean = T_camera_tool * mean_m - residual_pose.head<3>();
   OptimalFit fit;

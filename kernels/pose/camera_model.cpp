@@ -8,11 +8,12 @@
 namespace glint {
 namespace {
 
-// Newton's error after a step is about the step's square: of this size it leaves less than 1e-12 on
-// the plane z = 1, far below 1e-6 px for any focal length here. No step is spent on confirming it.
+// Newton's error after a step is about the step's square: a step of this size leaves less than
+// 1e-12 on the plane z = 1, far below 1e-6 px for any focal length here. No further step confirms
+// it.
 constexpr double k_last_step_square = 1e-14;
 
-// A longer Newton step leaves the part of the lens where the polynomials are well behaved.
+// Maximum Newton step: a longer one leaves the region where the polynomials are well behaved.
 constexpr double k_step_max = 0.25;
 
 struct Distorted {
@@ -20,8 +21,8 @@ struct Distorted {
   double dxdx, dxdy, dydx, dydy;
 };
 
-// OpenCV's model: radial factor (1 + k1 r2 + k2 r4 + k3 r6) / (1 + k4 r2 + k5 r4 + k6 r6), then the
-// tangential terms. With its Jacobian.
+// OpenCV's distortion model with its Jacobian: radial factor (1 + k1 r2 + k2 r4 + k3 r6) / (1 + k4
+// r2 + k5 r4 + k6 r6), then the tangential terms.
 Distorted distort(const std::array<double, 8>& k, const Vector2& p, bool with_denominator) {
   const double x = p.x(), y = p.y(), r2 = x * x + y * y;
   const double top = 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
@@ -29,7 +30,7 @@ Distorted distort(const std::array<double, 8>& k, const Vector2& p, bool with_de
   const double bottom = with_denominator ? 1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])) : 1.0;
   const double bottom_slope = with_denominator ? k[5] + r2 * (2 * k[6] + r2 * 3 * k[7]) : 0.0;
   const double factor = top / bottom;
-  const double inverse = with_denominator ? 1 / bottom : 1.0;          // beside the other division
+  const double inverse = with_denominator ? 1 / bottom : 1.0;          // independent division
   const double slope = (top_slope - factor * bottom_slope) * inverse;  // d factor / d r2
   const double p1 = k[2], p2 = k[3];
   Distorted out;
@@ -44,28 +45,29 @@ Distorted distort(const std::array<double, 8>& k, const Vector2& p, bool with_de
 
 double determinant_of(const Distorted& d) { return d.dxdx * d.dydy - d.dxdy * d.dydx; }
 
-// Beyond its turning point a polynomial folds back: there two rays would share a pixel.
+// Beyond its turning point a polynomial folds back: two rays would share a pixel there.
 bool inside_lens(const CameraModel& camera, const Vector2& p, const Distorted& d) {
   const double limit = camera.field_tangent_max;
   if (limit > 0 && p.squaredNorm() > limit * limit) return false;
   return determinant_of(d) > 0 && d.dxdx + d.dydy > 0;
 }
 
-// Where the lens would be undone by its factor at the distorted place: nearer than that place.
+// Initial guess: the distorted point divided by the radial factor there; it is closer to the
+// solution than the distorted point.
 Vector2 first_guess(const std::array<double, 8>& k, const Vector2& target, bool with_denominator) {
   const double r2 = target.squaredNorm();
   const double top = 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
   const double bottom = with_denominator ? 1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])) : 1.0;
-  // Beyond where the lens ends its polynomials may be anything: a guess that is not far off.
+  // Clamped, because the polynomials may have any value outside the lens.
   return target * std::clamp(bottom / std::max(top, 0.1), 0.25, 4.0);
 }
 
 struct Undistorted {
   Vector2 position = Vector2::Zero();  // on the plane z = 1
-  Distorted there{};                   // one step before the position, which is near enough
+  Distorted there{};                   // one step before `position`: close enough
 };
 
-// Adds the steps it took to `steps`.
+// Newton's method. Adds the steps taken to `steps`.
 Reason undistort(const CameraModel& camera, const Vector2& target, int steps_max, int& steps,
                  Undistorted& out) {
   const bool rational = camera.lens == Lens::rational;
@@ -112,7 +114,7 @@ Result<TurningRay> unproject_turning(const CameraModel& camera, const Vector2& p
                                      int& lens_steps) noexcept {
   Vector2 p{(pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy};
   if (!(p.squaredNorm() < 1e6)) return {{}, Reason::out_of_range};
-  // The change of p by one pixel: the lens's Jacobian, inverted.
+  // Derivative of p by the pixel: the lens's Jacobian, inverted.
   Vector2 dx{1 / camera.fx, 0}, dy{0, 1 / camera.fy};
   if (camera.lens != Lens::pinhole) {
     Undistorted found;
@@ -127,7 +129,7 @@ Result<TurningRay> unproject_turning(const CameraModel& camera, const Vector2& p
   const double shrink = 1 / std::sqrt(p.squaredNorm() + 1);
   Result<TurningRay> out;
   const Vector3 ray{p.x() * shrink, p.y() * shrink, shrink};
-  // What of a change on the plane z = 1 is at right angles to the ray.
+  // Component of a change on the plane z = 1 that is perpendicular to the ray.
   const auto across = [&](const Vector2& change) {
     const Vector3 moved{change.x() * shrink, change.y() * shrink, 0};
     return Vector3(moved - ray * (ray.x() * moved.x() + ray.y() * moved.y()));

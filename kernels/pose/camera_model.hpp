@@ -1,13 +1,13 @@
-// Pixel <-> ray, for the lenses that time-of-flight headsets have.
+// Camera model: pixel to ray and point to pixel, for the lenses of time-of-flight headsets.
 //
 // What:     unproject: pixel -> unit ray in the camera frame; project: point -> pixel.
-// Cost:     pinhole a division; brown and rational at most k_ray_steps_max Newton steps;
-//           lut one bilinear look-up to unproject, at most k_lut_search_iterations_max to project.
+// Cost:     pinhole: a division; brown and rational: at most k_ray_steps_max Newton steps; lut: one
+//           bilinear look-up to unproject, at most k_lut_search_iterations_max to project.
 // Worst:    a pixel or point outside the lens: all iterations, then Reason::out_of_range.
-// Accuracy: against OpenCV within 1e-6 px; there and back within 1e-6 px, the table included.
-// Source:   pinhole: the seed, section III (m = (Z x/f, Z y/f, Z)); brown and rational: OpenCV's
-//           distortion model with k1,k2,p1,p2,k3,k4,k5,k6; lut: HoloLens 2 research mode's table of
-//           unit rays, sampled at pixel centres (integer + 0.5).
+// Accuracy: against OpenCV within 1e-6 px; round trip within 1e-6 px, the table included.
+// Source:   pinhole: Puljiz et al., section III (m = (Z x/f, Z y/f, Z)); brown and rational:
+//           OpenCV's distortion model with k1,k2,p1,p2,k3,k4,k5,k6; lut: HoloLens 2 research mode's
+//           table of unit rays, sampled at pixel centres (integer + 0.5).
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ namespace glint {
 
 enum class Lens : std::uint8_t { pinhole, brown, rational, lut };
 
-// Borrowed: height rows of width unit rays (x, y, z), float, zero where the lens maps nothing.
+// Not owned. `height` rows of `width` unit rays (x, y, z), float; zero where the lens maps nothing.
 struct RayTable {
   int width = 0;
   int height = 0;
@@ -33,35 +33,37 @@ struct CameraModel {
   Lens lens = Lens::pinhole;
   int width = 0;
   int height = 0;
-  double fx = 0, fy = 0, cx = 0, cy = 0;  // pixels; unused by lut, but kept as its nearest pinhole
-  std::array<double, 8> distortion{};     // k1,k2,p1,p2,k3,k4,k5,k6; brown uses the first five,
-                                          // lut all of them to begin its search
+  double fx = 0, fy = 0, cx = 0, cy = 0;  // pixels; of lut: its nearest pinhole
+  std::array<double, 8> distortion{};     // k1,k2,p1,p2,k3,k4,k5,k6; brown uses the first five, lut
+                                          // all of them for its initial guess
   double field_tangent_max = 0;           // tangent of the widest angle the lens maps; 0: no limit
   RayTable table;                         // lut only
 };
 
 inline constexpr int k_lut_search_iterations_max = k_lens_steps_max;
 
-// Reason::out_of_range: outside the table, or the lens has no ray there, or none that
-// k_ray_steps_max Newton steps find.
+// Returns Reason::out_of_range if the pixel is outside the table, has no ray, or needs more than
+// k_ray_steps_max Newton steps.
 [[nodiscard]] Result<Vector3> unproject(const CameraModel& camera,
                                         const Vector2& pixel) noexcept GLINT_NONBLOCKING;
 
-// A pixel's ray and by how much it turns, at right angles to itself, from one pixel to the next.
+// A pixel's unit ray and its derivatives by the pixel, perpendicular to the ray.
 struct TurningRay {
   Vector3 ray = Vector3::UnitZ();
   Vector3 along_x = Vector3::Zero(), along_y = Vector3::Zero();
 };
-// For every lens but a table, which has neighbours to ask. Reason::out_of_range: no ray there, or
-// not found in steps_max Newton steps; those taken are added to `lens_steps`.
+// For every lens but a table, whose derivatives are differences between neighbours. Returns
+// Reason::out_of_range if there is no ray or steps_max Newton steps do not find it. Adds the steps
+// taken to `lens_steps`.
 [[nodiscard]] Result<TurningRay> unproject_turning(const CameraModel& camera, const Vector2& pixel,
                                                    int steps_max,
                                                    int& lens_steps) noexcept GLINT_NONBLOCKING;
 
-// Reason::out_of_range: behind the camera or outside the lens; the pixel may lie outside the frame.
+// Returns Reason::out_of_range if the point is behind the camera or outside the lens. The pixel may
+// be outside the frame.
 [[nodiscard]] Result<Vector2> project(const CameraModel& camera,
                                       const Vector3& point) noexcept GLINT_NONBLOCKING;
-// The same, and adds the look-ups that a lens table took to `lens_steps`.
+// As above; adds the look-ups in a lens table to `lens_steps`.
 [[nodiscard]] Result<Vector2> project(const CameraModel& camera, const Vector3& point,
                                       int& lens_steps) noexcept GLINT_NONBLOCKING;
 

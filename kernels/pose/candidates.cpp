@@ -10,8 +10,8 @@
 namespace glint {
 namespace {
 
-// A sphere of radius r at range z covers pi (f r / z)^2 pixels near the axis; a disc no more than
-// that, and less when it is tilted: by up to 75 degrees, beyond which it no longer shines.
+// A sphere of radius r at range z covers pi (f r / z)^2 pixels near the axis. A disc covers at most
+// that, and less when tilted: by up to 75 degrees, beyond which it returns no light.
 constexpr double k_disc_foreshortening = 0.26;
 
 bool area_fits(const Marker& marker, double range_m, const Tool& tool,
@@ -33,7 +33,8 @@ bool range_fits(double range_m, const CorrespondSettings& settings) {
          range_m <= settings.range_max_m * k_range_margin;
 }
 
-// By tool marker: is `point` within each of the two gates of where it is predicted?
+// Bit masks over the tool's markers: `point` is within each of the two gates of its predicted
+// position.
 struct NearMask {
   unsigned near = 0, nearest = 0;
 };
@@ -68,7 +69,7 @@ int select_candidates(const Markers& markers, const Tool& tool, const Correspond
   }
   std::array<std::uint8_t, k_blobs_max> near{}, nearest{};
   const double few_gate_m = std::min(settings.few_gate_m, settings.prior_gate_m);
-  std::size_t first_far = 0;  // candidates before it lie near the prediction
+  std::size_t first_far = 0;  // candidates before it are near the prediction
   const int count = std::clamp(markers.count, 0, settings.markers_max);
   for (int m = 0; m < count; ++m) {
     const Marker& marker = markers.items[static_cast<std::size_t>(m)];

@@ -1,8 +1,8 @@
-// The markers that could belong to one tool, as points.
+// Candidate markers of one tool, as points: selection by depth, range, area and prediction.
 //
-// What:     leaves out markers without depth, those out of range, and those whose area cannot be
-//           the tool's marker at that range; with a prediction, says which of them lie near which
-//           predicted marker, and puts those that lie near any of them first.
+// What:     removes markers without depth, those out of range, and those whose area cannot be the
+//           tool's marker at that range. With a prediction, marks the candidates near each
+//           predicted marker, and puts those near any of them first.
 // Cost:     one pass over the markers, for each of them one over the tool's markers.
 // Worst:    every marker is a candidate.
 // Accuracy: exact.
@@ -19,7 +19,7 @@
 
 namespace glint {
 
-// A set of candidates by index. Loops run over `words` of the set in use, not over all.
+// Bit set of candidate indices. Loops run over the `words` in use, not over all.
 struct CandidateSet {
   std::array<std::uint64_t, k_blobs_max / 64> word;
 
@@ -35,15 +35,15 @@ using CandidateSets = std::array<CandidateSet, k_markers_per_tool_max>;
 struct Candidates {
   std::array<Vector3, k_blobs_max> point_m;  // marker centres, camera frame
   std::array<Vector3, k_blobs_max> ray;
-  std::array<double, k_blobs_max> across_variance_m2;  // of the centre, across its ray, an axis
+  std::array<double, k_blobs_max> across_variance_m2;  // of the centre, across its ray, per axis
   std::array<std::int16_t, k_blobs_max> marker;        // index into Markers
   int count = 0;
   int words = 0;          // of a CandidateSet that are in use
-  CandidateSets near;     // of each tool marker: those within the gate of its predicted place
-  CandidateSets nearest;  // likewise, within the gate of labelings that only a prediction allows
+  CandidateSets near;     // per tool marker: within prior_gate_m of its prediction
+  CandidateSets nearest;  // per tool marker: within few_gate_m of it
 };
 
-// The prior may be null. Returns the number of markers looked at.
+// The prior may be null. Returns the number of markers read.
 int select_candidates(const Markers& markers, const Tool& tool, const CorrespondSettings& settings,
                       const Pose* prior_T_camera_tool,
                       Candidates& candidates) noexcept GLINT_NONBLOCKING;

@@ -1,7 +1,7 @@
-// How large a chi-square the noise explains: beyond it something is wrong, but for one in 10^4.
+// Chi-square limits for the test of a fit's residuals, at significance level 1e-4.
 //
-// Source: the quantiles of the chi-square distribution at 1 - 1e-4, from its closed forms
-//         (Abramowitz and Stegun 1964, 26.4.4 and 26.4.5), solved by bisection.
+// Source:   the quantiles of the chi-square distribution at 1 - 1e-4, from its closed forms
+//           (Abramowitz and Stegun 1964, 26.4.4 and 26.4.5), solved by bisection.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace glint {
 
 inline constexpr double k_chi_square_tail = 1e-4;
 
-// 0 for no degrees of freedom; beyond 24, three for each of 8 markers, as for 24.
+// Returns 0 for no degrees of freedom; beyond 24, three for each of 8 markers, the limit of 24.
 [[nodiscard]] constexpr double chi_square_limit(int degrees_of_freedom) {
   constexpr std::array<double, 25> limits = {
       0,       15.1367, 18.4207, 21.1075, 23.5127, 25.7448, 27.8563, 29.8775, 31.8276,

@@ -7,7 +7,7 @@
 namespace glint {
 namespace {
 
-// Most markers first; once some are found, only fewer_kept steps further down.
+// Searches from `most` to `least` markers; ends fewer_kept markers below the best labeling found.
 void run_levels(LabelingSearch& search, const CandidateSets& allowed,
                 const CorrespondSettings& settings, int most, int least, const Labelings& found) {
   for (int target = most; target >= least && !search.full(); --target) {
@@ -25,7 +25,7 @@ CandidateSets all_of(const Candidates& candidates) {
   return sets;
 }
 
-// The candidates that a labeling names, each for any of the tool's markers.
+// Candidates of a labeling, each allowed as any of the tool's markers.
 CandidateSets those_of(const Labeling& labeling, const Candidates& candidates) {
   CandidateSet named{};
   for (int a = 0; a < candidates.count; ++a) {
@@ -49,9 +49,9 @@ bool agrees(const Labeling& labeling, const Tool& tool, const Pose& prior, doubl
   return true;
 }
 
-// What lying there is worth beside lying anywhere a hand may be, in units of chi square: twice the
-// logarithm of the two densities' ratio, at least 1. Tools that claim the same markers share the
-// workplace, so its size only has to be larger than any prediction's sigma.
+// Log prior ratio of the predicted position to any position in the workspace, in units of
+// chi-square: twice the logarithm of the two densities' ratio, at least 1. Tools that claim the
+// same markers share the workspace, so its size only has to be larger than any prediction's sigma.
 double worth_of(const Labeling& labeling, const Tool& tool, const CorrespondSettings& settings,
                 const Pose& prior) {
   constexpr double k_workplace_m = 1;

@@ -38,7 +38,8 @@ DecidedLabeling decide_labeling(const Markers& markers, const MarkerSights& sigh
   const int count = std::clamp(labelings.count, 0, k_labelings_max);
   out.reason = count > 0 ? Reason::bad_fit : labelings.reason;
   if (count == 0 && out.reason == Reason::none) out.reason = Reason::no_labeling;
-  // First all as they are; where none is explained, once more without one of their markers.
+  // First pass: all markers of each labeling. Second pass, if none passes: one of its markers
+  // removed.
   for (const int left_out_max : {0, settings.left_out_max}) {
     if (out.chosen >= 0) break;
     for (int k = 0; k < count; ++k) {

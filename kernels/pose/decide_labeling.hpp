@@ -1,11 +1,11 @@
-// Which of a tool's labelings is its own: the one that the noise explains best.
+// Choice of a tool's labeling by the chi-square of its weighted fit.
 //
-// What:     every labeling kept is fitted by refine_pose.hpp; of those whose chi-square the noise
-//           explains the ones with the most markers stand, and of these the least chi-square. Where
-//           none is explained, the first one that is without one of its markers.
-// Cost:     a weighted fit from two starts for each labeling, 5 us of four markers.
-// Worst:    all labelings alike in count, none explained, each refitted without each marker.
-// Accuracy: chi-square loses one true labeling in 10^4 (chi_square_limit.hpp).
+// What:     refine_pose.hpp fits every labeling. Of those that pass the chi-square test, the ones
+//           with the most markers remain, and of these the one with the least chi-square is chosen.
+//           If none passes, the first one that passes with one of its markers removed is chosen.
+// Cost:     a weighted fit from two initial guesses for each labeling, 5 us for four markers.
+// Worst:    all labelings have equal counts, none passes, and each is refitted without each marker.
+// Accuracy: the chi-square test loses one true labeling in 10^4 (chi_square_limit.hpp).
 // Source:   the likelihood of all labelings compared; test of the residuals as in refine_pose.hpp.
 #pragma once
 
@@ -21,26 +21,27 @@
 
 namespace glint {
 
-// Each beside the marker with the same index in Markers.
+// Element i belongs to element i of Markers.
 using MarkerSights = std::array<MarkerSight, k_blobs_max>;
 
 struct DecidedLabeling {
   int chosen = -1;  // index into Labelings::items, -1: none
   RefinedPose pose;
-  // How much worse the next labeling with as many markers fits; large where there is none.
+  // Chi-square of the next labeling with as many markers, minus the chosen one's; large if there is
+  // none.
   double delta_chi_square = 1e9;
   RefineWork work;
-  Reason reason = Reason::none;  // the labelings' own where there are none, bad_fit, out_of_range
+  Reason reason = Reason::none;  // the labelings' own if there are none, bad_fit, out_of_range
 };
 
-// The tool and the labelings must belong to the markers. The prior may be null. left_out in the
-// pose counts the labeling's seen markers, in the tool's order.
+// Requires that the tool and the labelings belong to the markers. The prior may be null.
+// pose.left_out is an index into the labeling's visible markers, in the tool's order.
 [[nodiscard]] DecidedLabeling decide_labeling(
     const Markers& markers, const MarkerSights& sights, const Tool& tool,
     const Labelings& labelings, const PosePrior* prior,
     const RefineSettings& settings) noexcept GLINT_NONBLOCKING;
 
-// What decide_labeling may do at most.
+// Upper bound of decide_labeling's loop counts.
 [[nodiscard]] constexpr RefineWork decide_work_max(int markers, const RefineSettings& settings) {
   RefineSettings none_left_out = settings;
   none_left_out.left_out_max = 0;

@@ -6,7 +6,7 @@
 namespace glint {
 namespace {
 
-// With the largest element 1, so that powers neither vanish nor overflow.
+// Scaled to a largest element of 1, so that powers neither underflow nor overflow.
 Matrix3 scaled(const Matrix3& matrix) {
   const double largest = std::max({matrix(0, 0), matrix(1, 1), matrix(2, 2)});
   return largest > 0 ? Matrix3(matrix / largest) : Matrix3::Identity();
@@ -46,7 +46,7 @@ Pose depth_flipped(const Pose& T_camera_tool, const Vector3& flattest,
   const Vector3 mean = T_camera_tool * mean_m;
   const Vector3 view = unit_or(mean, Vector3::UnitZ());
   const Vector3 normal = T_camera_tool.rotation * flattest;
-  // As quaternions unit vectors are half turns, and two mirrors in a row their product.
+  // A unit vector as a quaternion is a half turn; two successive reflections are their product.
   const Quaternion v(0, view.x(), view.y(), view.z());
   const Quaternion n(0, normal.x(), normal.y(), normal.z());
   Pose flipped;

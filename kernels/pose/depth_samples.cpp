@@ -11,11 +11,11 @@ constexpr double k_rim_margin_px = 0.5;        // half a pixel beyond the rim st
 
 constexpr int k_square_side_max_px = 2 * k_scan_radius_max_px;
 
-// A square of the frame's pixels, every `step`-th in both directions.
+// A square of the frame's pixels, subsampled by `step` in both directions.
 struct Square {
   int x0, y0, columns, rows, step = 1;
   [[nodiscard]] int pixels() const { return columns * rows; }
-  // So that it has at most so many pixels; one is never too many.
+  // Increases the step until at most so many pixels remain, but at least one.
   void widen_step(int most) {
     const int width = columns, height = rows;
     while (pixels() > std::max(most, 1)) {
@@ -26,7 +26,7 @@ struct Square {
   }
 };
 
-// To the pixel that holds this place, of an axis that begins at 0.
+// Index of the pixel that contains the coordinate, at least 0.
 int pixel_at(double place) { return place > 0 ? static_cast<int>(place) : 0; }
 
 Square square_around(const DepthView& view, double outer) {
@@ -41,7 +41,7 @@ Square square_around(const DepthView& view, double outer) {
   return square;
 }
 
-// A pixel of use, in one word: what is written at once is read at once.
+// Column, row and raw depth of a pixel in one word: one store, one load.
 class Reading {
  public:
   Reading() = default;
@@ -57,12 +57,12 @@ class Reading {
 static_assert(k_square_side_max_px <= 256);
 
 struct Readings {
-  std::array<Reading, k_square_max_px + 1> items;  // one more is written to, never kept
+  std::array<Reading, k_square_max_px + 1> items;  // the last one is written, never counted
   int count = 0;
   int tried = 0;
 };
 
-// How far a square's columns and rows lie from the blob's middle.
+// Offsets of a square's columns and rows from the blob's centroid, in pixels.
 struct Offsets {
   std::array<double, k_square_side_max_px> x, y;
 
@@ -76,7 +76,7 @@ struct Offsets {
   }
 };
 
-// The pixels with inner <= distance < outer from the middle that are not mostly background.
+// Annulus: pixels with inner <= distance < outer from the centroid that are not mostly background.
 struct Ring {
   double inner_square, outer_square;
   int reflectivity_least;
@@ -87,7 +87,7 @@ struct Ring {
   }
 };
 
-// All pixels nearer than that.
+// Disc: all pixels nearer than outer.
 struct WholeDisc {
   double outer_square;
   [[nodiscard]] int holds(double distance_square, int) const {
@@ -95,12 +95,12 @@ struct WholeDisc {
   }
 };
 
-// The square's pixels that the shape holds and whose depth is of use, by rows. Each is written, and
-// kept by counting on: no branch depends on what a pixel holds.
+// Collects the square's pixels that are inside the shape and have usable depth, by rows. Writes
+// every pixel and advances the count only for those: no branch depends on a pixel's value.
 template <class Shape, class Pixel>
 void read(const DepthView& view, const ImageView<Pixel>& reflectivity, const Square& square,
           const Offsets& offsets, const Shape& shape, Readings& out) {
-  // Below 0, which means none, an unsigned number is large.
+  // A depth of 0 means none: 0 - 1U is large and fails the test.
   const unsigned raw_end = std::max<unsigned>(view.depth.invalid_from, 1) - 1;
   const int saturated_from = view.depth.saturated_from;
   int count = 0, tried = 0;
@@ -124,11 +124,11 @@ void read(const DepthView& view, const ImageView<Pixel>& reflectivity, const Squ
   out.tried = tried;
 }
 
-// Which of so many are taken, evenly spread, so that all round is heard: each the last of its part.
-// Source: Bresenham, IBM Systems Journal 4 (1965): the line's error term.
+// Selects some of `all` indices, evenly spread so that all sides are represented: each the last of
+// its interval. Source: Bresenham, IBM Systems Journal 4 (1965): the line's error term.
 class Thinning {
  public:
-  // 1 <= taken <= all.
+  // Requires 1 <= taken <= all.
   Thinning(int all, int taken)
       : taken_(taken),
         stride_(all / taken),
@@ -148,8 +148,8 @@ class Thinning {
   int taken_, stride_, stride_rest_, next_, rest_;
 };
 
-// The lens around the middle as a quadratic form, how far beside it a pixel's ray lies; and what
-// makes a depth along the axis radial.
+// Geometry of a pixel from the linearised lens: a quadratic form gives its ray's squared distance
+// from the centre ray; a factor converts depth along the axis to radial range.
 class Placing {
  public:
   explicit Placing(const DepthView& view)
@@ -180,7 +180,7 @@ class Placing {
   bool is_along_axis_;
 };
 
-// Of the readings at most `most`, by pairs; an odd last one stands twice.
+// Writes at most `most` of the readings, in pairs; an odd last one is duplicated.
 void take(const DepthView& view, const Offsets& offsets, const Readings& readings, int most,
           DepthSamples& out) {
   out.count = std::min(readings.count, most);
@@ -217,7 +217,7 @@ void sample(const DepthView& view, const Square& square, const Shape& shape, int
 
 void inner_samples(const DepthView& view, double radius_px, int most_samples,
                    DepthSamples& out) noexcept {
-  // A pixel's centre is at most 0.71 px from any point.
+  // The nearest pixel's centre is at most 0.71 px from any point.
   const double outer = std::clamp(k_inner_part * radius_px, 0.72, k_inner_radius_max_px);
   sample(view, square_around(view, outer), WholeDisc{outer * outer},
          std::min(most_samples, k_inner_samples_max), out);

@@ -1,4 +1,4 @@
-// How a sensor states depth: what the simulator writes and back-projection reads.
+// Depth format of a sensor: the simulator writes it, back-projection reads it.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@ enum class DepthKind : std::uint8_t {
 
 struct DepthSettings {
   DepthKind kind = DepthKind::radial;
-  double unit_m = 0.001;                  // metres a raw count
-  std::uint16_t invalid_from = 4090;      // raw values from here on mean "none", like 0
-  double wrap_range_m = 0;                // ranges repeat at this distance; 0: they do not
-  std::uint16_t saturated_from = 0xFFFF;  // reflectivity from here on spoils the pixel's own depth
-  DepthBias bias;                         // of the markers that are looked for
-  double pixel_sigma_m = 0.004;           // of one pixel's depth, as far as it does not show itself
+  double unit_m = 0.001;                  // metres per raw count
+  std::uint16_t invalid_from = 4090;      // raw values from here on are invalid, like 0
+  double wrap_range_m = 0;                // ranges wrap at this distance; 0: they do not
+  std::uint16_t saturated_from = 0xFFFF;  // reflectivity from here on invalidates the depth
+  DepthBias bias;                         // of the tools' markers
+  double pixel_sigma_m = 0.004;           // of one pixel's depth, before its spread is observed
 };
 
 }  // namespace glint

@@ -1,9 +1,11 @@
-// Where a tool is expected, to choose among readings of its markers that all might be true.
+// Predicted pose of a tool, and the squared Mahalanobis distance of a fitted pose from it, to
+// choose among ambiguous pose hypotheses.
 //
-// What:     the squared distance of a fitted pose from an expected one, in sigmas of both together.
+// What:     the squared distance of a fitted pose from a predicted one, normalised by the sum of
+//           both covariances.
 // Cost:     one 6x6 factor and solution, two lever arms: 0.4 us.
-// Worst:    none is worse than another.
-// Accuracy: rounding, for errors of a radian or less; beyond, it only has to be large.
+// Worst:    data independent.
+// Accuracy: rounding, for errors of up to a radian; beyond, the value only has to be large.
 // Source:   Mahalanobis 1936; as a gate: Bar-Shalom, Li and Kirubarajan 2001, Estimation with
 //           Applications to Tracking and Navigation, section 2.3.2.
 #pragma once
@@ -13,27 +15,28 @@
 
 namespace glint {
 
-// Odds of a pose against the likeliest other one: twice the logarithm of their likelihoods' ratio,
-// in units of chi-square. Below the least a pose is ambiguous: the other one is true once in 3000.
-// More than the most does not count, so that a wrong pose needs few frames to be refuted.
+// Odds of a pose against the likeliest other one: twice the logarithm of their likelihood ratio, in
+// units of chi-square. Below k_odds_least a pose is ambiguous: the other one is true once in 3000.
+// Odds are limited to k_odds_most, so that few frames suffice to reject a wrong pose.
 inline constexpr double k_odds_least = 16;
 inline constexpr double k_odds_most = 40;
 
-// covariance: of (the reference's place, rotation about the camera frame's fixed axes) in metres
-// and radians; as in fit_covariance.hpp.
+// covariance: of (reference position, rotation about the camera frame's fixed axes) in metres and
+// radians; as in fit_covariance.hpp.
 struct ExpectedPose {
   Pose T_camera_tool;
   Matrix6 covariance = Matrix6::Zero();
-  Vector3 reference_m = Vector3::Zero();  // tool frame: the point whose place is expected
-  // By how much of chi-square the frames before preferred it to the likeliest other pose. Readings
+  Vector3 reference_m = Vector3::Zero();  // tool frame: the point whose position is predicted
+  // Chi-square by which earlier frames preferred this pose to the likeliest other one. Hypotheses
   // of this frame that differ by more outweigh it.
   double odds = k_odds_most;
 };
 
-// A pose that agrees has 6 on average. Where it cannot be told, as large as this:
+// Value if the distance cannot be computed. A consistent pose has 6 on average.
 inline constexpr double k_no_surprise_known = 1e300;
 
-// found_covariance: as above, about found_reference_m of the tool's frame.
+// Returns the squared Mahalanobis distance. found_covariance: as above, about found_reference_m of
+// the tool's frame.
 [[nodiscard]] double surprise_of(const ExpectedPose& expected, const Pose& found,
                                  const Matrix6& found_covariance,
                                  const Vector3& found_reference_m) noexcept GLINT_NONBLOCKING;

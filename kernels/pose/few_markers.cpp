@@ -15,7 +15,7 @@ namespace {
 using Gate = FewScratch::Gate;
 constexpr std::uint8_t k_not_whole = k_marker_no_depth | k_marker_touches_edge | k_marker_uneven;
 
-// Of a marker's centre, from its pixel's and its range's variance.
+// Covariance of a marker's centre, from the variances of its pixel and its range.
 Matrix3 centre_covariance(const MarkerSight& sight, double range_m) {
   const LocalRays& rays = sight.rays;
   const MarkerVariance& v = sight.variance;
@@ -34,7 +34,7 @@ void open_gate(const ExpectedTool& expected, int marker, const MarkerNoise& nois
   gate.place_m = expected.T_camera_tool * model;
   const double range = gate.place_m.norm();
   radius_m = 1e9;
-  gate.whiten = Matrix3::Identity() * 1e9;  // holds nothing
+  gate.whiten = Matrix3::Identity() * 1e9;  // contains nothing
   if (!(range > 0)) return;
   Marker there;
   there.ray = gate.place_m / range;
@@ -69,13 +69,13 @@ NamedMarker measured(const Marker& marker, const Tool& tool, int of_tool,
                      const MarkerNoise& noise) {
   const double range = centre_range_m(marker, tool);
   MarkerSight sight = sight_of(marker, range, noise);
-  CommonStrip common;  // one or two do not tell what is common
+  CommonStrip common;  // one or two markers do not show the common rim offset
   common.add(0);
   widen(sight.variance, common.beyond(strip_px(marker, sight.rays, tool, range)));
   return {of_tool, marker.ray * range, centre_covariance(sight, range)};
 }
 
-// Whether the two are as far apart as the tool has them, but once in 10^4.
+// Test of the distance of two markers against the tool's, at significance level 1e-4.
 bool fits(const NamedMarker& a, const NamedMarker& b, const Tool& tool) {
   const Vector3 between = b.centre_m - a.centre_m;
   const double length = between.norm();

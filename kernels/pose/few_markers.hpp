@@ -1,20 +1,21 @@
-// Which markers can only be one tool's, where too few are in view to name them by their distances.
+// Partial visibility: identifies one or two visible markers of a predicted tool by validation
+// gates, where no labeling by distances is possible.
 //
-// What:     each predicted tool's markers get a gate, the ellipsoid that holds a marker but once in
-//           10^4: the prediction's covariance at its place and the declared noise of a measurement.
-//           A marker is named where one gate alone holds it, of all tools', and it is alone there;
-//           where no other of the tool's gates can meet this one; where the tool has one or two
-//           filled gates, for of three a pose should have come; and where it is whole in the image,
-//           as one half behind a hand lies beside its place. Two have to be as far apart as they
-//           should.
+// What:     each marker of a predicted tool has a gate, an ellipsoid at significance level 1e-4,
+//           from the prediction's covariance at its position and the declared measurement noise. A
+//           marker is identified under four conditions. (1) Exactly one gate of all tools contains
+//           it, and that gate contains no other free marker. (2) No other gate of the tool can
+//           overlap that gate. (3) The tool has one or two filled gates, since three should have
+//           given a pose. (4) The marker has depth and is not merged, partially occluded or cut by
+//           the border, which displaces the centroid. Two identified markers must also have the
+//           tool's distance.
 // Cost:     a Cholesky factor for each gate, a test of nine multiplications for each gate and
 //           marker.
-// Worst:    all tools predicted, as many markers as there may be. Where they lie makes no
-//           difference.
-// Accuracy: a stray in the gate of a hidden marker is taken for it: wrong by no more than the gate
-//           is wide, which is less than half of the tool's least distance.
+// Worst:    all tools predicted, the capacity of markers. Their positions make no difference.
+// Accuracy: a stray reflection in the gate of a hidden marker is identified as that marker. The
+//           error is at most the gate's width, less than half of the tool's least distance.
 // Source:   validation gates and their exclusive use: Bar-Shalom, Li and Kirubarajan 2001, section
-//           1.5 (nearest neighbour), made strict: what two may claim nobody gets.
+//           1.5 (nearest neighbour), made strict: a marker in two gates belongs to neither.
 #pragma once
 
 #include <array>
@@ -29,10 +30,10 @@
 
 namespace glint {
 
-inline constexpr int k_few_max = 2;  // three are a pose
+inline constexpr int k_few_max = 2;  // three give a pose
 
 struct NamedMarker {
-  int of_tool = 0;                     // the tool's marker
+  int of_tool = 0;                     // index of the tool's marker
   Vector3 centre_m = Vector3::Zero();  // as measured, camera frame
   Matrix3 covariance_m2 = Matrix3::Zero();
 };
@@ -41,13 +42,14 @@ struct FewMarkers {
   int count = 0;
 };
 
-// A tool where it was predicted: covariance of the middle of its markers, about the camera's axes.
+// A tool at its predicted pose. covariance: of the mean of its markers and of its rotation, about
+// the camera's axes.
 struct ExpectedTool {
   const Tool* tool = nullptr;
   Pose T_camera_tool;
   Matrix6 covariance = Matrix6::Zero();
-  bool predicted = false;  // otherwise it has no gates
-  bool wanted = false;     // it has no labeling: its markers are to be named
+  bool predicted = false;  // false: it has no gates
+  bool wanted = false;     // it has no labeling, so its markers are to be identified
 };
 
 using TakenMarkers = std::bitset<k_blobs_max>;
@@ -55,23 +57,22 @@ using TakenMarkers = std::bitset<k_blobs_max>;
 struct FewScratch {
   struct Gate {
     Vector3 place_m = Vector3::Zero();
-    Matrix3 whiten = Matrix3::Zero();  // a residual's squared length by it is its chi square
-    bool apart = false;                // meets no other gate of the same tool
-    int held = 0;                      // markers in it that no labeling has taken
+    Matrix3 whiten = Matrix3::Zero();  // |whiten residual|^2 is its chi-square
+    bool apart = false;                // overlaps no other gate of the same tool
+    int held = 0;                      // markers in it that no labeling contains
     int marker = -1;                   // the last of them
   };
   std::array<std::array<Gate, k_markers_per_tool_max>, k_tools_max> gates;
-  std::array<std::uint8_t, k_blobs_max> claims{};  // gates that hold the marker
-  std::array<double, k_blobs_max> range_m{};       // to each marker's centre, were it this tool's
+  std::array<std::uint8_t, k_blobs_max> claims{};  // number of gates that contain the marker
+  std::array<double, k_blobs_max> range_m{};       // ranges of marker centres for the current tool
 };
 
 struct FewWork {
   int gates = 0;
-  int tests = 0;  // of a marker in a gate; its range, once for each tool, counts as one
+  int tests = 0;  // of a marker in a gate; its range, once per tool, counts as one
 };
 
-// taken: markers that a labeling holds. markers_max of the markers are looked at. One element of
-// `named` for each tool.
+// taken: markers of labelings. Reads at most markers_max markers. `named` has one element per tool.
 FewWork name_few(std::span<const ExpectedTool> tools, const Markers& markers, int markers_max,
                  const TakenMarkers& taken, const MarkerNoise& noise, FewScratch& scratch,
                  std::span<FewMarkers> named) noexcept GLINT_NONBLOCKING;

@@ -22,8 +22,8 @@ Result<Matrix6> fit_covariance(std::span<const Vector3> points_m,
   result.reason = points_m.size() == covariances_m2.size() ? rotation_is_fixed_by(points_m)
                                                            : Reason::too_few_markers;
   if (result.reason != Reason::none) return result;
-  // About the markers' mean shift and rotation separate, so the inverse keeps its digits however
-  // far away the reference is.
+  // About the markers' mean, translation and rotation decouple, so the inverse keeps its digits
+  // however far away the reference is.
   Vector3 mean = Vector3::Zero();
   for (const Vector3& point : points_m) mean += point;
   mean /= static_cast<double>(points_m.size());

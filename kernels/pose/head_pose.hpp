@@ -1,4 +1,4 @@
-// Where the headset's camera was at a frame's mid-exposure, by the headset's own localisation.
+// Camera pose of the headset at a frame's mid-exposure, from the headset's own localisation.
 #pragma once
 
 #include "kernels/geometry.hpp"
@@ -7,8 +7,8 @@
 namespace glint {
 
 struct HeadPose {
-  Time time;           // equals the frame's mid_exposure: already interpolated to it
-  bool valid = false;  // without it the tool's pose still holds in the camera's frame
+  Time time;           // the frame's mid_exposure; the pose is already interpolated to it
+  bool valid = false;  // false: the tool's pose is valid in the camera's frame only
   Pose T_world_camera;
 };
 

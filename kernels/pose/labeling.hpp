@@ -1,4 +1,5 @@
-// Which candidate marker is which of a tool's: the answer of the correspondence search.
+// Labeling: assignment of measured markers to a tool's markers, result of the correspondence
+// search.
 #pragma once
 
 #include <array>
@@ -11,22 +12,22 @@
 namespace glint {
 
 struct Labeling {
-  // marker[i] is the index into Markers of the tool's marker i, -1 where it was not seen.
+  // marker[i] is the index into Markers of the tool's marker i, -1 if not visible.
   std::array<std::int16_t, k_markers_per_tool_max> marker{};
-  int count = 0;     // how many are seen, 3 at least
+  int count = 0;     // visible markers, at least 3
   double rms_m = 0;  // of the rigid fit over them
-  // What it is worth that every marker lies where it was predicted, within the gate; else 0. Tools
-  // that claim the same markers are compared by count rms^2 less this.
+  // Log prior ratio, scaled to m^2, if every marker is within the gate of its predicted position;
+  // else 0. Tools that claim the same markers are compared by count rms^2 minus this.
   double predicted_worth_m2 = 0;
-  Pose T_camera_tool;  // that fit
+  Pose T_camera_tool;  // pose of that fit
 };
 
-// The tool's labelings, best first: more markers before fewer, then the smaller rms.
+// One tool's labelings, best first: more markers before fewer, then the smaller rms.
 struct Labelings {
   std::array<Labeling, k_labelings_max> items;
   int count = 0;
   std::uint32_t hypotheses = 0;  // partial assignments tried
-  Reason reason = Reason::none;  // why there is none, or search_full
+  Reason reason = Reason::none;  // why there is no labeling, or search_full
 };
 
 }  // namespace glint

@@ -50,7 +50,7 @@ int LabelingSearch::next_candidate(int i) {
   return a;
 }
 
-// Fills the next level's sets. Returns how many later markers may still be named.
+// Computes the next level's sets. Returns how many later markers may still be assigned.
 int LabelingSearch::narrow(int level, int i, int a) {
   const std::uint64_t* const row = &matches_.word[matches_.set_of(i, a, 0)];
   const std::uint64_t* const from = sets_[level].word.data();
@@ -93,7 +93,8 @@ void LabelingSearch::run(const CandidateSets& allowed, int target) noexcept {
   }
   if (root.possible < target) return;
   root.rest = word_at(0, 0, 0);
-  // Each turn tries one name or goes back by one marker, and a name is a step: the budget ends it.
+  // Each iteration tries one assignment or goes back by one marker. An assignment is a step, so the
+  // step budget ends the loop.
   for (int i = 0; i >= 0;) {
     Place& place = place_[i];
     Place& next = place_[i + 1];

@@ -1,14 +1,15 @@
-// Walks the table of pair matches for ways to name the tool's markers, and keeps the best.
+// Depth-first search for labelings in the table of pair matches; keeps the best ones.
 //
-// What:     names tool marker after tool marker; each name narrows what the later ones may still be
-//           to those at the right distance. Where enough are named, the rigid fit judges. Who has
-//           too few partners for a labeling of the wanted size is never named.
-// Cost:     one step for each name tried, in which the sets of all markers are narrowed, and
+// What:     assigns a candidate to one tool marker after another. Each assignment restricts the
+//           candidates of later markers to those at the right distance. Labelings of the target
+//           size are tested by the rigid fit. A candidate with too few partners for that size is
+//           never assigned.
+// Cost:     one step for each assignment tried, which intersects the sets of all later markers, and
 //           k_fit_steps for each fit.
-// Worst:    the steps are used up: `full`, and what was found so far stands.
-// Accuracy: complete within the steps.
+// Worst:    the step budget is exhausted: `full`, and the labelings found so far remain.
+// Accuracy: complete within the step budget.
 // Source:   clique search in the association graph by intersecting compatible sets (Bron and
-//           Kerbosch 1973), bounded in depth; no recursion, so that the stack is known.
+//           Kerbosch 1973), bounded in depth; no recursion, so that the stack size is known.
 #pragma once
 
 #include "kernels/nonblocking.hpp"
@@ -36,17 +37,17 @@ class LabelingSearch {
   [[nodiscard]] const SearchWork& work() const { return work_; }
 
  private:
-  // The sets after some names, marker by marker, `words` words each.
+  // Candidate sets after some assignments, marker by marker, `words` words each.
   struct Sets {
     std::array<std::uint64_t, k_markers_per_tool_max*(k_blobs_max / 64)> word;
   };
-  // Where the walk stands at one tool marker.
+  // State of the search at one tool marker.
   struct Place {
-    int named = 0;           // markers named before this one, and so the level of sets in force
-    int possible = 0;        // later ones, this one included, that may still be named
-    int word = 0;            // the set's word that is being read ...
-    std::uint64_t rest = 0;  // ... and what is left of it
-    bool left_out = false;   // every candidate was tried; now the marker is left out
+    int named = 0;           // markers assigned before this one: the level of the sets in force
+    int possible = 0;        // markers from this one on that may still be assigned
+    int word = 0;            // index of the set's current word
+    std::uint64_t rest = 0;  // candidates left in that word
+    bool left_out = false;   // every candidate was tried; now the marker stays unassigned
   };
 
   [[nodiscard]] bool spend(int steps);

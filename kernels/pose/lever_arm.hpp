@@ -1,5 +1,4 @@
-// How points of a rigid body move with its pose: the step between covariances about different
-// points of one tool.
+// Lever arm Jacobians of a rigid body: move a pose covariance between reference points and frames.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +8,8 @@
 
 namespace glint {
 
-// Of a shift and a small rotation dtheta about the frame's fixed axes: p -> p + shift + dtheta x
-// lever, with the lever from the pose's reference to the point.
+// Jacobian of a point by a translation and a small rotation dtheta about the frame's fixed axes: p
+// -> p + translation + dtheta x lever, with the lever from the pose's reference to the point.
 [[nodiscard]] inline Eigen::Matrix<double, 3, 6> point_by_pose(const Vector3& lever) {
   Eigen::Matrix<double, 3, 6> j;
   j << 1, 0, 0, 0, lever.z(), -lever.y(),  //
@@ -19,7 +18,7 @@ namespace glint {
   return j;
 }
 
-// The change of (reference, rotation) when the reference moves by `lever`.
+// Jacobian of (reference, rotation) when the reference moves by `lever`.
 [[nodiscard]] inline Matrix6 pose_by_pose(const Vector3& lever) {
   Matrix6 j = Matrix6::Identity();
   j.topRows<3>() = point_by_pose(lever);
@@ -40,7 +39,7 @@ namespace glint {
   return moved;
 }
 
-// A pose's covariance about the axes of the frame that `rotation` leads to.
+// A pose's covariance about the axes of the frame that `rotation` maps to.
 [[nodiscard]] inline Matrix6 turned_covariance(const Matrix6& covariance,
                                                const Quaternion& rotation) {
   Matrix6 turn = Matrix6::Zero();
@@ -49,7 +48,8 @@ namespace glint {
   return turn * covariance * turn.transpose();
 }
 
-// No direction's variance is larger: no eigenvalue exceeds the largest row sum (Gershgorin 1931).
+// Upper bound on the variance in any direction: no eigenvalue exceeds the largest row sum
+// (Gershgorin 1931).
 [[nodiscard]] inline double largest_variance(const Matrix3& covariance) {
   double most = 0;
   for (int i = 0; i < 3; ++i) {

@@ -5,7 +5,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_grid_cells = 128;  // each way
+constexpr int k_grid_cells = 128;  // in x and in y
 
 Result<LocalRays> from_table(const CameraModel& camera, const Vector2& pixel, int& lens_steps) {
   LocalRays local;
@@ -51,7 +51,7 @@ int ray_steps_needed(const CameraModel& camera) noexcept {
   if (camera.lens == Lens::lut) return k_table_ray_steps;
   if (camera.lens == Lens::pinhole) return 0;
   int most = 0;
-  // Both borders are on the grid: the rim takes the most.
+  // The grid contains the borders: the rim takes the most steps.
   for (int row = 0; row <= k_grid_cells; ++row) {
     for (int column = 0; column <= k_grid_cells; ++column) {
       const Vector2 pixel{static_cast<double>(column) * camera.width / k_grid_cells,

@@ -1,8 +1,8 @@
-// Where a marker's centre lies along its ray, if it is one of a tool's.
+// Range of a marker's centre along its ray, if the marker is one of a tool's.
 //
-// What:     the measured surface, a sphere's radius farther; where the tool's markers are of a kind
-//           whose ranges were measured, their bias is taken off in place of the camera's. A point
-//           that no image gave, as one of another tracker, has no peak, and no such bias.
+// What:     the measured surface range, plus a sphere's radius. If a depth bias was measured for
+//           the tool's kind of marker, it replaces the camera's. A point without an image, e.g. of
+//           another tracker, has no peak and no such bias.
 // Cost:     two sums; ten operations more for a tool with a bias of its own.
 // Worst:    a bias of its own.
 // Accuracy: that of depth_bias.hpp.

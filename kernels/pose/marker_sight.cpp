@@ -9,7 +9,7 @@ double variance_of(double own_sigma, double declared_sigma, double least) {
   return std::max(own_sigma * own_sigma + declared_sigma * declared_sigma, least * least);
 }
 
-// Rays at right angles to each other, turning by this much a unit.
+// Two perpendicular derivatives of the ray, of length `turn` per unit.
 LocalRays made_up(const Marker& marker, double turn) {
   const Vector3 first = marker.ray.unitOrthogonal();
   return {marker.centroid_px, marker.ray, turn * first, turn * marker.ray.cross(first),
@@ -27,7 +27,7 @@ MarkerSight sight_of(const Marker& marker, double range_m, const MarkerNoise& no
   variance.xy_px2 = 0;
   const bool has_image = sight.rays.steradian_per_pixel() > 0;
   if (!has_image && !(noise.focal_px > 0)) {
-    // In place of pixels metres at the marker's range.
+    // The unit is a metre at the marker's range instead of a pixel.
     sight.rays = made_up(marker, 1 / range_m);
     variance.xx_px2 = variance.yy_px2 = variance.range_m2;
     return sight;

@@ -1,10 +1,10 @@
-// How the errors of one marker act on the weighted fit.
+// Sensitivity of the weighted fit to the errors of one marker.
 //
-// What:     columns h = -J' df/dc of the marker's three residuals f, J their derivatives by
-//           the pose (normal_equations.hpp), for unit errors c; an error dc moves the pose by
-//           N^-1 h dc, N = sum J' J.
+// What:     columns h = -J' df/dc of the marker's three residuals f, J their derivatives by the
+//           pose (normal_equations.hpp), for unit errors c; an error dc moves the pose by N^-1 h
+//           dc, N = sum J' J.
 // Cost:     seven 6-vectors of two or three products each.
-// Worst:    none is worse than another.
+// Worst:    data independent.
 // Accuracy: first order in the errors.
 // Source:   systematic_covariance.hpp.
 #pragma once
@@ -19,13 +19,13 @@
 namespace glint {
 
 struct MarkerSlopes {
-  Vector6 farther;                    // the measured range, 1 m
-  Vector6 right, down;                // the measured centroid, 1 px
-  Vector6 outward;                    // the focal length, as a ratio
-  Eigen::Matrix<double, 6, 3> moved;  // the marker in its tool, 1 m along the camera's axes
+  Vector6 farther;                    // error of the measured range, 1 m
+  Vector6 right, down;                // error of the measured centroid, 1 px
+  Vector6 outward;                    // error of the focal length, as a ratio
+  Eigen::Matrix<double, 6, 3> moved;  // error of its position in the tool, 1 m, camera's axes
 };
 
-// point: the marker as the pose has it, camera frame; lever: from the markers' mean to it.
+// point: the marker's position by the pose, camera frame; lever: from the markers' mean to it.
 [[nodiscard]] inline MarkerSlopes marker_slopes(const WeightedMarker& marker, const LocalRays& rays,
                                                 const Vector3& point, const Vector3& lever) {
   const double inverse = 1 / marker.ray.dot(point);

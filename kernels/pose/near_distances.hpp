@@ -1,10 +1,11 @@
-// Which of four distances are near which of the tool's.
+// SIMD comparison of four distances with the tool's.
 //
-// What:     of four distances: is |distance - wanted| < gate? All bits of its lane, or one bit.
-// Cost:     a few instructions, the same whatever the distances are.
-// Worst:    none is worse than another.
-// Accuracy: exact. g++'s and clang's vector types compare lanes on any machine that has lanes, and
-//           one by one on one that has none.
+// What:     for four distances: is |distance - wanted| < gate? The result is all bits of the lane,
+//           or one bit.
+// Cost:     a few instructions.
+// Worst:    data independent.
+// Accuracy: exact. The vector types of g++ and clang compare lanes on any machine with SIMD, and
+//           one by one on a machine without.
 // Source:   none; x86-64 has an instruction that gathers the lanes' highest bits.
 #pragma once
 
@@ -28,13 +29,13 @@ inline FloatLanes lanes_at(const float* numbers) {
   return lanes;
 }
 
-// All bits of a lane are set where it is near.
+// Sets all bits of a lane whose distance is near.
 inline BitLanes near(FloatLanes distance, FloatLanes wanted, FloatLanes gate) {
   const auto magnitude = reinterpret_cast<BitLanes>(distance - wanted) & 0x7FFFFFFFu;
   return reinterpret_cast<BitLanes>(reinterpret_cast<FloatLanes>(magnitude) < gate);
 }
 
-// A bit for each lane, side by side.
+// Gathers one bit per lane into the lowest four bits.
 inline std::uint64_t gathered(BitLanes lanes) {
 #ifdef GLINT_SSE2
   return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(lanes)));

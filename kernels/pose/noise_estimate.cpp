@@ -9,10 +9,10 @@
 namespace glint {
 namespace {
 
-// Squared: a residual beyond three sigma counts as three.
+// Squared: a residual beyond three sigma is clipped to three.
 constexpr double k_clip_square = 9;
 
-// y' y of L y = gradient: the part of a residual's variance that the fit takes.
+// Leverage: y' y of L y = gradient, the part of a residual's variance that the fit absorbs.
 double leverage_of(const PoseFactor& factor, const Vector3& gradient, const Vector3& lever) {
   Vector6 y;
   y << gradient, lever.cross(gradient);
@@ -23,13 +23,13 @@ double leverage_of(const PoseFactor& factor, const Vector3& gradient, const Vect
   return std::min(y.squaredNorm(), 1.0);
 }
 
-// Residuals of one kind and what they were weighed with.
+// Weighted sum of the residuals of one kind: ranges or pixels.
 class Kind {
  public:
-  // least: the smallest variance of all; declared: the part that is in each.
+  // least: the smallest variance of all markers; declared: the part common to all.
   Kind(double least, double declared) : least_(least), declared_(declared) {}
 
-  // sigmas: the residual in its standard deviation.
+  // sigmas: the residual divided by its standard deviation.
   void add(double sigmas, double leverage, double variance) {
     const double weight = (least_ / variance) * (least_ / variance), free = 1 - leverage;
     const double own = std::max(variance - declared_, 0.0);
@@ -46,7 +46,8 @@ class Kind {
 
 double variance_of(double sigma) { return sigma * sigma; }
 
-// The variance of all ranges or pixels; the declared one is worth some residuals.
+// Updates the sum and returns the variance of all ranges or pixels; the declared one has the weight
+// of some residuals.
 double update(const ResidualSum& newest, double declared, double least, double most, bool known,
               ResidualSum& sum) {
   if (!known)
@@ -58,7 +59,7 @@ double update(const ResidualSum& newest, double declared, double least, double m
   return std::clamp(sum.squares / sum.freedom, least, most);
 }
 
-// The estimate beside one that begins with the largest variance.
+// Ratio of the estimate with the largest variance as initial value to the current one; at least 1.
 double doubt_of(const ResidualSum& sum, double sigma, double declared_sigma) {
   const double open = k_noise_open_worth * sum.declared / k_noise_declared_worth;
   const double seen = sum.freedom - sum.declared;

@@ -1,19 +1,20 @@
-// How noisy markers are, from the residuals of their fits: the declared noise is where it begins.
+// Noise of marker ranges and pixels, estimated from the residuals of their fits (variance component
+// estimation); the declared noise is the initial value.
 //
-// What:     a residual v of variance t and leverage h has the expectation E v^2 = (1 - h) t, and t
-//           is the marker's own variance plus the one declared for all (marker_sight.hpp). So the
-//           latter is sum w (v^2 - (1 - h) own) / sum w (1 - h), for ranges and for pixels apart,
-//           with w = (least t / t)^2. Old residuals lose weight as new ones come: about the newest
-//           k_noise_memory of those free to deviate count. A residual beyond three sigma counts as
-//           three.
+// What:     a residual v of variance t and leverage h has the expectation E v^2 = (1 - h) t. t is
+//           the marker's own variance plus the one declared for all (marker_sight.hpp). So the
+//           latter is sum w (v^2 - (1 - h) own) / sum w (1 - h), for ranges and for pixels
+//           separately, with w = (least t / t)^2. The weight of old residuals decays: about the
+//           newest k_noise_memory degrees of freedom count. A residual beyond three sigma is
+//           clipped to three.
 // Cost:     for each fit the normal equations once more and their factor; three forward
-//           substitutions a marker.
-// Worst:    none is worse than another of as many markers.
-// Accuracy: a variance within sqrt(2 / k_noise_memory) = 8 %, 1 sigma; 0.5 % too small by the three
-//           sigmas. What several markers have in common (a tool's size, an offset of all ranges)
-//           leaves no residual and is not in it.
-// Source:   Foerstner 1979, "Ein Verfahren zur Schaetzung von Varianz- und Kovarianzkomponenten":
-//           a variance for each group of observations by its residuals and their redundancy.
+//           substitutions per marker.
+// Worst:    data independent for a given number of markers.
+// Accuracy: a variance within sqrt(2 / k_noise_memory) = 8 %, 1 sigma; 0.5 % too small by the
+//           clipping. Systematic errors common to several markers (a tool's size, an offset of all
+//           ranges) leave no residual and are not included.
+// Source:   Foerstner 1979, "Ein Verfahren zur Schaetzung von Varianz- und Kovarianzkomponenten": a
+//           variance for each group of observations by its residuals and their redundancy.
 #pragma once
 
 #include <span>
@@ -25,48 +26,49 @@
 
 namespace glint {
 
-// Of ranges in m^2, of pixels in px^2.
+// Units: of ranges m^2, of pixels px^2.
 struct ResidualSum {
-  double squares = 0;   // beyond what the markers' own variances explain; may be negative
-  double freedom = 0;   // how many residuals that is worth
-  double declared = 0;  // of these, the declared noise's
+  double squares = 0;   // in excess of the markers' own variances; may be negative
+  double freedom = 0;   // redundancy: degrees of freedom of these residuals
+  double declared = 0;  // part of the redundancy from the declared noise
 };
 struct MarkerResiduals {
   ResidualSum range, pixel;
 };
 
-// markers: as they were fitted to T_camera_tool; variances: what each was weighed with, in the same
-// order; noise: the part of these that is declared for all. All sums are 0 where the markers do not
-// fix the pose.
+// markers: as fitted to T_camera_tool; variances: those of their weights, in the same order; noise:
+// the part of these that is declared for all. All sums are 0 if the markers do not determine the
+// pose.
 [[nodiscard]] MarkerResiduals residuals_of(std::span<const WeightedMarker> markers,
                                            std::span<const MarkerVariance> variances,
                                            const Pose& T_camera_tool,
                                            const MarkerNoise& noise) noexcept GLINT_NONBLOCKING;
 
-inline constexpr double k_noise_memory = 300;  // residuals
-// What the declared noise is worth beside the residuals.
+inline constexpr double k_noise_memory = 300;  // degrees of freedom
+// Weight of the declared noise, in degrees of freedom.
 inline constexpr double k_noise_declared_worth = 8;
-// Beyond these a marker's residuals are no noise.
+// Upper limits of the sigmas: larger residuals are not noise.
 inline constexpr double k_range_sigma_most_m = 0.02;
 inline constexpr double k_pixel_sigma_most_px = 1;
 
 struct NoiseEstimate {
   MarkerResiduals sums;
-  double range_sigma_m = 0, pixel_sigma_px = 0;  // by them
+  double range_sigma_m = 0, pixel_sigma_px = 0;  // from the sums
   bool known = false;                            // false: no residual yet
 };
 
-// Before there are residuals the variances may be larger than declared by this factor: published
-// HoloLens-class range noise is 1.5 to 5 mm. That counts as so many residuals at most.
+// Before the first residuals the variances may exceed the declared ones by this factor: published
+// HoloLens-class range noise is 1.5 to 5 mm. The larger value has a weight of at most
+// k_noise_open_worth degrees of freedom.
 inline constexpr double k_noise_variance_open = 10;
 inline constexpr double k_noise_open_worth = 3;
 
-// By how much the variances may exceed the estimate: k_noise_variance_open before there are
-// residuals, 1 after k_noise_memory.
+// Returns the factor by which the variances may exceed the estimate: k_noise_variance_open before
+// the first residuals, about 1 after k_noise_memory.
 [[nodiscard]] double variance_doubt(const NoiseEstimate& estimate,
                                     const MarkerNoise& declared) noexcept GLINT_NONBLOCKING;
 
-// The declared noise until there are residuals.
+// Returns the estimate, or the declared noise before the first residuals.
 [[nodiscard]] inline MarkerNoise noise_now(const NoiseEstimate& estimate,
                                            const MarkerNoise& declared) {
   if (!estimate.known) return declared;

@@ -5,11 +5,11 @@
 namespace glint {
 namespace {
 
-// Of a point along the measured ray, as a part of the measured range: nearer it is elsewhere.
+// Minimum depth of a point along its measured ray, as a part of the measured range.
 constexpr double k_depth_part_least = 0.1;
 
-// Of one marker: sum of gradient * gradient' (its lower half) and of gradient * residual. The
-// turning part of every row is lever x gradient, so it need not be made for each.
+// Sums of one marker: gradient * gradient' (its lower triangle) and gradient * residual. The
+// rotation part of every row is lever x gradient, so it is computed once per marker.
 struct PointSums {
   double xx = 0, yx = 0, zx = 0, yy = 0, zy = 0, zz = 0;
   Vector3 slope = Vector3::Zero();
@@ -30,7 +30,7 @@ struct PointSums {
 void add_point(const PointSums& sums, const Vector3& lever, NormalEquations& normal) {
   const Vector3 x(sums.xx, sums.yx, sums.zx), y(sums.yx, sums.yy, sums.zy),
       z(sums.zx, sums.zy, sums.zz);
-  // Columns of [lever]x A, and with its rows crossed once more [lever]x A [lever]x'.
+  // Columns of [lever]x A; the cross product of its rows with the lever gives [lever]x A [lever]x'.
   const Vector3 turn_x = lever.cross(x), turn_y = lever.cross(y), turn_z = lever.cross(z);
   Matrix6& m = normal.matrix;
   m(0, 0) += sums.xx;

@@ -1,11 +1,12 @@
-// The normal equations of the weighted fit at one pose.
+// Normal equations of the weighted pose fit at one pose (Gauss-Newton).
 //
 // What:     with the residuals f_k of all markers (weighted_marker.hpp: u, v and range of each):
 //           chi_square = sum f_k^2, slope = sum J_k' f_k, matrix = sum J_k' J_k. Parameters: the
-//           shift of the markers' mean and a small rotation about it, about the camera's axes; of a
-//           residual with the gradient g at a point with the lever r, J = [g', (r x g)'].
-// Cost:     three residuals a marker and their products.
-// Worst:    none is worse than another.
+//           translation of the markers' mean and a small rotation about it, along the camera's
+//           axes. For a residual with the gradient g at a point with the lever r, J = [g', (r x
+//           g)'].
+// Cost:     three residuals per marker and their products.
+// Worst:    data independent.
 // Accuracy: exact derivatives of the residuals.
 // Source:   Gauss-Newton's equations, e.g. Nocedal and Wright 2006, eq. (10.23).
 #pragma once
@@ -20,13 +21,13 @@
 namespace glint {
 
 struct NormalEquations {
-  Matrix6 matrix = Matrix6::Zero();  // the lower half holds
+  Matrix6 matrix = Matrix6::Zero();  // lower triangle only
   Vector6 slope = Vector6::Zero();
   double chi_square = 0;
 };
 
-// mean_m: of the markers, in the tool's frame. False: a marker would lie beside or behind its own
-// ray's half of the world, where it has no pixel.
+// mean_m: of the markers, tool frame. Returns false if a marker's depth along its measured ray is
+// negative or less than a tenth of the measured range, where it has no valid pixel.
 [[nodiscard]] bool add_markers(std::span<const WeightedMarker> markers, const Pose& T_camera_tool,
                                const Vector3& mean_m,
                                NormalEquations& normal) noexcept GLINT_NONBLOCKING;

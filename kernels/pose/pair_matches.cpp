@@ -13,13 +13,13 @@ constexpr float k_too_far_m2 = k_too_far_m * k_too_far_m;
 
 static_assert(k_blobs_max % k_lanes == 0);
 
-// The next whole number of lanes.
+// Rounds up to whole lanes.
 int whole_lanes(int count) { return (count + k_lanes - 1) / k_lanes * k_lanes; }
 
-// The tool's distances, each in all lanes, and where the rows for its two markers begin.
+// The tool's distances, each in all lanes, and the start of the rows for its two markers.
 struct ToolPairs {
   std::array<FloatLanes, k_tool_pairs_max> distance_m;
-  std::array<int, k_tool_pairs_max> row;  // of the first candidate as marker i, the set for j
+  std::array<int, k_tool_pairs_max> row;  // set for j of the first candidate as marker i
   std::array<int, k_tool_pairs_max> i, j;
   int count = 0;
 };
@@ -38,8 +38,8 @@ ToolPairs pairs_of(const Tool& tool, const PairMatches& matches) {
   return pairs;
 }
 
-// Coordinates side by side, so that one pass handles several candidates at a time; single precision
-// holds them to 0.1 um, and a gate is a millimetre at least.
+// Coordinates as a structure of arrays, so that one pass processes several candidates at a time.
+// Single precision represents them to 0.1 um, and a gate is at least a millimetre.
 struct Columns {
   std::array<float, k_blobs_max> x, y, z, ray_x, ray_y, ray_z, variance;
 };
@@ -63,7 +63,7 @@ Columns columns_of(const Candidates& candidates) {
   return columns;
 }
 
-// Of one candidate with others.
+// Distances of one candidate to the others, and their gates.
 struct Gates {
   std::array<float, k_blobs_max> distance_m, delta_m;
 };
@@ -81,7 +81,7 @@ void gates_of(const Columns& __restrict c, int a, int end, const CorrespondSetti
   for (int b = 0; b < end; ++b) {
     const float dx = x - c.x[b], dy = y - c.y[b], dz = z - c.z[b];
     const float square = dx * dx + dy * dy + dz * dz;
-    // Two blobs in one place have no direction, and no distance that a tool has.
+    // Two candidates at one position have no direction; they get a distance that no tool has.
     const float apart = square + (square > 0 ? 0.0F : k_too_far_m2);
     const float inverse = 1.0F / apart;
     const float distance = std::sqrt(apart);
@@ -99,13 +99,13 @@ void gates_of(const Columns& __restrict c, int a, int end, const CorrespondSetti
   }
 }
 
-// What the candidates of a block found among those before them, for the rows of those: bit a -
-// block of [b / k_lanes][p], lane b % k_lanes, says that a and b are as far apart as the tool's
+// Matches of a block's candidates with earlier ones, for the rows of the earlier ones: bit a -
+// block of [b / k_lanes][p], lane b % k_lanes, is set if a and b have the distance of the tool's
 // pair p.
 constexpr int k_block = 32;
 using Found = std::array<std::array<BitLanes, k_tool_pairs_max>, k_blobs_max / k_lanes>;
 
-// Compares candidate a's distances to 64 others at most with the tool's.
+// Compares candidate a's distances to at most 64 others with the tool's.
 void compare(const Gates& gates, const ToolPairs& pairs, int begin, int end, std::uint32_t mark,
              Found& found, std::uint64_t* row) {
   std::array<std::uint64_t, k_tool_pairs_max> near_a{};
@@ -122,10 +122,10 @@ void compare(const Gates& gates, const ToolPairs& pairs, int begin, int end, std
   for (int p = 0; p < pairs.count; ++p) row[pairs.row[p]] = near_a[p];
 }
 
-// By the tool's distances: who has a partner that far away.
+// For each of the tool's distances, the candidates that have a partner at that distance.
 using Partnered = std::array<CandidateSet, k_tool_pairs_max>;
 
-// Word w of candidate a's row names partners, and makes a one.
+// Adds the partners in word w of candidate a's row, and a itself if there are any.
 void note_partners(const ToolPairs& pairs, const std::uint64_t* row, int a, int w,
                    Partnered& partnered) {
   for (int p = 0; p < pairs.count; ++p) {
@@ -135,7 +135,7 @@ void note_partners(const ToolPairs& pairs, const std::uint64_t* row, int a, int 
   }
 }
 
-// Copies a block's findings into the rows of those found, which end before `end`.
+// Copies a block's matches into the rows of the matched candidates, all before `end`.
 void note_for_the_found(const ToolPairs& pairs, const Found& found, int block, int end,
                         PairMatches& matches) {
   const int row_words = matches.words_a_row();
@@ -169,7 +169,7 @@ PairWork match_pairs(const Candidates& candidates, const Tool& tool,
     for (int b = 0; b < end; b += k_lanes)
       std::fill_n(found[b / k_lanes].begin(), pairs.count, BitLanes{});
     for (int a = block; a < end; ++a) {
-      // A few after a, and a itself, which is too far away from itself, fill the last lanes.
+      // Pad to whole lanes. Candidate a cannot match itself; matches of those after a are valid.
       const int others = whole_lanes(a);
       gates_of(columns, a, others, settings, gates);
       for (int w = 0; w < matches.words; ++w) {

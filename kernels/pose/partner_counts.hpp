@@ -1,10 +1,11 @@
-// Which candidates could be a tool's marker at all, as far as single pairs tell: a labeling of n
-// markers gives each of its candidates n - 1 partners at the tool's distances.
+// Number of partners of each candidate at the tool's distances, to prune the correspondence search
+// by degree: a labeling of n markers gives each of its candidates n - 1 partners.
 //
-// What:     for each tool marker, of how many others every candidate has a partner.
+// What:     for each tool marker and each candidate, for how many other tool markers the candidate
+//           has a partner.
 // Cost:     (tool markers)^2 x words of a set, a few operations on words each.
-// Worst:    none is worse than another.
-// Accuracy: exact; no labeling is lost by leaving out who has too few partners.
+// Worst:    data independent.
+// Accuracy: exact; removing candidates with too few partners loses no labeling.
 // Source:   counting in bit planes, as a carry-save adder does: Warren, "Hacker's Delight", 2nd
 //           ed., section 5-1. Pruning by degree as in the search for cliques.
 #pragma once
@@ -24,7 +25,7 @@ class PartnerCounts {
     }
   }
 
-  // Of the candidates in word w those that, as marker i, have partners for `least` others.
+  // Returns the candidates in word w that, as marker i, have partners for at least `least` others.
   [[nodiscard]] std::uint64_t with_at_least(int least, int i, int w) const noexcept {
     std::uint64_t more = 0;
     std::uint64_t equal = ~std::uint64_t{0};
@@ -40,7 +41,7 @@ class PartnerCounts {
  private:
   static constexpr int k_planes = 3;
   static_assert(k_markers_per_tool_max - 1 < 1 << k_planes);
-  using Planes = std::array<std::uint64_t, k_planes>;  // bit a of plane k: 2^k partners of a
+  using Planes = std::array<std::uint64_t, k_planes>;  // bit a of plane k: bit k of a's count
 
   static Planes planes_of(const PairMatches& matches, int i, int w) {
     Planes planes{};

@@ -5,8 +5,8 @@
 namespace glint {
 namespace {
 
-// What is left of a diagonal element when the others' share is gone; of a matrix that determines
-// nothing in this direction rounding leaves 1e-15 of it.
+// Minimum pivot, relative to its diagonal element. In a direction that the matrix does not
+// determine, rounding leaves 1e-15.
 constexpr double k_left_least = 1e-12;
 
 }  // namespace

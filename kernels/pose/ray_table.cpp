@@ -6,7 +6,7 @@
 namespace glint {
 namespace {
 
-// The ray between the table's rays and how it changes with the pixel; not made unit.
+// Interpolated ray and its derivatives by the pixel; not normalised.
 struct Sample {
   Vector3 ray = Vector3::Zero();
   Vector3 along_x = Vector3::Zero(), along_y = Vector3::Zero();
@@ -31,7 +31,7 @@ Sample look_up(const RayTable& table, const Vector2& pixel) {
     const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(y + i / 2) * table.width + x + i % 2;
     const float* ray = table.rays + 3 * at;
     corners[i] = {ray[0], ray[1], ray[2]};
-    // A pixel's own centre needs no neighbour: at the lens circle they have none.
+    // At a pixel's own centre the neighbours have no weight: at the lens circle they have no ray.
     if (!(corners[i].z() > 0) && weights[i] != 0) return out;
   }
   for (int i = 0; i < 4; ++i) out.ray += weights[i] * corners[i];
@@ -41,7 +41,7 @@ Sample look_up(const RayTable& table, const Vector2& pixel) {
   return out;
 }
 
-constexpr double k_step_max_px = 32;  // the slopes of a cell say little about far ones
+constexpr double k_step_max_px = 32;  // a cell's derivatives do not hold far away
 constexpr double k_converged_px = 1e-9;
 
 }  // namespace
@@ -60,7 +60,7 @@ Result<Vector2> project(const RayTable& table, const Vector3& point, const Vecto
   Vector2 last_valid = middle;
   Vector2 pixel{std::clamp(start.x(), 0.0, static_cast<double>(table.width)),
                 std::clamp(start.y(), 0.0, static_cast<double>(table.height))};
-  if (!inside(table, pixel)) pixel = middle;  // a start that is not a number
+  if (!inside(table, pixel)) pixel = middle;  // start is not a number
   for (int i = 0; i < k_lut_search_iterations_max; ++i) {
     ++steps;
     const Sample sample = look_up(table, pixel);
@@ -69,7 +69,7 @@ Result<Vector2> project(const RayTable& table, const Vector3& point, const Vecto
       continue;
     }
     last_valid = pixel;
-    // Zero where the ray meets the point on the plane z = 1.
+    // Zero if the ray meets the point on the plane z = 1.
     const Vector2 miss{tx * sample.ray.z() - sample.ray.x(), ty * sample.ray.z() - sample.ray.y()};
     const double a = sample.along_x.x() - tx * sample.along_x.z();
     const double b = sample.along_y.x() - tx * sample.along_y.z();

@@ -16,7 +16,7 @@ namespace {
 
 using MarkerSpan = std::span<const WeightedMarker>;
 
-// What every fit of one tool in one frame needs.
+// Inputs of every fit of one tool in one frame.
 struct Task {
   const Vector3& reference_m;
   const PosePrior* prior;
@@ -24,7 +24,7 @@ struct Task {
   const ExpectedPose* expected;
 };
 
-// A fit, how sure it is of the reference, and how far from what was expected.
+// A fit, the covariance of its reference, and its squared Mahalanobis distance from the prediction.
 struct Minimum {
   WeightedFit fit;
   Matrix6 covariance = Matrix6::Zero();
@@ -85,21 +85,21 @@ OtherMinimum other_than(const WeightedFit& best, const Minimum& second) {
   return other;
 }
 
-// Of the quaternions of a pose and of its flip: tilted by less than 29 degrees to the view.
+// Dot product of the quaternions of a pose and its flip, tilted by 29 degrees to the view.
 constexpr double k_shallow_dot = 0.8776;
 
 bool is_explained(double chi_square, int degrees_of_freedom) {
   return chi_square <= chi_square_limit(degrees_of_freedom);
 }
 
-// Above which chi-square a fit from the flip cannot become a second minimum beside this one.
+// Chi-square above which a fit from the flip cannot become a second minimum beside `first`.
 double hopeless_beside(const Minimum& first, MarkerSpan markers, int degrees_of_freedom) {
   const bool told = markers.size() >= 4 && first.reason == Reason::none &&
                     is_explained(first.fit.chi_square, degrees_of_freedom);
   return told ? first.fit.chi_square + k_flip_hopeless : std::numeric_limits<double>::infinity();
 }
 
-// All of `markers`, from both starts.
+// Fits all of `markers` from both initial guesses.
 RefinedPose refine_all(MarkerSpan markers, const Task& task, int steps_max) {
   RefinedPose out;
   out.degrees_of_freedom = 3 * static_cast<int>(markers.size()) - (task.prior != nullptr ? 0 : 6);
@@ -134,7 +134,7 @@ bool is_explained(const RefinedPose& pose) {
   return pose.reason == Reason::none && is_explained(pose.chi_square, pose.degrees_of_freedom);
 }
 
-// The best fit without one of the markers that the noise explains; `all` where there is none.
+// The best fit with one marker removed that passes the chi-square test; `all` if there is none.
 RefinedPose without_one(MarkerSpan markers, const Task& task, const RefinedPose& all) {
   RefinedPose best = all;
   RefineWork work = all.work;

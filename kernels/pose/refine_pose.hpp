@@ -1,19 +1,20 @@
-// The most likely pose of a tool from its labelled markers, each as sure as it is, and how sure the
-// pose is.
+// Maximum-likelihood pose of a tool from its labelled markers, each weighted by its own noise, with
+// covariance and rejection of one outlier.
 //
-// What:     chi-square over the pixels' and ranges' own noise made least, from the rigid fit and
-//           from its depth flip (a flat tool has two minima); the lesser of both stands. Where
-//           the noise does not explain it, each marker is left out in turn, and the best such fit
-//           that the noise does explain stands. Where a pose is expected, the best is the one with
-//           the least sum of chi-square and surprise (expected_pose.hpp): so a flat tool's minima
-//           are told apart where the noise alone does not. The pose itself rests on the markers
-//           alone: a filter that foretold it would else count it twice.
-// Cost:     two weighted fits of two to four steps (bench_tracker); without one of n markers 2 n
-//           more, of half as many steps as they may take at most.
-// Worst:    5 or more markers that no pose explains, nor any without one: 2 (n + 1) fits of all
-//           the steps they may take.
-// Accuracy: reaches the Cramer-Rao bound where the tool is tilted by 20 degrees or more (glint
-//           experiment bound); below, where both minima run into each other, within some 15 %.
+// What:     minimises chi-square over the pixels' and ranges' own noise. A flat tool has two
+//           minima, so the initial guesses are the rigid fit and its depth flip, and the lesser
+//           minimum is returned. If it fails the chi-square test, each marker is removed in turn,
+//           and the best such fit that passes is returned. With a predicted pose, the best is the
+//           one with the least sum of chi-square and squared Mahalanobis distance
+//           (expected_pose.hpp). This separates a flat tool's minima where the noise alone does
+//           not. The pose itself depends on the markers alone: a filter that predicted it would
+//           otherwise count the prediction twice.
+// Cost:     two weighted fits of two to four steps (bench_tracker); with one of n markers removed 2
+//           n more, of at most half as many steps.
+// Worst:    5 or more markers that fail the test, together and without any one: 2 (n + 1) fits with
+//           the maximum number of steps.
+// Accuracy: reaches the Cramer-Rao bound if the tool is tilted by 20 degrees or more (glint
+//           experiment bound); below, where the two minima merge, within some 15 %.
 // Source:   Foerstner and Wrobel 2016, Photogrammetric Computer Vision, section 4.4 (the weighted
 //           fit, its covariance and the test of its residuals); two minima of a flat target:
 //           Schweighofer and Pinz 2006.
@@ -34,23 +35,24 @@ namespace glint {
 
 struct RefineSettings {
   int steps_max = k_refine_steps_max;  // of each fit of all markers
-  int left_out_max = 1;                // 0: no marker is left out, a bad one spoils the pose
-  // Of each fit without one marker: of these there may be many, and one that is to stand is near
-  // its end by then.
+  int left_out_max = 1;                // 0: no marker is removed, an outlier corrupts the pose
+  // Of each fit with one marker removed: there may be many, and a fit that will pass is nearly
+  // converged by then.
   int left_out_steps_max = k_refine_steps_max / 2;
-  // So many markers are left when one was left out. Three agree too easily, unless all lie where
-  // they were predicted: then 3.
+  // Minimum number of markers after a removal. Three agree by chance too easily: set 3 only if all
+  // are at their predicted positions.
   int markers_left_least = 4;
 };
 
-// Two minima nearer to each other than this, in sigmas squared, are one.
+// Two minima closer to each other than this squared Mahalanobis distance are one.
 inline constexpr double k_minima_apart_least = 0.01;
-// A flip of four or more markers whose chi-square lies so far above that of a first fit which the
-// noise explains, after k_steps_granted, is a second minimum no more: it goes the long way round to
-// the first one, or to one that is as bad. Of three markers a late second minimum was seen.
+// Limit on chi-square of a fit from the flip after k_steps_granted steps, as excess over a first
+// fit that passes the test. It applies to four or more markers. Above it the flip leads to no
+// second minimum: the fit would converge slowly to the first one, or to one that is as bad. With
+// three markers a late second minimum was observed.
 inline constexpr double k_flip_hopeless = 1000;
 
-// The loops, as a node counts them.
+// Loop counts.
 struct RefineWork {
   int fits = 0;
   int steps = 0;         // of all fits
@@ -69,12 +71,12 @@ struct RefineWork {
   return {2 * (1 + others), all + each * others, all * markers + each * others * (markers - 1)};
 }
 
-// The pose in which the markers look nearly as they do in the best one.
+// Second minimum: the pose in which the markers look nearly as they do in the best one.
 struct OtherMinimum {
   bool exists = false;
   Pose T_camera_tool;
-  Matrix6 covariance = Matrix6::Zero();  // as the best one's
-  double delta_chi_square = 0;           // by how much it is worse; 9: three sigmas
+  Matrix6 covariance = Matrix6::Zero();  // as the best pose's
+  double delta_chi_square = 0;           // excess over the best one's; 9: three sigma
   double surprise = 0;
 };
 
@@ -82,23 +84,22 @@ struct RefinedPose {
   Pose T_camera_tool;
   Matrix6 covariance = Matrix6::Zero();  // of the reference; order as in fit_covariance.hpp
   double chi_square = 0;
-  double surprise = 0;         // to whom expected a pose; 0 where none was
-  int degrees_of_freedom = 0;  // residuals, the prior's six too, less the pose's six
+  double surprise = 0;         // squared Mahalanobis distance from the prediction, or 0
+  int degrees_of_freedom = 0;  // residuals, plus the prior's six, minus the pose's six
   OtherMinimum other;
-  // A flat tool seen nearly face-on: its two minima run into each other, or are nearly as likely.
-  // Each is surer of itself than the markers are.
+  // A flat tool seen nearly face-on: its two minima merge, or are nearly equally likely. The
+  // covariance of each is smaller than the markers' information justifies.
   bool shallow = false;
-  int left_out = -1;  // index of the marker that did not fit, -1: all count
+  int left_out = -1;  // index of the removed marker, -1: none
   RefineWork work;
   Reason reason = Reason::none;
 };
 
-// reference_m: the point of the tool, in its frame, whose place is asked for (the tip). The prior
-// may be null; with one a single marker is enough, without one three that are not on a line. What
-// is expected may be null, too; it only helps to choose.
-// Reason: too_few_markers (or more than k_markers_per_tool_max), degenerate, collinear,
-// out_of_range; or bad_fit: the noise does not explain what is left. Then the pose stands, with
-// left_out -1, but must not be called measured.
+// reference_m: the tool's point (the tip), tool frame, to which the covariance refers. The prior
+// may be null; with one a single marker is enough, without one three that are not on a line.
+// `expected` may be null, too; it only selects the minimum. Reason: too_few_markers (or more than
+// k_markers_per_tool_max), degenerate, collinear, out_of_range; or bad_fit if the fit fails the
+// chi-square test. Then the pose is set, with left_out -1, but must not be used as a measurement.
 [[nodiscard]] RefinedPose refine_pose(
     std::span<const WeightedMarker> markers, const Vector3& reference_m,
     const PosePrior* prior = nullptr, const RefineSettings& settings = {},

@@ -13,9 +13,9 @@ Vector3 mean_of(std::span<const Vector3> points) {
   return sum / static_cast<double>(points.size());
 }
 
-// The eigenvalues' relation through the invariants: with e1 the trace and e2 the sum of the
-// principal minors, e2/e1^2 lies between 1 and 2 times the ratio of the two largest where it is
-// small. No decomposition is needed.
+// Tests the ratio of the second largest to the largest eigenvalue by invariants, without a
+// decomposition. With e1 the trace and e2 the sum of the principal minors, e2/e1^2 is between 1 and
+// 2 times that ratio if it is small.
 Reason judge_spread(const Matrix3& covariance) {
   const double e1 = covariance(0, 0) + covariance(1, 1) + covariance(2, 2);
   if (!std::isfinite(e1)) return Reason::out_of_range;
@@ -26,7 +26,7 @@ Reason judge_spread(const Matrix3& covariance) {
   return e2 <= k_collinear_variance_ratio * e1 * e1 ? Reason::collinear : Reason::none;
 }
 
-// Whether the second singular value is negligible beside the first. The squares of all 2x2 minors
+// Tests if the second singular value is negligible against the first. The squares of all 2x2 minors
 // sum to w0^2 w1^2 + w0^2 w2^2 + w1^2 w2^2, those of the elements to w0^2 + w1^2 + w2^2.
 bool is_on_a_line(const Matrix3& c) {
   const double squares = c.squaredNorm();

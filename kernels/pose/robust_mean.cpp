@@ -11,7 +11,7 @@ namespace {
 constexpr double k_inlier_deviations = 3 * 1.4826;
 constexpr double k_infinite = std::numeric_limits<double>::infinity();
 
-// In order, infinite from the last value on; two more than there may be, as pairs are read.
+// Ascending, with infinity after the last value; two more than the capacity, since pairs are read.
 using Sorted = std::array<double, k_range_values_max + 2>;
 static_assert(k_range_values_max == k_sort_pairs_max);
 
@@ -20,8 +20,8 @@ double middle_of(const Sorted& sorted, int count) {
   return count % 2 == 1 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
 }
 
-// The deviation from the median that `others` others do not exceed. Those nearest to the median
-// stand side by side: of all stretches so long it is the one whose worse end is nearest.
+// The deviation from the median that `others` other values do not exceed. The nearest values to the
+// median are contiguous: of all windows of that length, the one whose farther end is nearest.
 double nearest_stretch(const Sorted& sorted, int count, double median, int others) {
   const double* const from = sorted.data();
   TwoDoubles least = both(k_infinite);
@@ -50,7 +50,7 @@ RobustMean robust_mean(const RangeValues& values, int count, double gate_least) 
   out.median = middle_of(sorted, count);
   out.gate =
       std::max(k_inlier_deviations * median_deviation(sorted, count, out.median), gate_least);
-  NearSum near, near_too;  // two, so that neither waits for the other
+  NearSum near, near_too;  // two independent sums run in parallel
   for (int i = 0; i < count; i += 4) {
     const TwoDoubles two = load_two(sorted.data() + i), next = load_two(sorted.data() + i + 2);
     near.add(out, two, two);

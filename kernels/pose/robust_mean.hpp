@@ -1,10 +1,12 @@
-// The mean of ranges near their median: mixed pixels at a marker's rim lie metres away.
+// Robust mean of ranges near their median (MAD gate): mixed pixels at a marker's rim are metres
+// away.
 //
 // What:     the mean of all values within 3 sigma of the median, sigma from the median absolute
 //           deviation.
-// Cost:     what sort_pairs.hpp says, and two passes of two values at a time.
-// Worst:    none is worse than another of the same count.
-// Accuracy: of n values with normal noise sigma / sqrt(n); half of them may be wrong by anything.
+// Cost:     that of sort_pairs.hpp, and two passes of two values at a time.
+// Worst:    data independent for a given count.
+// Accuracy: sigma / sqrt(n) for n values with normal noise; up to half of them may be outliers of
+//           any size.
 // Source:   Huber, "Robust Statistics" (1981), section 5.1: 1.4826 times the deviation is a sigma.
 #pragma once
 
@@ -21,14 +23,14 @@ using RangeValues = std::array<double, k_range_values_max>;
 struct RobustMean {
   double mean = 0;
   double median = 0;
-  double gate = 0;  // a value no further from the median counts: three sigma of one
-  int near = 0;     // how many count
+  double gate = 0;  // maximum distance of an inlier from the median: three sigma
+  int near = 0;     // number of inliers
 };
 
-// Adds up, two at a time, those of which something is near the median.
+// Sums, two at a time, the values whose tested quantity is within the gate around the median.
 struct NearSum {
   TwoDoubles sum{};
-  TwoMasks minus_count{};  // a lane that is set is -1
+  TwoMasks minus_count{};  // a set lane is -1
 
   void add(const RobustMean& found, const TwoDoubles& tested, const TwoDoubles& value) {
     const TwoDoubles beyond = tested - both(found.median);
@@ -46,7 +48,7 @@ struct NearSum {
   }
 };
 
-// Of the first `count` values, 1..k_range_values_max. The gate is never narrower than gate_least.
+// Uses the first `count` values, 1..k_range_values_max. The gate is at least gate_least.
 [[nodiscard]] RobustMean robust_mean(const RangeValues& values, int count,
                                      double gate_least) noexcept GLINT_NONBLOCKING;
 

@@ -6,20 +6,20 @@
 namespace glint {
 namespace {
 
-// Between the rays whose angles tell the lens's slope and curvature: wide enough for the noise of
-// a table of single-precision rays, narrow enough for any lens that we know.
+// Step of the finite differences for the lens's slope and curvature: wide enough for the noise of a
+// table of single-precision rays, narrow enough for all known lenses.
 constexpr double k_step_px = 6;
-// At the axis itself the terms cancel: its gain is that of a place nearby.
+// At the axis itself the terms cancel: its gain is computed at this distance.
 constexpr double k_nearest_px = 24;
 
-// Of two unit rays close to each other; the series' next term is below 1e-9 of it.
+// Angle between two unit rays close to each other; the series' next term is below 1e-9 of it.
 double angle_between(const Vector3& a, const Vector3& b) {
   const double sine = a.cross(b).norm(), square = sine * sine;
   return sine * (1 + square * (1.0 / 6 + square * (3.0 / 40)));
 }
 
-// h: the distance from the axis as a function of the angle; its derivatives from the inverse's.
-// False: the lens has no ray there.
+// h: the distance from the axis as a function of the angle; its derivatives are computed from the
+// inverse's. Returns false if the lens has no ray there.
 bool gain_towards(const CameraModel& camera, const Vector2& direction, double h, double& gain) {
   const auto ray_at = [&](double distance) {
     return unproject(camera, Vector2(camera.cx, camera.cy) + distance * direction);

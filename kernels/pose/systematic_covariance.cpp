@@ -9,9 +9,9 @@
 namespace glint {
 namespace {
 
-using Common = Eigen::Matrix<double, 6, 5>;  // a column a parameter that all markers share
+using Common = Eigen::Matrix<double, 6, 5>;  // one column per parameter common to all markers
 
-// The sums of one pose.
+// Sums over the markers of one pose.
 struct Spread {
   Common common = Common::Zero();
   Matrix6 geometry = Matrix6::Zero(), correlated = Matrix6::Zero();
@@ -35,7 +35,7 @@ void add_marker(const MarkerSlopes& slopes, double range_m, const CameraUncertai
     add_square(slopes.moved.col(axis) * marker_sigma_m, spread.geometry);
 }
 
-// Of the reference: N^-1 S N^-1, moved by `lever`.
+// Covariance of the reference: N^-1 S N^-1, moved by `lever`.
 Matrix6 pose_covariance(const Matrix6& inverse, const Matrix6& spread, const Vector3& lever) {
   const Matrix6 half = inverse.lazyProduct(spread);
   const Matrix6 moved = moved_covariance(half.lazyProduct(inverse), lever);

@@ -8,7 +8,7 @@
 namespace glint {
 namespace {
 
-// FNV-1a over the numbers' bits, a byte at a time (Fowler, Noll and Vo 1991).
+// FNV-1a hash of the numbers' bits, byte by byte (Fowler, Noll and Vo 1991).
 class BodyHash {
  public:
   void add(std::uint64_t bits) {

@@ -6,13 +6,13 @@
 namespace glint {
 namespace {
 
-constexpr double k_decrease_least = 1e-4;  // of chi-square
-// A tenth of a sigma: what is known of the pose before such a step holds after it.
+constexpr double k_decrease_least = 1e-4;  // minimum decrease of chi-square
+// A step of a tenth of a sigma: the information before such a step is valid after it.
 constexpr double k_decrease_short = 1e-2;
-// Levenberg's factor: after a step taken back, and its growth and fall from there.
+// Damping factor: its initial value after an undone step, and its growth and decay.
 constexpr double k_damping_first = 0.01;
 constexpr double k_damping_growth = 10;
-constexpr double k_damping_least = 1e-4;  // below it none: Gauss-Newton converges faster
+constexpr double k_damping_least = 1e-4;  // below it 0: Gauss-Newton converges faster
 
 bool evaluate(std::span<const WeightedMarker> markers, const Vector3& mean_m, const Pose& pose,
               const PosePrior* prior, NormalEquations& normal) {
@@ -22,8 +22,8 @@ bool evaluate(std::span<const WeightedMarker> markers, const Vector3& mean_m, co
   return std::isfinite(normal.chi_square);
 }
 
-// The mean moved, and turned about it: by twice the angle whose tangent is half the rotation
-// vector's length, which is as good a step and needs no sine.
+// Translates the mean and rotates about it, by twice the angle whose tangent is half the rotation
+// vector's length. This is as good a step and needs no sine.
 Pose stepped(const Pose& pose, const Vector3& mean_m, const Vector6& step) {
   const Quaternion turn(1, 0.5 * step(3), 0.5 * step(4), 0.5 * step(5));
   const Vector3 mean = pose * mean_m + step.head<3>();
@@ -33,7 +33,7 @@ Pose stepped(const Pose& pose, const Vector3& mean_m, const Vector6& step) {
   return out;
 }
 
-// What chi-square would be lowered by at most after this step, if the last two were Gauss-Newton's.
+// Upper bound on the next step's decrease of chi-square, if the last two steps were undamped.
 double next_decrease(double decrease, double decrease_before) {
   return decrease < k_decrease_short && decrease < decrease_before
              ? decrease * decrease / decrease_before

@@ -1,14 +1,17 @@
-// The pose with the least chi-square near a start, from weighted markers and maybe a prior.
+// Weighted pose fit of a tool's labelled markers by Gauss-Newton with Levenberg-Marquardt damping,
+// with an optional prior.
 //
-// What:     Gauss-Newton's steps on the normal equations; where one does not lower chi-square it is
-//           taken back and shortened by Levenberg's term, a multiple of the matrix's diagonal.
+// What:     Gauss-Newton steps on the normal equations. A step that does not lower chi-square is
+//           undone and shortened by Levenberg's term, a multiple of the matrix's diagonal.
 // Cost:     the normal equations and a 6x6 Cholesky solution for each step.
-// Worst:    steps_max steps: the best pose so far stands, and its chi-square tells how good it is.
-// Accuracy: ended where a step lowers chi-square by less than 1e-4, a hundredth of a sigma, or
-//           where it is shorter than a tenth and the next would be as short as that: each lowers it
-//           by no larger a part than the one before. The step is still taken.
-// Source:   Levenberg 1944, Marquardt 1963; Nocedal and Wright 2006, section 10.3: how it converges
-//           where residuals are small.
+// Worst:    steps_max steps: the best pose so far is returned, and its chi-square shows its
+//           quality.
+// Accuracy: ends when a step lowers chi-square by less than 1e-4, a hundredth of a sigma. It also
+//           ends when a step is shorter than a tenth of a sigma and the next one would lower
+//           chi-square by less than 1e-4. The ratio of successive decreases, which does not grow,
+//           predicts that. The last step is still taken.
+// Source:   Levenberg 1944, Marquardt 1963; Nocedal and Wright 2006, section 10.3: convergence for
+//           small residuals.
 #pragma once
 
 #include <limits>
@@ -21,23 +24,22 @@
 
 namespace glint {
 
-// Two or three are the usual number, from the rigid fit of points with 5 mm of noise along their
-// rays.
+// Usually two or three, from the rigid fit of points with 5 mm of noise along their rays.
 inline constexpr int k_refine_steps_max = 12;
-// After so many it shows whether a start leads anywhere near.
+// Number of steps after which the `hopeless` limit is tested.
 inline constexpr int k_steps_granted = 3;
 
 struct WeightedFit {
   Pose T_camera_tool;
-  double chi_square = 0;                  // the prior's part included
-  Matrix6 information = Matrix6::Zero();  // about the markers' mean; the lower half holds
+  double chi_square = 0;                  // including the prior's part
+  Matrix6 information = Matrix6::Zero();  // about the markers' mean; lower triangle only
   int steps = 0;
-  // degenerate: the markers and the prior do not fix the pose. bad_fit: given up.
+  // degenerate: the markers and the prior do not determine the pose. bad_fit: above `hopeless`.
   Reason reason = Reason::none;
 };
 
-// mean_m: of the markers, in the tool's frame. The prior may be null. Given up where chi-square
-// is above `hopeless` still when k_steps_granted have been taken.
+// mean_m: of the markers, tool frame. The prior may be null. Ends with bad_fit if chi-square is
+// still above `hopeless` after k_steps_granted steps.
 [[nodiscard]] WeightedFit fit_weighted(
     std::span<const WeightedMarker> markers, const Vector3& mean_m, const Pose& start,
     const PosePrior* prior, int steps_max,

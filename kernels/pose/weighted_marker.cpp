@@ -7,7 +7,7 @@ namespace glint {
 Result<WeightedMarker> weigh_marker(const Vector3& model_m, const LocalRays& rays, double range_m,
                                     const MarkerVariance& variance) noexcept {
   const Result<WeightedMarker> none{{}, Reason::out_of_range};
-  // The two directions that tell du and dv apart: the dual of (along_x, along_y) in their plane.
+  // Dual basis of (along_x, along_y) in their plane: it yields du and dv.
   const double xx = rays.along_x.squaredNorm(), yy = rays.along_y.squaredNorm();
   const double xy = rays.along_x.dot(rays.along_y);
   const double area = xx * yy - xy * xy;
