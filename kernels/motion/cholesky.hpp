@@ -1,11 +1,12 @@
-// The lower factor of a small symmetric positive matrix, and what it is needed for.
+// Cholesky factorisation of a small symmetric positive definite matrix: solve, inverse, quadratic
+// form.
 //
 // What:     A = L L'; L^-1 b; A^-1; b' A^-1 b.
 // Cost:     N^3 / 6 multiplications and N roots; 6x6: 0.1 us.
-// Worst:    a matrix that is not positive: says so, and the factor is not to be used.
+// Worst:    a matrix that is not positive definite: `positive` is false, the factor is invalid.
 // Accuracy: backward stable, N units in the last place of the largest element.
-// Source:   Golub and Van Loan 2013, algorithm 4.2.1 and equation (3.1.2). By hand, for Eigen's way
-//           to it leads past a size of cache blocks behind a lock and past a heap.
+// Source:   Golub and Van Loan 2013, algorithm 4.2.1 and equation (3.1.2). Not Eigen's: its code
+//           path reads a cache block size behind a lock and can allocate from the heap.
 #pragma once
 
 #include <cmath>
@@ -20,7 +21,7 @@ struct Cholesky {
   using Column = Eigen::Matrix<double, N, 1>;
 
   Square lower = Square::Zero();
-  bool positive = true;  // false also for numbers that are not finite
+  bool positive = true;  // positive definite; false also for numbers that are not finite
 
   explicit Cholesky(const Square& matrix) {
     for (int c = 0; c < N; ++c) {

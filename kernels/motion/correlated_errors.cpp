@@ -5,8 +5,8 @@
 namespace glint {
 namespace {
 
-// Below this many correlation times the series: the closed forms would lose their digits. Beyond
-// the other limit nothing is left.
+// In correlation times. Below k_short a series replaces the closed forms, which lose digits there.
+// k_long limits the argument: little variance is left.
 constexpr double k_short = 1e-3, k_long = 600;
 
 double correlations(double window_s, double correlation_s) {
@@ -20,7 +20,7 @@ double kept(double x) { return x < k_short ? 1 - 0.5 * x : (1 - exponential(-x))
 // Variance of a mean over x correlation times: 2 / x (1 - kept(x)).
 double mean_variance(double x) { return x < k_short ? 1 - x / 3 : 2 / x * (1 - kept(x)); }
 
-// Of the difference between two neighbouring means over x correlation times each.
+// Variance of the difference between two adjacent means over x correlation times each.
 double halves_variance(double x) {
   const double both = kept(x);
   return x < k_short ? 4.0 / 3 * x : 2 * (mean_variance(x) - both * both);

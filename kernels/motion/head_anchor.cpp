@@ -10,9 +10,9 @@
 namespace glint {
 namespace {
 
-constexpr double k_likelihood_kept = 1 - 1.0 / 30;  // of each sight by the next: 0.7 s at 45 Hz
+constexpr double k_likelihood_kept = 1 - 1.0 / 30;  // forgetting factor: 0.7 s at 45 Hz
 
-// A shift and a rotation about `pivot`.
+// A translation and a rotation about `pivot`.
 Pose motion_about(const Vector3& pivot, const Vector6& error) {
   const Quaternion turn = from_rotation_vector(error.tail<3>());
   return {turn, pivot + error.head<3>() - turn * pivot};
@@ -53,7 +53,7 @@ void HeadAnchor::walk_on(const HeadPose& head, const HeadNoise& noise) {
   }
 }
 
-// The mean of the first sights.
+// Running mean of the first measurements.
 void HeadAnchor::define(const UncertainPose& T_world_body) {
   if (sights_ == 0) T_world_body_ = T_world_body.pose;
   ++sights_;
@@ -71,7 +71,7 @@ HeadAnchor::Corrected HeadAnchor::correct(const UncertainPose& T_world_body, Hel
   const Cholesky<6> root(held.covariance + T_world_body.covariance);
   const double chi_square =
       root.positive ? root.squared_length(innovation) : 2 * k_anchor_chi_square_max;
-  // Left out, a sight must not count as likelier than one that is explained.
+  // A rejected measurement counts with the limit, so it is never likelier than an accepted one.
   held.log_likelihood *= k_likelihood_kept;
   held.log_likelihood -= 0.5 * std::min(chi_square, k_anchor_chi_square_max);
   for (int i = 0; root.positive && i < 6; ++i) held.log_likelihood -= logarithm(root.lower(i, i));
@@ -83,7 +83,7 @@ HeadAnchor::Corrected HeadAnchor::correct(const UncertainPose& T_world_body, Hel
     out.lasting = left.lazyProduct(held.covariance).lazyProduct(left.transpose());
     out.accepted = true;
   } else if (++held.refused >= k_anchor_refused_max) {
-    // The error follows from this sight alone.
+    // A jump: reset the error to this measurement.
     held.error = seen;
     out.fresh = T_world_body.covariance;
     out.lasting.setZero();

@@ -8,10 +8,10 @@
 namespace glint {
 namespace {
 
-constexpr double k_long_s = 1e6;    // beyond any correlation
-constexpr double k_jitter_s = 0.1;  // what is faster counts as the error's jitter
+constexpr double k_long_s = 1e6;    // longer than any correlation time
+constexpr double k_jitter_s = 0.1;  // faster changes are jitter of the error
 
-// Of an error with these deviations about the headset's pivot, at `lever` from there.
+// Covariance at `lever` from the headset's pivot, for these standard deviations at the pivot.
 Matrix6 spread(double position_m, double angle_rad, const Vector3& lever) {
   Matrix6 covariance = Matrix6::Zero();
   covariance.diagonal() << Vector3::Constant(position_m * position_m),
@@ -25,9 +25,9 @@ double kept_over(double seconds, double correlation_s) {
 
 }  // namespace
 
-// The error's own jitter between two frames would count as speed, several times the headset's: the
-// velocity is smoothed first. Its length is smoothed as the error itself is: a head that moves to
-// and fro has no mean velocity, but a speed.
+// The velocity is smoothed first: the error's jitter between two frames would appear as several
+// times the headset's speed. Its norm is smoothed over the error's correlation time, because a head
+// that moves back and forth has no mean velocity, but a speed.
 double HeadWalk::observe(const HeadPose& head, const HeadNoise& noise) noexcept {
   const StampedPose here{head.time, head.T_world_camera};
   const Velocity velocity = has_head_ ? velocity_between(head_, here) : Velocity{};

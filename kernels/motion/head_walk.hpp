@@ -1,13 +1,13 @@
-// How the headset's own localisation errs: a random walk that returns to zero, faster and wider
-// while the head moves.
+// Error model of the headset's localisation: a first-order Gauss-Markov process (Ornstein-
+// Uhlenbeck) that is faster and larger while the head moves.
 //
-// What:     the error is a shift and a small rotation about a pivot ahead of the camera, of the
-//           declared deviations at rest and per speed. Over a time t it keeps the share exp(-t /
-//           T), T between the two correlation times by their shares of the variance.
-// Cost:     observe: one velocity and two exponentials; over: two exponentials and one covariance
+// What:     the error is a translation and a small rotation about a pivot ahead of the camera, with
+//           declared standard deviations at rest and per speed. Over a time t it keeps the fraction
+//           exp(-t / T), averaged over both correlation times T by their shares of the variance.
+// Cost:     observe: one velocity and two exponentials; over: two exponentials and two covariances
 //           moved to another point.
-// Worst:    none is worse than another.
-// Accuracy: as good as what is declared; the speed is smoothed as the error is.
+// Worst:    data independent.
+// Accuracy: that of the declared values; the speed is smoothed over the error's correlation time.
 // Source:   Ornstein and Uhlenbeck 1930, On the theory of the Brownian motion.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace glint {
 
-// The headset's declared error: standard deviations of an axis, at a pivot ahead of the camera.
+// Declared localisation error: standard deviations of each axis, at a pivot ahead of the camera.
 struct HeadNoise {
   double rest_position_m = 0.001;
   double rest_angle_rad = 0.002;
@@ -28,32 +28,32 @@ struct HeadNoise {
   double angle_per_turn_s = 0.02;      // rad of error per rad/s
   double motion_correlation_s = 0.4;
   double pivot_m = 0.5;
-  double stamp_s = 0.005;  // of its poses against the frames: see world_errors.hpp
+  double stamp_s = 0.005;  // time offset of head poses against frames: see world_errors.hpp
 };
 
-// What becomes of the error over a time, about one point of the world.
+// Transition of the error over a time step, about one point of the world.
 struct WalkedError {
-  double kept = 0;                      // of the error before
-  Matrix6 at_length = Matrix6::Zero();  // what its covariance grows to
+  double kept = 0;                      // fraction of the previous error
+  Matrix6 at_length = Matrix6::Zero();  // stationary covariance
   [[nodiscard]] Matrix6 fresh() const { return (1 - kept * kept) * at_length; }
 };
 
 class HeadWalk {
  public:
-  // Each valid head, in the order of time. Seconds since the one before; of the first, more than
-  // any correlation time.
+  // Requires each valid head pose, in order of time. Returns the seconds since the previous one;
+  // for the first, a time longer than any correlation time.
   double observe(const HeadPose& head, const HeadNoise& noise) noexcept GLINT_NONBLOCKING;
-  // At the newest head's place and speed.
+  // The transition over `seconds` about `point_m`, at the newest head pose and speed.
   [[nodiscard]] WalkedError over(double seconds, const Vector3& point_m,
                                  const HeadNoise& noise) const noexcept GLINT_NONBLOCKING;
-  // The stamps begin anew: the head's motion before does not count.
+  // Time stamps restart: discards the previous head pose.
   void restart_clock() noexcept { has_head_ = false; }
 
  private:
   bool has_head_ = false;
-  StampedPose head_;   // as the headset gave it
-  Velocity velocity_;  // about the world's axes at the camera, smoothed over k_jitter_s
-  double speed_m_s_ = 0, turn_rad_s_ = 0;  // its lengths, smoothed over motion_correlation_s
+  StampedPose head_;   // as received from the headset
+  Velocity velocity_;  // along the world's axes at the camera, smoothed over k_jitter_s
+  double speed_m_s_ = 0, turn_rad_s_ = 0;  // its norms, smoothed over motion_correlation_s
 };
 
 }  // namespace glint

@@ -10,7 +10,8 @@
 namespace glint {
 namespace {
 
-// Place, speed; quaternion (x, y, z, w), angular velocity. The accelerations are known at any time.
+// Position, velocity; quaternion (x, y, z, w), angular velocity. The accelerations are explicit
+// functions of time.
 constexpr int k_size = 13;
 using State = StateVector<k_size>;
 using Values = State::Values;
@@ -47,7 +48,7 @@ void fill(const MotionState& state, Values& values) {
       state.angular_velocity_rad_s;
 }
 
-// Errors are return values here, not lines on a terminal.
+// Suppresses SUNDIALS' messages on the terminal: errors are return values here.
 void ignore(int, const char*, const char*, char*, void*) {}
 
 bool set_method(void* memory) {
@@ -69,8 +70,8 @@ struct MotionIntegrator::Workspace {
   void* memory = nullptr;
   Drive drive;
 
-  // All of the equal steps from `start`; false where SUNDIALS refuses. It allocates the first time,
-  // therefore prepare() calls it, and only what is prepared calls it from the real-time path.
+  // Takes all equal steps from `start`; returns false if SUNDIALS fails. The first call allocates:
+  // prepare() makes it, and the real-time path calls only a prepared workspace.
   bool integrate(const MotionState& start, Duration ahead) noexcept;
 };
 
@@ -110,7 +111,7 @@ Reason MotionIntegrator::prepare(const MotionSettings& settings) noexcept {
   made = made && (w.memory = ERKStepCreate(motion, 0, w.state, w.context)) != nullptr;
   made = made && ERKStepSetErrHandlerFn(w.memory, ignore, nullptr) == ARK_SUCCESS;
   made = made && ERKStepSetUserData(w.memory, &w.drive) == ARK_SUCCESS;
-  // Lagrange's keeps old states only; Hermite's would evaluate the equations once more a step.
+  // The Lagrange interpolant only stores old states; Hermite's needs one more evaluation a step.
   made = made && ERKStepSetInterpolantType(w.memory, ARK_INTERP_LAGRANGE) == ARK_SUCCESS;
   made = made && ERKStepSetInterpolantDegree(w.memory, 1) == ARK_SUCCESS;
   made = made && set_method(w.memory);
@@ -120,8 +121,8 @@ Reason MotionIntegrator::prepare(const MotionSettings& settings) noexcept {
   return Reason::not_prepared;
 }
 
-// SUNDIALS promises nothing by type. That it asks for no memory here, and reads no clock, is shown
-// by integrate_motion_test.cpp and by its source.
+// SUNDIALS declares no function effects. integrate_motion_test.cpp and SUNDIALS' source show that
+// it allocates no memory here and reads no clock.
 #if defined(__clang__) && defined(__has_warning)
 #if __has_warning("-Wfunction-effects")
 #pragma clang diagnostic push

@@ -8,7 +8,7 @@
 namespace glint {
 namespace {
 
-// Below this arc the sines' ratio equals u to rounding: its relative error is arc^2 / 6.
+// Below this arc, rad, the sines' ratio equals u to rounding: its relative error is arc^2 / 6.
 constexpr double k_small_arc = 1e-8;
 
 double fraction(const StampedPose& a, const StampedPose& b, Time t) {

@@ -1,11 +1,11 @@
-// Between two frames and a little beyond: constant velocity for position, SLERP for orientation.
+// Pose interpolation and extrapolation: constant velocity for position, SLERP for orientation.
 //
-// What:     the pose at a time, from two stamped poses; the velocities that take one to the other.
+// What:     the pose at a time from two poses with time stamps; the velocities between them.
 // Cost:     one arc tangent and two sines, 60 to 100 ns.
-// Worst:    equal orientations, opposite quaternions, equal or backward stamps: all are defined.
+// Worst:    equal orientations, opposite quaternions, equal or decreasing time stamps: all defined.
 // Accuracy: 4e-15 in the quaternion for any u in [-100, 100] times the arc.
 // Source:   Shoemake 1985, Animating rotation with quaternion curves, section 3.3 (Slerp); the arc
-//           from Kahan's 2 atan2(|a - b|, |a + b|), which keeps its digits near 0 and near pi.
+//           by Kahan's 2 atan2(|a - b|, |a + b|), which is accurate near 0 and near pi.
 #pragma once
 
 #include "kernels/geometry.hpp"
@@ -19,31 +19,32 @@ struct StampedPose {
   Pose pose;
 };
 
-// About fixed axes of the frame that the poses are given in.
+// Along the fixed axes of the poses' parent frame.
 struct Velocity {
   Vector3 linear_m_s = Vector3::Zero();
   Vector3 angular_rad_s = Vector3::Zero();
 };
 
-// p0 at u = 0, p1 at u = 1, on their line for every u.
+// Linear interpolation: p0 at u = 0, p1 at u = 1, extrapolated for any other u.
 [[nodiscard]] Vector3 constant_velocity(const Vector3& p0, const Vector3& p1,
                                         double u) noexcept GLINT_NONBLOCKING;
 
-// q0 at u = 0, q1 at u = 1 (or its negative, the same rotation), along the shorter arc; outside
-// [0, 1] it goes on at the same angular velocity. Both unit; |u| <= 1e4; so is the result.
+// SLERP along the shorter arc: q0 at u = 0, q1 at u = 1 (or its negative, the same rotation);
+// outside [0, 1] at the same angular velocity. Requires unit quaternions and |u| <= 1e4; returns a
+// unit quaternion.
 [[nodiscard]] Quaternion slerp(const Quaternion& q0, const Quaternion& q1,
                                double u) noexcept GLINT_NONBLOCKING;
 
-// From a to b; before a it is a, after b it is b. Stamps that do not rise: b.
+// Interpolates from a to b, clamped to both ends. Returns b if b.time <= a.time.
 [[nodiscard]] Pose interpolate(const StampedPose& a, const StampedPose& b,
                                Time t) noexcept GLINT_NONBLOCKING;
 
-// Like interpolate, but goes on after b at the velocity from a to b, for max_horizon at most, and
-// stays there. Stamps that do not rise: b.
+// Like interpolate, but extrapolates after b at the velocity from a to b, for at most max_horizon;
+// holds the pose after that. Returns b if b.time <= a.time.
 [[nodiscard]] Pose extrapolate(const StampedPose& a, const StampedPose& b, Time t,
                                Duration max_horizon) noexcept GLINT_NONBLOCKING;
 
-// Constant velocities that carry a to b. Stamps that do not rise: zero.
+// Constant velocities that move a to b. Returns zero if b.time <= a.time.
 [[nodiscard]] Velocity velocity_between(const StampedPose& a,
                                         const StampedPose& b) noexcept GLINT_NONBLOCKING;
 

@@ -16,8 +16,8 @@ void set_variance(MotionState& state, int block, double variance) {
   for (int i = 0; i < 3; ++i) state.covariance(block + i, block + i) = variance;
 }
 
-// rows(place) += ..., for the three triples of shift or of rotation; `turn` and `half_turn` carry
-// an earlier error of rotation to the later time.
+// p = F p for the three triples of translation or of rotation, the first of them at row `place`.
+// `turn` and `half_turn` propagate an earlier rotation error to the later time.
 void carry_rows(MotionCovariance& p, int place, const SingerStep& step, const Matrix3& turn,
                 const Matrix3& half_turn) {
   using Rows = Eigen::Matrix<double, 3, k_motion_size>;
@@ -46,16 +46,16 @@ void apply(MotionState& state, const Gain<1>& error) {
   state.angular_acceleration_rad_s2 += error.segment<3>(k_angular_acceleration);
 }
 
-// T P T', where T turns each triple of errors alike.
+// p = T p T', where T rotates each triple of errors by `turn`.
 void turn_errors(MotionCovariance& p, const Matrix3& turn) {
-  for (int side = 0; side < 2; ++side) {  // T P, then its transpose again: T (T P)'
+  for (int side = 0; side < 2; ++side) {  // T P, then T (T P)' = T P T'
     for (int row = 0; row < k_motion_size; row += 3)
       p.middleRows<3>(row) = turn.lazyProduct(p.middleRows<3>(row)).eval();
     p.transposeInPlace();
   }
 }
 
-// ph: P H'; s: H P H' + R.
+// Kalman update; ph: P H'; s: H P H' + R.
 template <int M>
 Correction correct(MotionState& state, const Gain<M>& ph, const Eigen::Matrix<double, M, M>& s,
                    const Eigen::Matrix<double, M, 1>& innovation) {
@@ -74,15 +74,15 @@ Correction correct(MotionState& state, const Gain<M>& ph, const Eigen::Matrix<do
   return correction;
 }
 
-// What the second order of a turn of covariance `turn` adds to where a lever ends: dtheta x
-// (dtheta x lever) / 2, each axis a quadratic form of dtheta.
+// Mean and covariance of the second-order term dtheta x (dtheta x lever) / 2 at the end of a lever
+// arm, for a rotation error dtheta of covariance `turn`. Each axis is a quadratic form of dtheta.
 struct SecondOrder {
   Vector3 mean;
   Matrix3 covariance;
 };
 
 SecondOrder second_order(const Vector3& lever, const Matrix3& turn) {
-  std::array<Matrix3, 3> forms;  // times the covariance
+  std::array<Matrix3, 3> forms;  // quadratic form times the covariance
   SecondOrder out;
   for (int i = 0; i < 3; ++i) {
     Matrix3 form = -lever(i) * Matrix3::Identity();
@@ -129,7 +129,7 @@ void propagate(MotionState& state, Time time, const MotionSettings& settings,
                        angular.place_by_acceleration * state.angular_acceleration_rad_s2;
   const Quaternion turned = from_rotation_vector(turn);
   const Matrix3 turn_matrix = turned.toRotationMatrix();
-  // The left Jacobian of a turn is that of half of it, but for turn^2 / 24.
+  // The left Jacobian of a rotation is the rotation by half its vector, up to turn^2 / 24.
   const Matrix3 half_matrix = from_rotation_vector(0.5 * turn).toRotationMatrix();
 
   state.time = time;
@@ -142,12 +142,12 @@ void propagate(MotionState& state, Time time, const MotionSettings& settings,
   state.angular_acceleration_rad_s2 *= angular.acceleration_kept;
 
   MotionCovariance& p = state.covariance;
-  for (int side = 0; side < 2; ++side) {  // F P, then its transpose again: F (F P)'
+  for (int side = 0; side < 2; ++side) {  // F P, then F (F P)' = F P F'
     carry_rows(p, k_position, linear, Matrix3::Identity(), Matrix3::Identity());
     carry_rows(p, k_rotation, angular, turn_matrix, half_matrix);
     p.transposeInPlace();
   }
-  // What rounding makes unsymmetric would grow with the square of time.
+  // Symmetrise: asymmetry by rounding would grow with the square of time.
   p = (0.5 * (p + p.transpose())).eval();
   add_noise(p, k_position, (scale.linear * settings.linear_noise_m2_s5) * linear.noise);
   add_noise(p, k_rotation, (scale.angular * settings.angular_noise_rad2_s5) * angular.noise);
@@ -183,9 +183,9 @@ Correction correct_by_point(MotionState& state, const MeasuredPoint& measured) n
   Correction correction = correct<3>(state, ph, s, innovation);
   correction.linear_chi_square = correction.chi_square;
   if (correction.reason != Reason::none) return correction;
-  // One marker ties the errors of place to those of rotation by its lever, and a correction may
-  // turn that far. Errors that did not turn along would seem to tell, with the next frame, how the
-  // tool is turned about the marker, which no frame has shown.
+  // One marker correlates position and rotation errors by its lever arm, and its correction may
+  // rotate the state far. If the errors did not rotate along, the next frame would seem to observe
+  // the rotation about the marker, which is unobservable (an inconsistent filter).
   turn_errors(state.covariance, (state.pose.rotation * before.conjugate()).toRotationMatrix());
   return correction;
 }

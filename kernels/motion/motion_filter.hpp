@@ -1,16 +1,16 @@
-// An error-state Kalman filter of a hand-held tool, between stamps that come as they come.
+// Error-state Kalman filter of a hand-held tool's motion, for irregular time stamps.
 //
 // What:     propagate: mean and covariance to a later time under damped acceleration and damped
-//           angular acceleration; correct: by a full pose, or by one marker where a prior exists.
+//           angular acceleration; correct: by a full pose, or by one marker if a prior exists.
 // Cost:     propagate 2.5 us, correct by a pose 2.4 us, by a point less; no input-dependent loop.
-// Worst:    nothing depends on the input. A covariance that is not positive leaves the state as it
-//           was, with Reason::degenerate.
-// Accuracy: first order in the errors, a single marker's place second: a tool that one marker holds
-//           may turn far. Rotation over a step exact for a constant axis.
+// Worst:    data independent. An innovation covariance that is not positive definite leaves the
+//           state unchanged, with Reason::degenerate.
+// Accuracy: first order in the errors; second order for a single marker's position, because one
+//           marker leaves rotation weakly observed. Rotation over a step exact for a constant axis.
 // Source:   Singer 1970 (the damped acceleration); Bar-Shalom, Li and Kirubarajan 2001, section
 //           5.2 (the filter's equations, as P - W'W with W = L^-1 H P, S = L L') and 10.3.2 (second
-//           order); error of rotation about fixed axes: Sola, Deray and Atchuthan 2018, A micro Lie
-//           theory for state estimation in robotics; errors that turn with what a marker corrects:
+//           order); rotation error about fixed axes: Sola, Deray and Atchuthan 2018, A micro Lie
+//           theory for state estimation in robotics; errors rotated with a marker's correction:
 //           Barrau and Bonnabel 2017, The invariant extended Kalman filter as a stable observer.
 #pragma once
 
@@ -20,18 +20,18 @@
 
 namespace glint {
 
-// One setting for everything a hand does; where the figures come from: README.md, "The setting".
+// One setting for all motions of a hand; source of the figures: README.md, "Settings".
 struct MotionSettings {
   double linear_noise_m2_s5 = 2.5;
   double linear_damping_1_s = 2.4;
   double angular_noise_rad2_s5 = 900;
   double angular_damping_1_s = 55;
-  // At the start: how fast a hand may already be.
+  // Initial standard deviations of velocity and angular velocity, each axis.
   double start_speed_m_s = 0.5;
   double start_turn_rad_s = 3.0;
 };
 
-// By how much the process noise differs from the settings', as the innovations have it.
+// Factors on the settings' process noise, adapted from the innovations.
 struct NoiseScale {
   double linear = 1;
   double angular = 1;
@@ -39,34 +39,36 @@ struct NoiseScale {
 
 struct Correction {
   Reason reason = Reason::none;
-  double chi_square = 0;                      // of the whole innovation
-  double linear_chi_square = 0;               // of its first three, alone
-  double angular_chi_square = 0;              // of its last three, alone; 0 for a point
-  Vector3 linear_whitened = Vector3::Zero();  // its first three, of unit variance; 0 for a point
+  double chi_square = 0;                      // NIS of the complete innovation
+  double linear_chi_square = 0;               // NIS of its first three components alone
+  double angular_chi_square = 0;              // NIS of its last three alone; 0 for a point
+  Vector3 linear_whitened = Vector3::Zero();  // its first three, whitened; 0 for a point
 };
 
 [[nodiscard]] MotionState start_motion(const UncertainPose& first,
                                        const MotionSettings& settings) noexcept GLINT_NONBLOCKING;
 
-// To `time`; not backwards: an earlier time changes nothing.
+// Propagates the state to `time`; an earlier time changes nothing.
 void propagate(MotionState& state, Time time, const MotionSettings& settings,
                const NoiseScale& scale) noexcept GLINT_NONBLOCKING;
 
-// Both measurements are of the state's own time.
+// Require a measurement of the state's own time. A non-positive innovation covariance returns
+// Reason::degenerate and changes nothing.
 [[nodiscard]] Correction correct_by_pose(MotionState& state,
                                          const UncertainPose& measured) noexcept GLINT_NONBLOCKING;
 [[nodiscard]] Correction correct_by_point(MotionState& state,
                                           const MeasuredPoint& measured) noexcept GLINT_NONBLOCKING;
 
-// What a rotation's error is, in fixed axes: measured = Exp(error) * predicted.
+// Difference of two poses in fixed axes, order (x, y, z, rx, ry, rz), metres and radians. Its
+// rotation part e: measured = Exp(e) * predicted.
 [[nodiscard]] Vector6 pose_difference(const Pose& measured,
                                       const Pose& predicted) noexcept GLINT_NONBLOCKING;
 
-// In a frame whose poses are `moved` times those of the state's own.
+// The state in a frame whose poses are `moved` times those of the state's own frame.
 [[nodiscard]] MotionState moved_state(const MotionState& state,
                                       const Pose& moved) noexcept GLINT_NONBLOCKING;
 
-// The state's pose with its share of the covariance.
+// The state's pose with its 6x6 marginal covariance.
 [[nodiscard]] UncertainPose pose_of(const MotionState& state) noexcept GLINT_NONBLOCKING;
 
 }  // namespace glint

@@ -1,9 +1,8 @@
-// What is known of a moving tool at one time: its pose, how that changes, and how sure each is.
+// Motion state of a tool at one time: pose, velocities and accelerations with their covariance.
 //
-// The pose is that of a frame at the tool's reference point (the middle of its markers), because
-// there shift and rotation are measured nearly apart. Speeds and accelerations are about the fixed
-// axes of the frame that the pose is given in, and so are the errors: p = p^ + dp,
-// R = Exp(dtheta) R^.
+// The pose is that of a frame at the tool's reference point (the centre of its markers), because
+// errors of position and rotation are nearly uncorrelated there. Velocities, accelerations and
+// errors are along the fixed axes of the pose's parent frame: p = p^ + dp, R = Exp(dtheta) R^.
 #pragma once
 
 #include "kernels/geometry.hpp"
@@ -13,7 +12,7 @@ namespace glint {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-// Where each triple of errors begins.
+// First index of each triple in the error vector.
 inline constexpr int k_position = 0, k_velocity = 3, k_acceleration = 6;
 inline constexpr int k_rotation = 9, k_angular_velocity = 12, k_angular_acceleration = 15;
 inline constexpr int k_motion_size = 18;
@@ -36,7 +35,7 @@ struct UncertainPose {
   Matrix6 covariance = Matrix6::Zero();
 };
 
-// One marker, known by its place in the tool's reference frame, seen at `measured_m`.
+// Measured position of one marker, whose position in the tool's reference frame is `model_m`.
 struct MeasuredPoint {
   Vector3 model_m = Vector3::Zero();
   Vector3 measured_m = Vector3::Zero();

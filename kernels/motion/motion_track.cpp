@@ -15,21 +15,21 @@ constexpr double k_distance_max_m = 1000;
 constexpr double k_variance_max = 1e6;
 constexpr double k_unit_tolerance = 1e-6;
 
-// The factors follow over a time, which the settings count in frames of 45 Hz: at 5 Hz a frame's
-// innovation is nearly all motion and says more. As much as four say it at most: of 1, 2, 3, 4 and
-// 9 that made the worst of four recordings at 5 Hz honest best without harm to the others.
+// The settings give the factors' time constants in frames of 45 Hz. At 5 Hz a frame's innovation is
+// nearly all motion and carries more information, at most that of four frames. Among 1, 2, 3, 4 and
+// 9, four makes the worst of four recordings at 5 Hz most consistent, without harm to the others.
 constexpr double k_frame_s = 0.022222222;
 constexpr double k_frames_most = 4;
 
-// One factor moved by one innovation: chi square's mean is the number of axes.
+// Updates one factor by one innovation; the mean of the NIS is the number of axes.
 double moved(double scale, double chi_square, double frames, const AdaptationSettings& settings) {
   const double ratio = std::min(chi_square / k_point_axes, settings.innovation_max);
   return std::clamp(scale * (1 + (ratio - 1) * frames / settings.frames), settings.floor,
                     settings.ceiling);
 }
 
-// Successive innovations are independent where the split between motion and loosening is right; a
-// loosening that is too large leaves to it what the velocity should follow, and they go on alike.
+// Successive innovations are uncorrelated if the split between motion and inflation is right. Too
+// large an inflation absorbs motion that the velocity should follow: they correlate positively.
 double moved_by_correlation(double scale, double correlation, double frames,
                             const AdaptationSettings& settings) {
   const double most = settings.innovation_max;
@@ -44,7 +44,7 @@ void add_pose_covariance(const Matrix6& added, MotionCovariance& covariance) {
   }
 }
 
-// Finite, near enough to be a tool's, and with a covariance that is one.
+// Finite, within the distance limit, a unit quaternion, and a positive definite covariance.
 bool usable(const UncertainPose& measured) {
   const bool pose = measured.pose.translation.norm() <= k_distance_max_m &&
                     std::abs(measured.pose.rotation.norm() - 1) <= k_unit_tolerance;
@@ -82,7 +82,7 @@ MotionUpdate MotionTrack::update(const UncertainPose& measured, const Correlated
     of_motion = 1 - share;
   }
   if (!known_ || correction_.reason != Reason::none) {
-    // The first, or a covariance that rounding has worn out.
+    // First pose, or a covariance that rounding made indefinite.
     known_ = true;
     state_ = start_motion(measured, settings.motion);
     scale_ = briskest_ = {};
@@ -92,7 +92,7 @@ MotionUpdate MotionTrack::update(const UncertainPose& measured, const Correlated
     posed_ = measured.time;
     return done;
   }
-  // An innovation that is the loosening's does not show how brisk the motion is.
+  // The share of the innovation that the inflation explains carries no information on the motion.
   scale_.linear =
       moved(scale_.linear, correction_.linear_chi_square, of_motion * frames, settings.linear);
   scale_.angular = moved(scale_.angular, correction_.angular_chi_square, frames, settings.angular);
@@ -109,9 +109,10 @@ Reason MotionTrack::update(Time time, std::span<const MeasuredPoint> points,
   if (reason != Reason::none) return reason;
   if (!known_ || time - state_.time > settings.gap_max || points.empty())
     return Reason::too_few_markers;
-  // Single markers are no poses to average: from a rest the filter goes on where the rest was.
+  // Single markers cannot enter the static window: the filter continues from the window's mean.
   MotionState next = estimate(sums);
-  // What was loosened since is the newest state's, which a rest's mean is not.
+  // Re-apply the covariance inflation added since the newest pose; the window's mean does not
+  // contain it.
   if (rests()) add_pose_covariance(loosened_, next.covariance);
   const double seconds = (time - next.time).seconds();
   const double hidden_s = (time - posed_).seconds();
@@ -164,7 +165,7 @@ MotionState MotionTrack::estimate(const RestSums& sums) const noexcept {
     for (const auto& [column, to] : {std::pair{k_position, 0}, {k_rotation, 3}})
       p.block<3, 3>(row, column) = rest.pose.covariance.block<3, 3>(from, to);
     p.block<3, 3>(row + 3, row + 3) = rest.drift_covariance.block<3, 3>(from, from);
-    // It may set off at any time.
+    // The tool may start to move at any time.
     p.block<3, 3>(row + 6, row + 6) = state_.covariance.block<3, 3>(row + 6, row + 6);
   }
   return state;

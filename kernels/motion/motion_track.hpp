@@ -1,14 +1,14 @@
-// One tool between frames: the filter for motion, the window for rest, and which of them answers.
+// Motion estimate of one tool: adaptive Kalman filter in motion, mean of a static window at rest.
 //
-// What:     a Kalman filter under damped accelerations whose process noise follows the innovations,
-//           not below a floor; as long as the rest window holds, its mean is the pose and the tool
-//           stands still, or drifts as its halves say. What loosen() adds counts by a factor that
-//           follows the correlation of successive innovations.
-// Cost:     propagate + correct + rest window: 11 us a measured pose.
-// Worst:    a full rest window; nothing else depends on the input.
+// What:     a Kalman filter under damped accelerations; the innovations scale its process noise,
+//           not below a floor. While the static detector fires, the estimate is the static window's
+//           mean and drift (zero unless its halves differ). A factor scales the covariance that
+//           loosen() adds; it follows the correlation of successive innovations.
+// Cost:     propagate + correct + static window: 11 us a measured pose.
+// Worst:    a full static window; otherwise data independent.
 // Accuracy: by simulation: `glint experiment rest | lag | sine | prediction | occlusion`.
 // Source:   motion_filter.hpp, rest_window.hpp; adaptation: Mehra 1972, Approaches to adaptive
-//           filtering (covariance matching), here as one factor that each frame moves a little.
+//           filtering (covariance matching), here as one factor with a small step a frame.
 #pragma once
 
 #include <span>
@@ -20,66 +20,66 @@
 namespace glint {
 
 struct AdaptationSettings {
-  double frames;  // over which the factor follows
-  double floor;   // a noise that shrank freely at rest would answer the next start late
+  double frames;  // time constant of the factor, in frames of 45 Hz
+  double floor;   // without it the noise shrinks at rest and the filter lags the next motion
   double ceiling;
-  double innovation_max;  // of chi square over its mean: one bad frame moves the factor no further
+  double innovation_max;  // limit of NIS over its mean: bounds the effect of one bad frame
 };
 
-inline constexpr std::size_t k_points_max = 2;  // of one partial measurement: three are a pose
+inline constexpr std::size_t k_points_max = 2;  // of a partial measurement: three give a pose
 
 struct ToolMotionSettings {
   MotionSettings motion;
   AdaptationSettings linear{15, 0.55, 10, 2.3};
   AdaptationSettings angular{13, 0.40, 12, 9};
   RestSettings rest;
-  // One or two markers hold a tool loosely: what the hand does meanwhile shows only when all are
-  // back. Then counts the briskest that it was, fading over this many frames, times a factor.
+  // Under partial visibility the innovations barely show the hand's motion until all markers are
+  // visible again. The noise scale is then its recent maximum, which decays over `briskest_frames`
+  // frames, times `partial_noise`.
   double partial_noise = 2;
   double briskest_frames = 1000;
-  AdaptationSettings loosening{15, 0.01, 10, 1};  // of what loosen() adds
-  Duration gap_max = milliseconds(1000);          // after a longer silence it starts anew
+  AdaptationSettings loosening{15, 0.01, 10, 1};  // factor on the covariance that loosen() adds
+  Duration gap_max = milliseconds(1000);          // a longer gap restarts the filter
 };
 
 struct MotionUpdate {
   Reason reason = Reason::none;
-  int rest_tests = 0;  // of the rest window's halves
+  int rest_tests = 0;  // chi-square tests of the static window's halves
 };
 
-// Without the rest window's sums, which stay where they are: small enough to be fed back from frame
-// to frame. One that was kept from before an update still holds if that update is to be undone.
+// The sums of the static window are stored outside, so this is small enough to feed back from frame
+// to frame. A copy from before an update stays valid and undoes that update.
 class MotionTrack {
  public:
-  // `correlated`: of errors that successive poses have in common, not in the pose's covariance.
-  // Reason: frame_doubled or frame_late for a stamp that does not rise, out_of_range for a pose
-  // that is none. Then nothing has changed.
+  // `correlated`: covariances of errors that successive poses share, not in the pose's covariance.
+  // Returns frame_doubled or frame_late if the time stamp does not increase, out_of_range for an
+  // invalid pose or covariance. Then nothing has changed.
   MotionUpdate update(const UncertainPose& measured, const CorrelatedErrors& correlated,
                       const ToolMotionSettings& settings,
                       RestSums& sums) noexcept GLINT_NONBLOCKING;
-  // One marker or two, of one time; needs a pose before: too_few_markers.
+  // Updates by one or two markers of one time. Returns too_few_markers without an earlier pose
+  // within gap_max.
   Reason update(Time time, std::span<const MeasuredPoint> points,
                 const ToolMotionSettings& settings,
                 const RestSums& sums) noexcept GLINT_NONBLOCKING;
   void forget() noexcept GLINT_NONBLOCKING;
-  // The frame that all is given in turned out to lie elsewhere, by little: every pose p becomes
-  // `moved` p.
+  // Corrects the parent frame of the estimate by a small motion: every pose p becomes `moved` p.
   void move(const Pose& moved) noexcept GLINT_NONBLOCKING;
-  // It may since have moved by an error of this covariance, as UncertainPose has it: the next
-  // measurement's difference is that error's as well as the tool's.
+  // Inflates the pose's covariance (order as in UncertainPose) by an error of the parent frame
+  // since the last measurement. The next innovation contains this error beside the tool's motion.
   void loosen(const Matrix6& covariance) noexcept GLINT_NONBLOCKING;
 
   [[nodiscard]] bool known() const { return known_; }
   [[nodiscard]] bool rests() const { return rest_.rests(); }
   [[nodiscard]] const Vector3& place() const { return state_.pose.translation; }
   [[nodiscard]] const NoiseScale& noise_scale() const { return scale_; }
-  // What one or two markers are followed with: more, see partial_noise.
+  // Noise scale under partial visibility, see partial_noise.
   [[nodiscard]] NoiseScale partial_noise_scale(const ToolMotionSettings& settings) const {
     return {settings.partial_noise * briskest_.linear, settings.partial_noise * briskest_.angular};
   }
   // At the newest measurement's time.
   [[nodiscard]] MotionState estimate(const RestSums& sums) const noexcept GLINT_NONBLOCKING;
-  // What correlated errors add to estimate()'s covariance: to position and rotation, at the same
-  // time.
+  // Covariance that correlated errors add to estimate()'s position and rotation, at its time.
   [[nodiscard]] Matrix6 correlated_covariance(const RestSums& sums) const noexcept
       GLINT_NONBLOCKING;
   [[nodiscard]] const Correction& last_correction() const { return correction_; }
@@ -89,11 +89,11 @@ class MotionTrack {
 
   bool known_ = false;
   MotionState state_;
-  Time posed_;  // the newest pose: since then markers alone hold it
+  Time posed_;  // of the newest full pose; partial measurements may be newer
   NoiseScale scale_, briskest_;
-  Matrix6 loosened_ = Matrix6::Zero();    // since the newest pose
-  double loosening_ = 1;                  // what was declared of it counts by this factor
-  Vector3 innovation_ = Vector3::Zero();  // of the newest pose, of unit variance
+  Matrix6 loosened_ = Matrix6::Zero();    // added by loosen() since the newest pose
+  double loosening_ = 1;                  // factor on the covariance passed to loosen()
+  Vector3 innovation_ = Vector3::Zero();  // of the newest pose's position, whitened
   RestWindow rest_;
   Correction correction_;
 };

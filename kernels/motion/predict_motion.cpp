@@ -9,7 +9,7 @@ namespace {
 
 using Rows = Eigen::Matrix<double, 6, k_motion_size>;
 
-// The pose's six rows of F, applied to the rows of `p`; `half` is the turn's left Jacobian.
+// The pose's six rows of F times `p`; `half` is the left Jacobian of the rotation `turn`.
 template <int Columns>
 Eigen::Matrix<double, 6, Columns> carried(const Eigen::Matrix<double, k_motion_size, Columns>& p,
                                           const SingerStep& linear, const SingerStep& angular,

@@ -11,9 +11,9 @@ namespace glint {
 namespace {
 
 constexpr double k_axes = 6;
-// A hand holds nothing stiller than this, each axis: 0.05 mm rms of tremor at about 8 Hz, what
-// surgeons reach under a microscope, and so much at 0.1 m from the grip is 0.0005 rad. A mean of a
-// hundred frames is surer of itself; the tool at any one time is not that near to it.
+// Lower limit of a hand's tremor, each axis: 0.05 mm rms at about 8 Hz, which surgeons reach under
+// a microscope; at 0.1 m from the grip it is 0.0005 rad. The mean of a hundred frames has a smaller
+// standard deviation, but the tool at any one time is not that close to the mean.
 constexpr double k_tremor_m = 0.00005, k_tremor_rad = 0.0005;
 
 }  // namespace
@@ -91,7 +91,7 @@ int RestWindow::add(const UncertainPose& measured, const CorrelatedErrors& corre
   }
   const int tests =
       push(measured.time, {place, measured.covariance, measured.time}, settings, sums);
-  // In motion the anchor follows.
+  // In motion the newest pose becomes the anchor.
   if (kept_ == 1) restart(measured, sums);
   return tests;
 }
@@ -114,9 +114,9 @@ Rest RestWindow::rest(const RestSums& sums) const noexcept {
   const Sum all = newest(frames_, sums);
   const Matrix6 mean_covariance = share * share * all.covariance;
   const Halves cut = halves(frames_, sums);
-  // A steady drift moves the halves apart by half the window's length times its speed, and the
-  // newest frame from the mean by as much. By chance they differ with four times the mean's
-  // covariance. What exceeds chance is drift, and is shrunk by how little it exceeds it.
+  // A steady drift moves the halves' means apart by its speed times half the window's duration, and
+  // the newest frame from the mean by as much. Without drift the difference has four times the
+  // mean's covariance. A significant excess is drift, shrunk by its ratio to the limit.
   const double drifting =
       cut.chi_square > drift_chi_square_ ? 1 - drift_chi_square_ / cut.chi_square : 0.0;
   const double unseen = cut.chi_square > k_axes ? 1 - k_axes / cut.chi_square : 0.0;

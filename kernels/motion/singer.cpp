@@ -5,13 +5,13 @@
 namespace glint {
 namespace {
 
-// Below it the closed form loses digits; the series' next term is 3e-15 of the sum there.
+// Below this x the closed form loses digits; the series' next term is 3e-15 of the sum there.
 constexpr double k_small = 0.1;
 
 struct Response {
-  double place;         // s^2, to a unit acceleration at the time's begin
-  double speed;         // s
-  double acceleration;  // share left
+  double place;         // position, s^2, by a unit acceleration at the start of the step
+  double speed;         // velocity, s
+  double acceleration;  // remaining fraction
 };
 
 Response response(double damping, double seconds) {

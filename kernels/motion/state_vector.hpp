@@ -1,9 +1,10 @@
-// The vector that SUNDIALS integrates: a fixed number of doubles, its operations plain loops that
-// the compiler can unroll. SUNDIALS' own serial vector looks its length up in every operation and
-// takes most of a step's time there. Included by integrate_motion.cpp alone.
+// SUNDIALS N_Vector of fixed length, whose operations are plain loops that the compiler can unroll.
 //
-// Source: Hindmarsh et al. 2005, SUNDIALS; user-supplied N_Vector as its documentation for version
-//         6.4 describes it: what ERKStep needs, and the two sums that it fuses.
+// SUNDIALS' own serial vector reads its length in every operation, which takes most of a step's
+// time. Only integrate_motion.cpp includes this file.
+//
+// Source: Hindmarsh et al. 2005, SUNDIALS; user-supplied N_Vector by the documentation of version
+//         6.4: the operations that ERKStep needs, with its linear sum and linear combination.
 #pragma once
 
 #include <sundials/sundials_nvector.h>
@@ -21,7 +22,7 @@ struct StateVector {
 
   static Values& of(N_Vector v) { return *static_cast<Values*>(v->content); }
 
-  // Null where there is no memory.
+  // Returns null if an allocation fails.
   static N_Vector make(SUNContext context) {
     N_Vector v = N_VNewEmpty(context);
     if (v == nullptr) return nullptr;
@@ -84,7 +85,7 @@ struct StateVector {
     N_VFreeEmpty(v);
   }
 
-  // z = sum c_k x_k in the order of k; z may be x_0.
+  // z = sum c_k x_k, summed in the order of k; z may alias x_0.
   static int combine(int count, double* c, N_Vector* x, N_Vector z) {
     Values sum;
     for (std::size_t i = 0; i < N; ++i) sum[i] = c[0] * of(x[0])[i];

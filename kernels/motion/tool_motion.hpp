@@ -1,5 +1,5 @@
-// One tool between frames with all that it remembers: motion_track.hpp and the rest window's sums
-// in one object, some 50 KB, for whoever follows a tool outside a graph.
+// Motion estimate of one tool for use outside a graph: motion_track.hpp with the static window's
+// sums in one object, some 50 KB.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ class ToolMotion {
  public:
   ToolMotionSettings settings;
 
-  // As MotionTrack has them.
+  // Contracts: see MotionTrack.
   Reason update(const UncertainPose& measured,
                 const CorrelatedErrors& correlated = {}) noexcept GLINT_NONBLOCKING {
     return track_.update(measured, correlated, settings, sums_).reason;

@@ -9,10 +9,10 @@
 namespace glint {
 namespace {
 
-// Chi square of 6 degrees of freedom, 1e-6.
+// Chi-square quantile, 6 degrees of freedom, significance level 1e-6.
 constexpr double k_sight_chi_square_max = 38.3;
 constexpr int k_sights_refused_max = 9;
-constexpr double k_unknown_m = 1, k_unknown_rad = 1;  // beside the first sight
+constexpr double k_unknown_m = 1, k_unknown_rad = 1;  // prior about the first measurement, 1 sigma
 
 }  // namespace
 
@@ -71,7 +71,7 @@ void WorldErrors::Filter::update(const BodySight& sight, double factor) noexcept
   const Cholesky<6> root(0.5 * (expected + expected.transpose()));
   if (!root.positive) return;
   const double chi_square = root.squared_length(innovation);
-  // Left out, it must not count as likelier than one that is explained.
+  // A rejected measurement counts with the limit, so it is never likelier than an accepted one.
   log_likelihood_ -= 0.5 * std::min(chi_square, k_sight_chi_square_max);
   for (int i = 0; i < 6; ++i) log_likelihood_ -= logarithm(root.lower(i, i));
   if (!(chi_square <= k_sight_chi_square_max)) {

@@ -1,17 +1,17 @@
-// Which errors of the lens, the clocks and the headset a body shows that stands still in the world.
+// Kalman filter for errors of range, lens, clocks and headset, observed on a static reference body.
 //
-// What:     where the headset and the body's fits put the body is z = e + b + A c + v t: e the
-//           headset's error (head_walk.hpp), b where the body truly is, c the errors of the range
-//           and the lens (calibration_errors.hpp), t the time by which the head's poses are ahead
-//           of the frames, v the body's apparent velocity. A Kalman filter over (e, b, c, t), once
-//           for each of several factors of the headset's declared error; the likelihood of what
-//           each of them expected decides between the factors.
+// What:     the headset and the fits measure the body's pose as z = e + b + A c + v t: e the
+//           headset's error (head_walk.hpp), b the body's true pose, c the errors of range and lens
+//           (calibration_errors.hpp), t the time by which head poses are ahead of the frames, v the
+//           body's apparent velocity. One Kalman filter over (e, b, c, t) runs for each of several
+//           factors on the headset's declared error; the likelihoods of the innovations decide
+//           between the factors.
 // Cost:     a call of work(): one update of 18 states by 6 values.
-// Worst:    none is worse than another.
-// Accuracy: first order in the errors. A sight that none of its errors explains is left out; after
-//           some in a row the headset has found another world, and b is unknown again.
-// Source:   Bar-Shalom, Li and Kirubarajan 2001, sections 5.2 (the update) and 11.6.2 (models that
-//           do not change, compared by their likelihoods).
+// Worst:    data independent.
+// Accuracy: first order in the errors. A measurement that fails the chi-square test is rejected;
+//           after k_sights_refused_max in a row (the headset has relocalised) b becomes unknown.
+// Source:   Bar-Shalom, Li and Kirubarajan 2001, sections 5.2 (the update) and 11.6.2 (static
+//           multiple models, compared by their likelihoods).
 #pragma once
 
 #include <array>
@@ -21,21 +21,21 @@
 
 namespace glint {
 
-// The common errors of calibration_errors.hpp, then t.
+// The k_common_errors of calibration_errors.hpp (range, lens), then the time offset t.
 inline constexpr int k_shared_errors = k_common_errors + 1;
 
-// Of the headset's declared deviations.
+// Factors on the headset's declared standard deviations.
 inline constexpr std::array<double, 5> k_walk_factors{0.5, 1, 2, 4, 8};
 
 struct BodySight {
-  Pose T_world_body;                     // as the headset and the fit have it
-  Matrix6 covariance = Matrix6::Zero();  // of the fit, about the world's axes at the body
+  Pose T_world_body;                     // as measured by the headset and the fit
+  Matrix6 covariance = Matrix6::Zero();  // of the fit, along the world's axes at the body
   Eigen::Matrix<double, 6, k_shared_errors> by_errors =
-      Eigen::Matrix<double, 6, k_shared_errors>::Zero();  // in stated sigmas
-  WalkedError walked;                                     // about the body, since the sight before
+      Eigen::Matrix<double, 6, k_shared_errors>::Zero();  // per declared standard deviation
+  WalkedError walked;  // about the body, since the previous measurement
 };
 
-// What one filter found, in stated sigmas.
+// Estimate of one filter, in declared standard deviations.
 struct WorldFindings {
   Eigen::Matrix<double, k_shared_errors, 1> errors =
       Eigen::Matrix<double, k_shared_errors, 1>::Zero();
@@ -46,12 +46,12 @@ struct WorldFindings {
 
 class WorldErrors {
  public:
-  // Waits for work(); false: the sight before still does.
+  // Stores a measurement for work(). Returns false while the previous one is in process.
   bool add(const BodySight& sight) noexcept GLINT_NONBLOCKING;
-  // The next factor's share of the sight that waits, if one does.
+  // Updates the next factor's filter by the stored measurement, if any.
   void work() noexcept GLINT_NONBLOCKING;
 
-  [[nodiscard]] int sights() const { return sights_; }  // that all factors have seen
+  [[nodiscard]] int sights() const { return sights_; }  // measurements processed by all factors
   [[nodiscard]] bool idle() const { return next_ == k_walk_factors.size(); }
   [[nodiscard]] WorldFindings of_factor(std::size_t factor) const;
 
@@ -66,7 +66,7 @@ class WorldErrors {
    private:
     void forget_place();
     bool known_ = false;
-    int refused_ = 0;  // in a row
+    int refused_ = 0;  // consecutive rejections
     Pose T_world_body_;
     Eigen::Matrix<double, k_states, 1> state_ = Eigen::Matrix<double, k_states, 1>::Zero();
     Eigen::Matrix<double, k_states, k_states> covariance_;
