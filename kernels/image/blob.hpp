@@ -1,4 +1,4 @@
-// A connected set of bright pixels: what one marker, a hand or a lamp leaves in the frame.
+// Blob: connected component of pixels above the threshold, the image of a marker, hand or lamp.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@ namespace glint {
 enum BlobFlag : std::uint8_t {
   k_blob_touches_edge = 1,   // cut by the frame's border
   k_blob_saturated = 2,      // at least one pixel at the sensor's maximum
-  k_blob_has_neighbour = 4,  // another blob's light lies two pixels beside it
-  k_blob_uneven = 8,         // no whole disc's box or area: merged, or partly hidden
+  k_blob_has_neighbour = 4,  // light of another blob two pixels beside it
+  k_blob_uneven = 8,         // box is not that of a complete disc: merged or partially occluded
 };
 
 struct Blob {
@@ -23,17 +23,17 @@ struct Blob {
   std::uint16_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // bounding box, half open
   std::uint16_t peak = 0;                        // brightest reflectivity, raw
   std::uint8_t flags = 0;                        // BlobFlag
-  // Of the centroid, px^2, x and y: this blob's own share, from its pixels. What moves a whole
-  // blob, as the lens's calibration does, comes on top.
+  // Variance of the centroid in x and y, px^2, from the blob's pixels alone. Errors of the lens
+  // calibration, which move the complete blob, are not included.
   std::array<float, 2> variance_px2{};
 };
 
 struct Blobs {
-  std::array<Blob, k_blobs_max> items;  // by rows: top first, then left first
+  std::array<Blob, k_blobs_max> items;  // in row order: top first, then left first
   int count = 0;
   std::uint32_t dropped = 0;   // beyond the budget, or outside the size gate
-  std::uint32_t left_out = 0;  // of these inside the gate: another frame may have them
-  // blobs_full also where all blobs are here, but their centroids had too little budget.
+  std::uint32_t left_out = 0;  // of these, the ones inside the gate: another frame may keep them
+  // blobs_full also if all blobs are kept, but the budget for their centroids was too small.
   Reason reason = Reason::none;
   // Why blobs inside the gate may be missing: runs_full, or blobs_full by left_out.
   Reason incomplete = Reason::none;

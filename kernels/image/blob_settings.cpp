@@ -9,9 +9,9 @@
 namespace glint {
 namespace {
 
-constexpr double k_least_visible = 0.3;  // of the disc: a marker two thirds hidden is of no use
-constexpr double k_most_visible = 1.5;   // stray light and motion during the exposure
-constexpr double k_blur_px = 1.0;        // by how much the lens widens a small disc's radius
+constexpr double k_least_visible = 0.3;  // of the disc: a marker two thirds occluded is of no use
+constexpr double k_most_visible = 1.5;   // stray light and motion blur
+constexpr double k_blur_px = 1.0;        // added by the lens to a small disc's radius
 constexpr double k_area_max_px = double{k_width_max} * k_height_max;
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 
 using Index = std::uint16_t;
 
-// The components inside the size gate; gives their number.
+// Collects the components inside the size gate; returns their number.
 int gather_candidates(const BlobSettings& settings, BlobScratch& scratch) {
   int candidates = 0;
   for (int i = 0; i < scratch.component_count; ++i) {
@@ -33,8 +33,8 @@ void judge_candidates(const Frame& frame, const BlobSettings& settings, BlobScra
   }
 }
 
-// Sorts the candidates by rows: top first, then left first, then by their first run. A key has its
-// box's corner above its place in the list.
+// Sorts the candidates by rows: top first, then left first, then by their first run. A key is the
+// corner of the box, with the index in the list in its low bits.
 void sort_by_rows(BlobScratch& scratch, int candidates) {
   static_assert(k_width_max <= 1 << 10 && k_height_max <= 1 << 10 && k_blobs_max <= 1 << 12);
   std::array<std::uint32_t, k_blobs_max> keys, spare;

@@ -1,18 +1,18 @@
-// Runs to blobs: what may be a marker, where its middle is, and what else it was.
+// Blob detection from runs: connected components inside the size gate, with sub-pixel centroids.
 //
-// What:     connected components inside the size gate, each with a sub-pixel centroid. If more than
-//           limits.blobs are found, nearest_kept.hpp lists which stay: near predicted markers, near
-//           a place that changes with the frame, and rather those that fit a marker. A blob whose
-//           grown box holds no more than its share of limits.centroid_pixels_a_blob has the
-//           centroid of that box, a larger one if the others leave enough, by rows from the top;
-//           else the plain mean.
+// What:     connected components inside the size gate, each with a sub-pixel centroid and variance.
+//           If more than limits.blobs are found, nearest_kept.hpp selects those to keep: near
+//           predicted markers, near a focus that changes with the frame, with a small misfit. A
+//           blob has the grown centroid if its grown box costs at most its share of
+//           limits.centroid_pixels_a_blob. A larger box uses what the others leave, in row order
+//           from the top; without enough budget the centroid is the plain mean.
 // Cost:     linear in runs; misfits and distances only when full (components x predictions);
 //           linear in the grown boxes' pixels.
-// Worst:    as many single runs inside the gate as fit, as many predictions as tools have markers,
-//           and wide boxes among those that stay. A run is dearest where rows of dots lie at
-//           random, as the processor cannot foresee which of them touch.
+// Worst:    the maximum of single runs inside the gate, as many predictions as tools have markers,
+//           and wide boxes among the kept blobs. A run is most expensive in rows of random dots,
+//           because the branches are unpredictable.
 // Accuracy: see centroid.hpp. Integers up to one division a coordinate.
-// Source:   the seed, section III, finds blobs in the binary picture; here from its runs.
+// Source:   Puljiz et al., section III, detect blobs in the binary image; here in its runs.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@
 
 namespace glint {
 
-// How often its loops ran.
+// Loop counts of one call.
 struct BlobWork {
   std::int32_t runs = 0;
   std::int32_t distances = 0;  // of four components to a prediction or the focus
@@ -35,14 +35,14 @@ struct BlobWork {
   std::int32_t pixels = 0;  // of grown boxes, see GrownBox::pixels
 };
 
-// bands: the runs of this frame from top to bottom, at most k_row_bands. search: more predictions
-// than tools have markers are ignored. out.reason is blobs_full where blobs or their pixels are
-// beyond the budget, else runs_full if a band's was.
+// bands: the runs of this frame from top to bottom, at most k_row_bands. search: predictions beyond
+// the number of the tools' markers are ignored. Sets out.reason to blobs_full if the blobs or their
+// pixels exceed the budget, else to runs_full if a band has it.
 BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
                     const BlobSettings& settings, const BlobSearch& search, BlobScratch& scratch,
                     Blobs& out, const Limits& limits = {}) noexcept GLINT_NONBLOCKING;
 
-// What find_blobs may do at most.
+// Maximum loop counts of find_blobs.
 [[nodiscard]] constexpr BlobWork blob_work_max(const Limits& limits) {
   const int band_rows = (limits.height + k_row_bands - 1) / k_row_bands;
   const int runs =

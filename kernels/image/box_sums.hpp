@@ -1,14 +1,14 @@
-// The sums that a grown centroid needs, eight columns at a time.
+// Image moments for a grown centroid: SIMD sums over a masked box, eight columns at a time.
 //
 // What:     reflectivity, positions and number of the pixels near the blob; reflectivity and number
 //           of the dark pixels around them, and whether one there is bright; the brightest pixel.
-// Cost:     the same for every eight columns of a row, whatever their masks, and about as much
-//           again for each row.
-// Worst:    none is worse than another.
+// Cost:     the same for each eight columns of a row, for any mask, and about as much again for
+//           each row.
+// Worst:    data independent.
 // Accuracy: exact: lanes of 16 and 32 bits that cannot overflow, see k_rows_max.
-// Source:   reflectivities less 2^15, which makes them numbers with a sign, as what multiplies
-//           them in pairs takes them; that is added again for each pixel at the end. Rows: a sum of
-//           partial sums has each row once for itself and for every row that comes after it.
+// Source:   subtracting 2^15 makes reflectivities signed, as the pairwise product requires; total()
+//           adds it again for each pixel. Row moments: a sum of partial sums counts each row once
+//           for itself and once for every later row.
 #pragma once
 
 #include <algorithm>
@@ -21,14 +21,14 @@
 namespace glint {
 
 struct GrownSums {
-  std::int64_t weight = 0, x = 0, y = 0;  // in half pixels: a centre is at 2 x + 1
+  std::int64_t weight = 0, x = 0, y = 0;  // x, y in half pixels: a pixel centre is at 2 x + 1
   std::int64_t pixels = 0, pixels_x = 0, pixels_y = 0;
   std::int64_t dark = 0, dark_pixels = 0;
   std::uint16_t peak = 0;
-  bool bright_rim = false;  // a neighbour lies one pixel further, or the blob was cut by its ROI
+  bool bright_rim = false;  // a neighbour is one pixel further, or the ROI cut the blob
 };
 
-// Bit i of each stands for column box.left + i.
+// Bit i of each mask is column box.left + i.
 struct RowMasks {
   std::uint64_t near = 0;  // the blob itself and one pixel around it
   std::uint64_t rim = 0;   // one further out
@@ -36,12 +36,13 @@ struct RowMasks {
 
 class BoxSums {
  public:
-  // box: at most 64 columns and rows. Rim pixels above the threshold belong to a neighbour.
+  // Requires a box of at most 64 columns and rows. Rim pixels above the threshold belong to a
+  // neighbour.
   BoxSums(const GrownBox& box, std::uint16_t threshold)
       : box_(box), threshold_(Words{} + static_cast<std::int16_t>(threshold ^ 0x8000)) {}
 
-  // The rows from box.top on, one by one. row: the pixel of box.left; width: how many the frame has
-  // from there on.
+  // Requires the rows in order from box.top. row: the pixel at box.left; width: number of pixels of
+  // the frame's row from there.
   template <class Pixel>
   void add_row(const Pixel* row, int width, const RowMasks& masks) {
     Pixel padded[64];
@@ -102,9 +103,10 @@ class BoxSums {
 
  private:
   static constexpr std::int64_t k_half = 1 << 15;
-  // A lane of 32 bits takes 8 pairs below 2^16 from a row, a lane of 16 bits 8 pixels. What sums
-  // them from below has the first row 64 times, the last once: 2080 * 2^19 < 2^31, 2080 * 8 < 2^15.
-  // A lane's columns are 80 together, in pairs 160, counted from column 32: 64 * 160 * 2^15 < 2^31.
+  // No overflow: a row adds 8 pairs below 2^16 to a lane of 32 bits, and 8 pixels to one of 16. The
+  // sums of partial sums count the first row 64 times, the last once: 2080 * 2^19 < 2^31,
+  // 2080 * 8 < 2^15. The columns of a lane, relative to column 32, sum to 80, in pairs to 160:
+  // 64 * 160 * 2^15 < 2^31.
   static constexpr int k_rows_max = 64;
   static_assert(k_grown_box_max + 4 <= k_rows_max);
   static constexpr Words k_lowest = Words{} + std::int16_t{-32768};
@@ -120,7 +122,7 @@ class BoxSums {
     return eight;
   }
 
-  // All bits of a lane are set where the column's bit is.
+  // Sets all bits of a lane if the bit of its column is set.
   static Words chosen(std::uint64_t mask, int eight) {
     const Words bits = {1, 2, 4, 8, 16, 32, 64, 128};
     const Words all = Words{} + static_cast<std::int16_t>(mask >> (8 * eight) & 0xFF);

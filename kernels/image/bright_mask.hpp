@@ -1,13 +1,13 @@
-// Which pixels of a row are brighter than a threshold, 64 bytes at a time.
+// Bit mask of the pixels of a row above a threshold, 64 bytes at a time (SIMD).
 //
-// What:     bit i of block_mask tells of pixel i of a whole block; bright_mask: of a block at any
-//           place of a row, cut where the stretch ends.
-// Cost:     on x86-64 the same for every block, bright or dark; elsewhere a dark one costs less, as
-//           gathering its bits is the dearer half. bright_mask may look at pixels beyond the
-//           stretch that is asked for, never beyond the row.
+// What:     bit i of block_mask is pixel i of a whole block; bright_mask: of a block at any x of a
+//           row, cut at the end of the row segment.
+// Cost:     on x86-64 the same for every block; elsewhere a block without bright pixels costs less,
+//           because gathering its bits is the more expensive half. bright_mask may read pixels
+//           beyond the segment, never beyond the row.
 // Worst:    a bright pixel in every block.
-// Accuracy: exact. g++'s and clang's vector types compare lanes on any machine that has lanes, and
-//           by words on one that has none.
+// Accuracy: exact. The vector types of g++ and clang compare lanes on any machine with SIMD, and
+//           by words on others.
 // Source:   gathering bits by a product: Warren, "Hacker's Delight", 2nd ed., section 7-6.
 #pragma once
 
@@ -26,7 +26,7 @@ static_assert(std::endian::native == std::endian::little);
 template <class Pixel>
 inline constexpr int k_mask_pixels = 64 / static_cast<int>(sizeof(Pixel));
 
-// A bit for each pixel of a block.
+// One bit for each pixel of a block.
 template <class Pixel>
 using BlockMask = std::conditional_t<sizeof(Pixel) == 1, std::uint64_t, std::uint32_t>;
 
@@ -37,7 +37,7 @@ inline __m128i sixteen_bytes(const void* pixels) {
   return _mm_loadu_si128(static_cast<const __m128i*>(pixels));
 }
 
-// A bit for each byte that is not zero.
+// One bit for each byte that is not zero.
 inline std::uint64_t nonzero_bytes(__m128i bytes) {
   const int zero = _mm_movemask_epi8(_mm_cmpeq_epi8(bytes, _mm_setzero_si128()));
   return static_cast<unsigned>(zero) ^ 0xFFFFu;
@@ -54,7 +54,7 @@ struct LanesOf<std::uint16_t> {
   using Type = std::uint16_t __attribute__((vector_size(16)));
 };
 
-// All bits of a lane are set where the pixel is above the threshold.
+// Sets all bits of a lane if its pixel is above the threshold.
 template <class Pixel>
 typename LanesOf<Pixel>::Type above(const Pixel* pixels, Pixel threshold) {
   using Lanes = typename LanesOf<Pixel>::Type;
@@ -70,7 +70,7 @@ bool any_set(const Lanes& lanes) {
   return (halves[0] | halves[1]) != 0;
 }
 
-// The lanes' lowest bits, side by side: the product carries each to its place, and no two meet.
+// Gathers the lowest bits of the lanes: the product shifts each to its index, without overlap.
 template <class Pixel>
 std::uint64_t gathered(std::uint64_t lanes) {
   if constexpr (sizeof(Pixel) == 1) {
@@ -81,13 +81,13 @@ std::uint64_t gathered(std::uint64_t lanes) {
 }
 #endif
 
-// A block's pixels: those at x, or further left where the row ends sooner. A row narrower than a
-// block is copied and padded with zeros, which are above no threshold.
+// The pixels of a block at x, or further left if the row ends inside the block. A row narrower than
+// a block is copied and padded with zeros, which are above no threshold.
 template <class Pixel>
 struct Block {
   Pixel padded[k_mask_pixels<Pixel>];
   const Pixel* pixels;
-  int known = 0;  // pixels of the block that lie before x
+  int known = 0;  // pixels of the block before x
 
   Block(const Pixel* row, int width, int x) : pixels(row) {
     const int last = width - k_mask_pixels<Pixel>;
@@ -105,8 +105,8 @@ struct Block {
 
 }  // namespace detail
 
-// Bit i is pixel i of a whole block. On x86-64 what exceeds the threshold is kept as it is, as that
-// needs one instruction for numbers without a sign; narrowed with saturation it stays nonzero.
+// Bit i is pixel i of a whole block. SSE2 has no unsigned comparison: one saturating subtraction of
+// the threshold leaves a nonzero excess, which narrowing with saturation keeps nonzero.
 template <class Pixel>
 BlockMask<Pixel> block_mask(const Pixel* pixels, Pixel threshold) {
 #ifdef GLINT_SSE2
@@ -138,7 +138,7 @@ BlockMask<Pixel> block_mask(const Pixel* pixels, Pixel threshold) {
 #endif
 }
 
-// Bit i is pixel x + i, of the stretch up to x1.
+// Bit i is pixel x + i of the row segment that ends before x1.
 template <class Pixel>
 BlockMask<Pixel> bright_mask(const Pixel* row, int width, int x, int x1, Pixel threshold) {
   const detail::Block<Pixel> at(row, width, x);

@@ -27,7 +27,7 @@ void for_each_run(const BlobScratch& scratch, const Component& component, Visit 
 template <class Pixel>
 Centroid weighted(const ImageView<Pixel>& image, const BlobScratch& scratch,
                   const Component& component, std::int64_t threshold) {
-  std::int64_t weights = 0, x_sum = 0, y_sum = 0;  // in half pixels: a centre is at 2 x + 1
+  std::int64_t weights = 0, x_sum = 0, y_sum = 0;  // sums in half pixels: a centre is at 2 x + 1
   Pixel peak = 0;
   for_each_run(scratch, component, [&](const PlacedRun& run) {
     const Pixel* row = image.row(run.y());
@@ -66,10 +66,10 @@ Centroid binary(const ImageView<Pixel>& image, const BlobScratch& scratch,
   return out;
 }
 
-// plain(): the plain mean, for a blob that is no brighter than what surrounds it.
+// plain(): the plain mean, used if the blob is not brighter than its surroundings.
 template <class Plain>
 Centroid from_sums(const GrownSums& total, const Component& component, Plain plain) {
-  // (I - dark / dark_pixels), times dark_pixels: at most 65535 * 64^2 * 64^2 * 2048 < 2^52.
+  // Sums of (I - dark / dark_pixels), times dark_pixels: at most 65535 * 64^2 * 64^2 * 2048 < 2^52.
   const std::int64_t n = std::max<std::int64_t>(total.dark_pixels, 1);
   const std::int64_t weight = total.weight * n - total.dark * total.pixels;
   Centroid out;
@@ -101,7 +101,7 @@ template <class Pixel>
 Centroid grown(const ImageView<Pixel>& image, const Frame& frame, const BlobScratch& scratch,
                const Component& component, std::uint16_t threshold) {
   const GrownBox box = grown_box(frame, component);
-  // The blob's own rows, with two empty ones above and below it and two more to look ahead to.
+  // The blob's row masks, with two empty rows above and below and two more to read ahead.
   std::array<std::uint64_t, k_grown_box_max + 6> own;
   const int top = component.y0 - 2, rows = component.y1 - component.y0;
   std::fill_n(own.begin(), rows + 6, 0);
@@ -113,7 +113,7 @@ Centroid grown(const ImageView<Pixel>& image, const Frame& frame, const BlobScra
   const std::uint64_t in_frame =
       columns < 64 ? (std::uint64_t{1} << columns) - 1 : ~std::uint64_t{0};
 
-  // Grown by one: of the row before, of this one and of the one after.
+  // Masks grown by one pixel: of the previous row, this row and the next row.
   std::uint64_t before = 0, near = 0, after = 0;
   BoxSums sums(box, threshold);
   for (int y = top; y < box.bottom; ++y) {

@@ -7,23 +7,23 @@
 namespace glint {
 namespace {
 
-// A sharp rim's pixel that is covered by a part u lies at its own middle instead of at that of its
-// covered part: along the rim's normal it misses by u (1 - u) / 2, of variance 1/120 - 1/144 for
-// even u. A disc of diameter D has 4 D such pixels, and half of their normals' squares falls to an
-// axis. Simulated spheres have half of that, as pixels side by side do not miss alike, and of a rim
-// smeared over r pixels the r^3-rd part.
+// A pixel of a sharp rim, covered by a fraction u, counts at its own centre instead of the centre
+// of its covered part. The error along the rim's normal is u (1 - u) / 2, of variance
+// 1/120 - 1/144 for uniform u. A disc of diameter D has 4 D such pixels; half of the sum of the
+// squared normals is along each axis. Simulated spheres have half of that variance, because errors
+// of adjacent pixels differ, and 1 / r^3 of it for a rim blurred over r pixels.
 constexpr double k_rim_miss = 0.5 * 4 * (1.0 / 120 - 1.0 / 144) / 2;
-// Clipped so that it is full from u = 1 - q on, a pixel's light has q^2 / 12 of variance, at half a
-// diameter from the middle: 4 D (q^2 / 12) (D^2 / 8). Simulated spheres have two thirds of that.
+// If saturation clips a pixel from u = 1 - q on, its light has a variance of q^2 / 12, at half a
+// diameter from the centre: 4 D (q^2 / 12) (D^2 / 8). Simulated spheres have two thirds of that.
 constexpr double k_rim_clip = 0.63 / 24;
-// How far a clipped rim is clipped at least: smear widens it and so hides that it is.
+// Smallest q of a saturated rim: motion blur widens the rim and so hides the clipping.
 constexpr double k_clip_least = 1.0 / 3;
-// A threshold so high leaves too little of the rim to tell its width.
+// Above this ratio of threshold to signal, too little of the rim is left to estimate its width.
 constexpr double k_rim_seen_below = 0.25;
 constexpr double k_rim_width_least = 0.5;
 
-// Of the light that a neighbour two pixels away may leave in the mask: pixels just below the
-// threshold, on one side.
+// Light that a neighbour two pixels away may add to the mask: pixels just below the threshold, on
+// one side.
 constexpr double k_neighbour_pixels = 3;
 
 double squared(double x) { return x * x; }
@@ -41,7 +41,7 @@ struct Disc {
   }
 };
 
-// An axis's share of what depends on the blob's size along it.
+// Extent of the blob's box along an axis and the lever of its pixels, px.
 struct Axis {
   double size, lever;
 };
@@ -60,7 +60,7 @@ class Variance {
     bright_ = c_.light * (noise.shot_counts + uneven * signal_);
   }
 
-  // A disc's pixels lie (size / 4)^2 beside its middle in the mean.
+  // The mean squared offset of a disc's pixels from its centre is (size / 4)^2 along an axis.
   [[nodiscard]] float along(const Axis& axis) const {
     const double own = squared(axis.size) / 16, grown = squared(axis.size + 2) / 16;
     const double noisy =
@@ -71,8 +71,8 @@ class Variance {
   }
 
  private:
-  // A rim r pixels wide has 2 D r pixels more above zero than its light fills, and of these a part
-  // of twice the threshold's share of the signal stays below it.
+  // A rim r pixels wide has 2 D r more pixels above zero than the area of its light. A fraction of
+  // these, twice the ratio of threshold to signal, is below the threshold.
   [[nodiscard]] double rim(double area_px, bool saturated) const {
     const Disc lit(c_.light / signal_);
     const double share = threshold_ / signal_;
@@ -85,14 +85,14 @@ class Variance {
   const Centroid& c_;
   double signal_, threshold_;
   double rim_;
-  double dark_ = 0, bright_ = 0;  // of a pixel of the background; of all the blob's light
+  double dark_ = 0, bright_ = 0;  // variance of a background pixel; of all the blob's light
 };
 
 }  // namespace
 
 std::array<float, 2> centroid_variance(const Centroid& centroid, const Component& component,
                                        const BlobSettings& settings) noexcept {
-  if (centroid.pixels == 0) {  // the plain mean: every pixel counts as full
+  if (centroid.pixels == 0) {  // the plain mean: every pixel has full weight
     const auto all = static_cast<float>(Disc(component.area_px).clipped(1));
     return {all, all};
   }

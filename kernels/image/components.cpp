@@ -16,8 +16,7 @@ PlacedRun placed(const Run& run) {
   return {row | run.x0, row | run.x1};
 }
 
-// The first of those that a run hangs together with, as far as is known. On the way every second
-// one is hung higher.
+// Union-find search for the root (first connected run so far) with path halving.
 Index root_of(BlobScratch& scratch, Index run) {
   Index parent = scratch.parent[run];
   while (parent != run) {
@@ -29,13 +28,13 @@ Index root_of(BlobScratch& scratch, Index run) {
   return run;
 }
 
-// Hangs each run under the first one that it touches in the row above, and those under each other.
+// Joins each run with all runs that it touches in the row above.
 void join_runs(std::span<const Runs* const> bands, BlobScratch& scratch, int runs_per_band) {
   const std::size_t band_count = std::min<std::size_t>(bands.size(), k_row_bands);
   const int most = std::clamp(runs_per_band, 0, k_runs_per_band_max);
   PlacedRun* const runs = scratch.runs.data();
   int count = 0;
-  int above = 0;  // first run that may still touch; a run of the same row never does
+  int above = 0;  // first run that may still touch; runs of the same row never touch
   for (std::size_t band = 0; band < band_count; ++band) {
     const int in_band = std::clamp(bands[band]->count, 0, most);
     for (int i = 0; i < in_band; ++i) {
@@ -59,7 +58,7 @@ void join_runs(std::span<const Runs* const> bands, BlobScratch& scratch, int run
   scratch.run_count = count;
 }
 
-// A parent comes before its runs, so that its component is known when theirs is asked for.
+// A parent precedes its runs, so its component exists before they are assigned to it.
 void gather_components(BlobScratch& scratch) {
   const int run_count = scratch.run_count;
   int count = 0;

@@ -1,12 +1,12 @@
-// Runs to connected components.
+// Connected-component labelling of runs (8-connectivity, union-find).
 //
-// What:     joins runs of neighbouring rows that touch by a side or a corner (8-connectivity), also
-//           across the border of two bands.
-// Cost:     linear: of two rows with p and q runs at most p + q - 1 pairs touch, so that there are
-//           fewer than two pairs a run. The searches for roots are linear, too, as one row is done
-//           before the next begins, and shortened on the way.
-// Worst:    a checkerboard, for its pairs; single dots, for their components; dots at random, for
-//           what the processor cannot foresee.
+// What:     joins runs of neighbouring rows that touch by a side or a corner, also across the
+//           border of two bands.
+// Cost:     linear: two rows with p and q runs have at most p + q - 1 touching pairs, so fewer than
+//           two pairs a run. The root searches are linear too, because one row is complete before
+//           the next begins, and each search shortens its path.
+// Worst:    a checkerboard, for its pairs; single dots, for their components; random dots, for
+//           mispredicted branches.
 // Accuracy: exact, integers only.
 // Source:   He, Chao, Suzuki, "A run-based two-scan labeling algorithm", IEEE TIP 17 (2008), with
 //           union-find by the first run and path halving in place of its table of labels; for its
@@ -21,9 +21,9 @@
 
 namespace glint {
 
-// bands: from top to bottom, at most k_row_bands of them, at most runs_per_band of each. Fills
-// scratch.runs and scratch.components, ordered by each component's first run: top first, then left
-// first.
+// bands: from top to bottom; reads at most k_row_bands, and at most runs_per_band runs of each.
+// Fills scratch.runs and scratch.components, the latter in order of their first run: top first,
+// then left first.
 void find_components(std::span<const Runs* const> bands, BlobScratch& scratch,
                      int runs_per_band = k_runs_per_band_max) noexcept GLINT_NONBLOCKING;
 

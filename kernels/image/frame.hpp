@@ -1,4 +1,4 @@
-// One camera frame: borrowed pixels and when they were exposed.
+// One camera frame: views of its pixels, with time stamps.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace glint {
 
-// Borrowed rows of pixels, top left first, without padding between rows.
+// Non-owning view of an image: row-major from the top left, without padding between rows.
 template <class Pixel>
 struct ImageView {
   const Pixel* pixels = nullptr;
@@ -20,11 +20,11 @@ struct ImageView {
 };
 
 // Exactly one of the two reflectivity planes is set; depth may be absent. Depth is in the sensor's
-// raw unit (DepthSettings says what that is); 0 means that the pixel has none.
+// raw unit (see DepthSettings); 0 is an invalid pixel.
 struct Frame {
-  Time mid_exposure;     // what every measurement's time means
-  Duration stamp_sigma;  // of it, by the estimate of the device's clock; 0: stamped by this clock
-  Time arrival;          // the last byte in memory; only for latency figures
+  Time mid_exposure;     // the time of every measurement of this frame
+  Duration stamp_sigma;  // of mid_exposure, from the clock estimate; 0: time stamp of this clock
+  Time arrival;          // of the last byte in memory; only for latency figures
   std::uint64_t sequence = 0;
   ImageView<std::uint8_t> reflectivity_8;
   ImageView<std::uint16_t> reflectivity_16;

@@ -1,5 +1,5 @@
-// The box in which a blob's centroid is weighed: the blob's own, grown by two pixels, cut at the
-// frame's border, in columns that are loaded eight at a time.
+// Box of a grown centroid: a blob's bounding box, grown by two pixels and clipped to the frame, in
+// groups of eight columns.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@ namespace glint {
 inline constexpr int k_grown_box_max = 60;
 
 struct GrownBox {
-  int left = 0;             // the frame's column that bit 0 of a row's mask stands for
-  int eights = 0;           // of columns from there on, all inside a frame that has as many
+  int left = 0;             // the frame's column at bit 0 of a row mask
+  int eights = 0;           // groups of eight columns, inside the frame if it is wide enough
   int top = 0, bottom = 0;  // rows inside the frame, half open
 
-  // What its pixels cost. A row's masks cost as much as eight pixels more.
+  // Cost in pixels. The masks of a row cost as much as eight pixels.
   [[nodiscard]] int pixels() const { return 8 * (bottom - top) * (eights + 1); }
 };
 

@@ -8,7 +8,7 @@
 namespace glint {
 namespace {
 
-// 0: none of the sampled pixels has a depth.
+// Returns the raw depth, or 0 if no sampled pixel has one.
 std::uint16_t depth_of(const Frame& frame, const Component& component, const MarkerSizes& sizes) {
   const int x = (component.x0 + component.x1 - 1) / 2, y = (component.y0 + component.y1 - 1) / 2;
   const auto valid_at = [&](int column, int row) -> std::uint16_t {
@@ -31,7 +31,7 @@ SizeGate expected_sizes(const Frame& frame, const Component& component, const Ma
   return sizes.by_depth[static_cast<std::size_t>(bin)];
 }
 
-// A step for each factor of two by which `less` is below `more`, at most three.
+// One step for each factor of two by which `less` is below `more`, at most three.
 int steps_below(std::uint64_t less, std::uint64_t more) {
   return static_cast<int>(less < more) + static_cast<int>(2 * less < more) +
          static_cast<int>(4 * less < more);

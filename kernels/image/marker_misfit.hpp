@@ -1,10 +1,12 @@
-// How badly a component fits a marker's disc: what find_blobs orders by where it cannot keep all.
+// Misfit score of a component against a marker's disc, which ranks blobs if find_blobs cannot keep
+// all.
 //
-// What:     steps for an area beside that of a whole marker at the component's depth (a step for
-//           each factor of two), for a shape that is no disc's, and for little contrast.
-// Cost:     at most five depths and one reflectivity are read; no floating point.
-// Worst:    a saturated middle: its depth is missing, and four rim pixels are read.
-// Accuracy: an order, not a decision: a marker that is half hidden or dim has one or two steps.
+// What:     sum of steps: for an area outside that of an isolated marker at the component's depth
+//           (one step for each factor of two), for a shape unlike a disc, and for low contrast.
+// Cost:     reads at most five depths and one reflectivity; no floating point.
+// Worst:    a saturated centre: its depth is missing, and four rim pixels are read.
+// Accuracy: a rank, not a decision: a marker that is half occluded or of low signal has one or two
+//           steps.
 // Source:   a disc covers pi / 4 of its box; half the markers' least contrast is our own choice.
 #pragma once
 
@@ -17,7 +19,7 @@ namespace glint {
 
 inline constexpr int k_misfit_max = 4;
 
-// 0: as a marker is, to k_misfit_max.
+// Returns 0 (fits a marker) to k_misfit_max.
 [[nodiscard]] int marker_misfit(const Frame& frame, const Component& component,
                                 const BlobSettings& settings) noexcept GLINT_NONBLOCKING;
 

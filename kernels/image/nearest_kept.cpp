@@ -11,20 +11,21 @@
 namespace glint {
 namespace {
 
-// In half pixels. A middle is inside the frame, a prediction at most a quarter of it outside.
+// In half pixels. A centre is inside the frame. Predictions are clamped to a quarter of the frame
+// outside it: further out their order does not matter.
 constexpr int k_frame = 2 * std::max(k_width_max, k_height_max);
 constexpr int k_nearest = -k_frame / 4, k_farthest = k_frame + k_frame / 4;
 static_assert(k_farthest <= INT16_MAX && 2 * k_farthest * k_farthest < 1 << 24);
-constexpr std::int32_t k_far = (1 << 23) - 1;  // squared: what is further apart counts as this
+constexpr std::int32_t k_far = (1 << 23) - 1;  // upper limit of a squared distance
 constexpr int k_at_once = 16;                  // distances compared in one round
-// Each step of misfit doubles a distance, which is squared.
+// Each step of misfit doubles a distance; these are squared.
 constexpr int k_bits_a_misfit = 2;
 constexpr std::int32_t k_last = INT32_MAX;
 static_assert((std::int64_t{k_far} << k_bits_a_misfit * k_misfit_max) + 1 < k_last);
-constexpr std::uint8_t k_stays = 0x80;  // in the place of a misfit: kept already
+constexpr std::uint8_t k_stays = 0x80;  // value of a misfit: already kept
 
-// The smallest of k_far and numbers below 2^24. Added to the bits of 2^23 they are floats in the
-// same order, for which every x86-64 has an instruction that chooses.
+// Minimum of k_far and numbers below 2^24, by lanes. Added to the bits of the float 2^23 they are
+// floats in the same order, for which every x86-64 has a minimum instruction.
 class Least {
  public:
   void see(Sums other) {
@@ -48,8 +49,7 @@ class Least {
 #endif
 };
 
-// Points in half pixels, x beside y, each as often as there are pairs of lanes. Far outside the
-// frame the order among predictions is of no interest.
+// Points in half pixels, as pairs (x, y) repeated over all lanes.
 struct Points {
   std::array<Words, k_predictions_max> at;
   int count = 0;
@@ -76,7 +76,7 @@ std::int32_t middle_of(const Component& component) {
   return pair_of(component.x0 + component.x1, component.y0 + component.y1);
 }
 
-// Squared, in half pixels, of four middles to their nearest points.
+// Squared distances, in half pixels, of four centres to their nearest points.
 Sums nearest(Words middles, const Points& points) {
   Least least;
   for (int i = 0; i < points.count; ++i) {
@@ -87,12 +87,12 @@ Sums nearest(Words middles, const Points& points) {
 }
 
 struct Cut {
-  std::int32_t distance = 0;  // all below it stay,
-  int equal = 0;              // and so many of those that have it
+  std::int32_t distance = 0;  // all candidates below it stay,
+  int equal = 0;              // and this many of those at it
 };
 
-// The distance of place `kept` in the order, bit by bit: as many are below it as it has room for.
-// Behind the candidates' distances come those that fill up k_at_once, which are below none.
+// The order statistic `kept` of the distances, by bisection bit by bit. The padding up to k_at_once
+// has the largest distance.
 Cut find_cut(const BlobScratch& scratch, int candidates, int kept) {
   const int padded = (candidates + k_at_once - 1) / k_at_once * k_at_once;
   const auto at = [&](int i) {
@@ -103,7 +103,7 @@ Cut find_cut(const BlobScratch& scratch, int candidates, int kept) {
   Cut cut{0, kept};
   for (std::int32_t bit = k_last / 2 + 1; bit > 0; bit /= 2) {
     const Sums last_below = Sums{} + (cut.distance + (bit - 1));
-    Sums even{}, odd{};  // counts of the others, negative
+    Sums even{}, odd{};  // negative counts of the distances not below
     for (int i = 0; i < padded; i += k_at_once) {
       even += at(i) > last_below;
       odd += at(i + 4) > last_below;
@@ -119,8 +119,8 @@ Cut find_cut(const BlobScratch& scratch, int candidates, int kept) {
   return cut;
 }
 
-// Of each candidate's middle to the nearest point, grown by its misfit; 0 of one that stays
-// already, and k_last behind the last one.
+// Computes the distance of each candidate's centre to the nearest point, multiplied by its misfit;
+// 0 for a candidate already kept, and k_last in the padding.
 void measure_distances(const Points& points, BlobScratch& scratch, int candidates) {
   for (int i = 0; i < candidates; i += 4) {
     const auto middle = [&](int lane) {
@@ -142,7 +142,7 @@ void measure_distances(const Points& points, BlobScratch& scratch, int candidate
   }
 }
 
-// Calls visit(index, whether it is one of the `kept` nearest) for each candidate.
+// Calls visit(index, true if it is one of the `kept` nearest) for each candidate.
 template <class Visit>
 void for_each_judged(const BlobScratch& scratch, int candidates, int kept, Visit visit) {
   Cut cut = find_cut(scratch, candidates, kept);
@@ -154,7 +154,7 @@ void for_each_judged(const BlobScratch& scratch, int candidates, int kept, Visit
   }
 }
 
-// The middle of the candidate whose turn it is.
+// Centre of the focus candidate of this turn.
 Points focus_of(const BlobScratch& scratch, int candidates, std::uint32_t turn) {
   constexpr std::uint32_t golden = 0x9E3779B9;  // 2^32 / phi
   const std::uint64_t part = static_cast<std::uint32_t>(turn * golden);

@@ -1,8 +1,8 @@
-// Sixteen-bit lanes, eight at a time, multiplied and added in pairs.
+// SIMD dot products of adjacent pairs of eight 16-bit lanes.
 //
-// What:     the one product that x86-64 has for them; elsewhere the same from 32-bit lanes.
+// What:     the pmaddwd instruction of x86-64; elsewhere the same result from 32-bit lanes.
 // Cost:     one instruction on x86-64, eight elsewhere.
-// Accuracy: exact, as long as a pair's sum fits 32 bits: all but four times -32768.
+// Accuracy: exact, unless all four factors of a pair are -32768: the sum then exceeds 32 bits.
 #pragma once
 
 #include <cstdint>

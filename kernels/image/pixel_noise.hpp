@@ -1,4 +1,4 @@
-// What a sensor adds to each of its pixels, 1 sigma, raw counts.
+// Noise model of a sensor's pixels: read, shot and proportional noise, 1 sigma, raw counts.
 #pragma once
 
 namespace glint {
@@ -7,7 +7,7 @@ namespace glint {
 struct PixelNoise {
   double read_counts = 6;      // in the dark
   double shot_counts = 0.35;   // variance per count
-  double proportional = 0.01;  // from pixel to pixel: their areas, lenses and gains differ
+  double proportional = 0.01;  // differences of area, lens and gain between pixels
 };
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-// Where in the frame to look: disjoint rectangles, half open, in pixels.
+// Regions of interest (ROI) of a frame: disjoint rectangles, half open, in pixels.
 #pragma once
 
 #include <array>

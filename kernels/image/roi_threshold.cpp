@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-// The ROIs clipped to the frame's rows of this band, from left to right: a total order.
+// The ROIs clipped to the rows of this band, sorted from left to right (a total order).
 Rois clipped(const Rois& rois, const Limits& limits, int width, int top, int bottom) {
   Rois out;
   const int most = std::clamp(limits.tools, 1, static_cast<int>(rois.items.size()));
@@ -35,8 +35,8 @@ Rois clipped(const Rois& rois, const Limits& limits, int width, int top, int bot
   return out;
 }
 
-// Calls scan(pixels of the row, y, x0, x1) for each stretch of a row that lies in an ROI, until it
-// returns false; returns the number of ROIs times rows.
+// Calls scan(pixels of the row, y, x0, x1) for each row segment inside an ROI until it returns
+// false. Returns the number of ROIs times rows.
 template <class Pixel, class Scan>
 int for_each_stretch(const ImageView<Pixel>& image, const Rois& rois, const Limits& limits,
                      RowBand band, Scan scan) {
@@ -64,8 +64,8 @@ bool usable(const Frame& frame, RowBand band, const Limits& limits) {
          bytes <= limits.reflectivity_bytes;
 }
 
-// A narrow ROI jumps from row to row too fast for the processor to foresee: its rows are asked for
-// this many ahead, which takes the memory's time off a frame that no cache holds yet.
+// Rows to prefetch: the hardware prefetcher does not follow a narrow ROI from row to row. Software
+// prefetch hides the memory latency of a frame that is not in a cache yet.
 constexpr int k_rows_ahead = 12;
 
 template <class Pixel>

@@ -1,10 +1,10 @@
-// The reference of roi_threshold.cpp: pixel by pixel. It shares no code with what it judges.
+// Reference implementation of roi_threshold.cpp: pixel by pixel, without shared code.
 #include "kernels/image/roi_threshold.hpp"
 
 namespace glint {
 namespace {
 
-// More ROIs than tools stand for the whole frame.
+// More ROIs than tools mean the whole frame.
 bool in_any_roi(const Rois& rois, const Limits& limits, int x, int y) {
   const int tools = limits.tools < 1 ? 1 : limits.tools > k_tools_max ? k_tools_max : limits.tools;
   if (rois.count > tools) return true;

@@ -1,9 +1,9 @@
-// Appends runs to a buffer, joining those that touch, until one finds it full.
+// Run-length encoder: writes runs from bit masks into a buffer, joins adjacent ones, stops if full.
 //
-// What:     the places where a row turns bright or dark again, two of which make a run.
-// Cost:     the same for every such place; a block without one costs a shift and a comparison.
-// Source:   a bit differs from its left neighbour: Warren, "Hacker's Delight", 2nd ed., section
-// 2-1.
+// What:     the edges at which a row changes between dark and bright; two edges make a run.
+// Cost:     the same for every edge; a block without an edge costs a shift and a comparison.
+// Source:   a bit differs from its left neighbour: Warren, "Hacker's Delight", 2nd ed.,
+//           section 2-1.
 #pragma once
 
 #include <algorithm>
@@ -21,11 +21,11 @@ class RunWriter {
     out.reason = Reason::none;
   }
 
-  // From here on pixels x0, x0 + 1, .. of row y are told; in row order, then from left to right.
+  // Starts a row segment at pixel x0 of row y. Requires segments in row-major order.
   void begin_stretch(int y, int x0) {
     if (edges_ > 0) {
       const Run& last = item(edges_ - 1);
-      if (last.y == y && last.x1 == x0) {  // goes on with the run before
+      if (last.y == y && last.x1 == x0) {  // continues the previous run
         --edges_;
         from_ = last.x0;
       }
@@ -33,7 +33,8 @@ class RunWriter {
     y_ = static_cast<std::uint16_t>(y);
   }
 
-  // A block's pixels x + i, a bit each. False: the buffer is full, nothing more is to be told.
+  // Adds a block: bit i of the mask is pixel x + i. Returns false if the buffer is full; then add
+  // nothing more.
   template <class Mask>
   [[nodiscard]] bool add(int x, Mask mask) {
     const Mask open = edges_ & 1;
@@ -47,7 +48,7 @@ class RunWriter {
     return true;
   }
 
-  // Behind the last pixel of the stretch.
+  // x1: one past the last pixel of the segment.
   void end_stretch(int x1) {
     if ((edges_ & 1) != 0) put_edge(x1);
   }
@@ -57,7 +58,7 @@ class RunWriter {
  private:
   [[nodiscard]] Run& item(int edge) { return out_.items[static_cast<std::size_t>(edge / 2)]; }
 
-  // A run's first edge writes nonsense, which its second replaces: cheaper than to tell them apart.
+  // The first edge of a run writes an invalid run, which the second replaces: no branch is needed.
   void put_edge(int x) {
     const auto to = static_cast<std::uint16_t>(x);
     item(edges_) = {y_, from_, to};
