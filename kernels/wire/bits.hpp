@@ -1,4 +1,4 @@
-// Numbers in bytes, spelled out so that no machine's own byte order shows.
+// Bit fields and byte serialisation of integers, independent of the machine's byte order.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace glint {
   return static_cast<std::int64_t>(word << (64 - at - width)) >> (64 - width);
 }
 
-// bytes.size() 1..8 says how many bytes are written, lowest first.
+// Writes bytes.size() bytes (1..8), lowest first.
 constexpr void put_little_endian(std::span<std::uint8_t> bytes, std::uint64_t value) noexcept {
   for (std::uint8_t& byte : bytes) {
     byte = static_cast<std::uint8_t>(value & 0xFFU);
@@ -35,8 +35,8 @@ constexpr void put_little_endian(std::span<std::uint8_t> bytes, std::uint64_t va
   return value;
 }
 
-// A message carries the low 32 bits of a count: the count with these bits that is nearest to
-// `near`, the newest one before it. No count is negative.
+// Extends the low 32 bits of a count, as a message carries them: returns the count with these bits
+// that is nearest to `near`, the newest count before it. Counts are not negative.
 [[nodiscard]] constexpr std::uint64_t extended_count(std::uint32_t low,
                                                      std::uint64_t near) noexcept {
   const auto step = static_cast<std::int32_t>(low - static_cast<std::uint32_t>(near));

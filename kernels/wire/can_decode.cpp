@@ -8,9 +8,9 @@
 namespace glint {
 namespace {
 
-constexpr double k_fd_rotation_least_norm = 0.5;  // less is a frame without a pose
+constexpr double k_fd_rotation_least_norm = 0.5;  // a smaller norm is a frame without a pose
 
-// The eight bytes as one word, or Reason::frame_invalid.
+// Returns the eight bytes as one word, or Reason::frame_invalid.
 Result<std::uint64_t> checked_word(const CanFrame& frame) {
   const bool good =
       !frame.fd && !frame.extended && frame.length == 8 &&

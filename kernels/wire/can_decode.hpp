@@ -1,8 +1,8 @@
-// What a reader of the CAN frames sees: the counterpart of can_frames.hpp, for `inspect` and tests.
+// CAN decoding of a pose: the inverse of can_frames.hpp, for `inspect` and tests.
 //
 // What:     one protected frame -> values in SI.
 // Cost:     a CRC over the frame and a few shifts; one square root for a rotation.
-// Worst:    the same for every frame.
+// Worst:    data independent.
 // Accuracy: exact: integer x step.
 // Source:   the layout in can_frames.hpp.
 #pragma once
@@ -15,8 +15,8 @@
 
 namespace glint {
 
-// Each returns Reason::frame_invalid for a wrong length or kind of frame or a failed check. The
-// data identifier of the check is the frame's own CAN identifier.
+// Each decoder returns Reason::frame_invalid for a wrong length or kind of frame or a failed check.
+// The data identifier of the check is the frame's own CAN identifier.
 struct DecodedPosition {
   std::uint8_t counter = 0;
   bool valid = false;
@@ -39,7 +39,7 @@ struct DecodedVelocity {
 [[nodiscard]] Result<DecodedVelocity> decode_velocity(const CanFrame& frame) noexcept;
 [[nodiscard]] Result<DecodedVelocity> decode_angular_velocity(const CanFrame& frame) noexcept;
 
-// A negative value: "too large for its field, or unknown".
+// A negative value means "too large for its field, or unknown".
 struct DecodedQuality {
   std::uint8_t counter = 0;
   TrackState state = TrackState::none;

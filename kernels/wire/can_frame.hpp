@@ -1,4 +1,4 @@
-// A CAN frame as Glint hands it to a bus, whatever the bus is made of.
+// CAN frame (classic or FD) and the list of frames of one tick, independent of the bus driver.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ struct CanFrame {
   [[nodiscard]] std::span<const std::uint8_t> bytes() const { return {data.data(), length}; }
 };
 
-// All that one tick sends: a pose of each tool, then the node's own frames.
+// Capacity for one tick: a pose of each tool, then the node's own frames.
 inline constexpr int k_can_frames_per_pose_max = 5;
 inline constexpr int k_can_node_frames_max = 3 + k_tools_max;  // SYNC, FUP, heartbeat, EMCYs
 inline constexpr int k_can_frames_max =
@@ -37,7 +37,7 @@ inline constexpr int k_can_frames_max =
 struct CanFrames {
   std::array<CanFrame, k_can_frames_max> items;
   int count = 0;
-  std::uint32_t dropped = 0;  // did not fit; stays 0 while a tick sends what is said above
+  std::uint32_t dropped = 0;  // frames that did not fit; 0 if a tick sends only the above
 
   void add(const CanFrame& frame) noexcept {
     if (count < k_can_frames_max)
@@ -48,7 +48,7 @@ struct CanFrames {
   [[nodiscard]] std::span<const CanFrame> frames() const& {
     return {items.data(), static_cast<std::size_t>(count)};
   }
-  std::span<const CanFrame> frames() && = delete;  // of a temporary they would be gone
+  std::span<const CanFrame> frames() && = delete;  // of a temporary it would dangle
 };
 
 }  // namespace glint

@@ -11,8 +11,8 @@
 namespace glint {
 namespace {
 
-constexpr std::int64_t k_position_max = 0xFFFF;  // 17 bits and sign
-constexpr std::int64_t k_word_max = 0x7FFF;      // 16 bits and sign
+constexpr std::int64_t k_position_max = 0xFFFF;  // 17-bit signed
+constexpr std::int64_t k_word_max = 0x7FFF;      // 16-bit signed
 constexpr std::int64_t k_long_max = 0x7FFFFFFF;
 constexpr double k_one_rotation = 0x1p30;
 
@@ -30,7 +30,7 @@ CanFrame classic(std::uint32_t identifier, std::uint64_t word, std::uint64_t tic
   frame.length = 8;
   const std::span<std::uint8_t> bytes(frame.data.data(), 8);
   put_little_endian(bytes, word);
-  // Of all 64 bits: their low half alone would repeat a counter when it starts again.
+  // Modulo of all 64 bits: that of the low 32 bits would repeat a counter when they overflow.
   const auto counter = static_cast<unsigned>(tick_number % k_p01_counters);
   protect_p01(bytes, static_cast<std::uint16_t>(identifier), P01Mode::both, counter);
   return frame;
@@ -65,7 +65,7 @@ std::uint64_t velocity_word(const PoseSample& sample, const Vector3& velocity, d
   return three_words(v.value) | bits_at(state_bits(sample.state), 62, 2);
 }
 
-// Values that mean nothing without a pose are then all ones.
+// Quantises a value that is undefined without a pose; returns `over` then.
 std::uint64_t known(const PoseSample& sample, double value, double step, std::uint64_t over) {
   return sample.has_pose() ? quantize_or(value, 1 / step, over) : over;
 }
@@ -84,7 +84,7 @@ std::uint64_t quality_word(const PoseSample& s) {
          bits_at(s.buttons & k_buttons_mask, 59, 3);
 }
 
-// 0, "unknown", where the sum is before 1970 or beyond what an int64 holds.
+// Returns 0, "unknown", if the sum is before 1970 or exceeds an int64.
 std::uint64_t unix_time(Time time, std::int64_t offset_ns) {
   const std::uint64_t sum = as_bits(time.nanoseconds) + as_bits(offset_ns);
   return sum <= as_bits(std::numeric_limits<std::int64_t>::max()) ? sum : 0;
@@ -98,7 +98,7 @@ struct FdPose {
   TrackState state = TrackState::none;
 };
 
-// The pose, or zeros with state none when any of it does not fit.
+// Quantises the pose; returns zeros with state none if any part does not fit.
 FdPose quantize_pose(const PoseSample& s) {
   FdPose pose;
   pose.state = s.state;

@@ -1,10 +1,10 @@
-// A pose as CAN frames: five classic frames or one CAN FD frame for each tool.
+// CAN encoding of a pose: five classic frames or one CAN FD frame for each tool.
 //
-// What:     PoseSample -> protected frames. Bits count as in a DBC file's Intel order.
+// What:     PoseSample -> protected frames. Bit numbers as in the Intel order of a DBC file.
 //   classic, 8 bytes, E2E profile 1 (both), data identifier = CAN identifier:
 //     all      CRC 0..7 | counter 8..11
 //     base+0   x,y,z 17-bit signed, 0.05 mm: 12..28, 29..45, 46..62 | valid 63
-//     base+1   index left out 12..13 | three components 16-bit: 14.., 30.., 46..61 | state 62..63
+//     base+1   omitted index 12..13 | three components 16-bit: 14.., 30.., 46..61 | state 62..63
 //     base+2   0 12..13 | linear velocity 16-bit signed, 0.1 mm/s: 14.., 30.., 46.. | state 62..63
 //     base+3   likewise the angular velocity, 1 mrad/s
 //     base+4   state 12..14 | registration 15..16 | markers 17..20 | sigma position 0.01 mm 21..30
@@ -19,14 +19,14 @@
 //              u32 60..63
 //   Tool k uses base + 16 k. The counter is the tick number modulo 15 (FD: 256), so that all frames
 //   of one estimate share it.
-//   Not in range: a position, rotation or velocity that does not fit is sent as zeros with valid 0
+//   Out of range: a position, rotation or velocity that does not fit is sent as zeros with valid 0
 //   or state none (FD: the whole pose with state none). An uncertainty, age or rms that does not
 //   fit is sent as all ones, "this or more, or unknown". A Unix time before 1970 is sent as 0.
-//   Nothing wraps. base+4 tells the tracker's state whatever became of the other four.
+//   No value wraps. base+4 always carries the tracker's state, also if the others are out of range.
 // Cost:     quantising 23 numbers and a CRC over 40 (FD: 64) bytes.
-// Worst:    the same for every sample.
+// Worst:    data independent.
 // Accuracy: nearest step of each field; orientation within 0.0037 deg (FD: 1e-7 deg).
-// Source:   the layout is Glint's own and stands in platform/can/glint.dbc.
+// Source:   the layout is Glint's own, published in platform/can/glint.dbc.
 #pragma once
 
 #include <cstdint>
@@ -48,7 +48,7 @@ inline constexpr std::uint32_t k_can_angular_velocity = 3;
 inline constexpr std::uint32_t k_can_quality = 4;
 inline constexpr std::uint32_t k_can_fd_pose = 8;
 
-// The last base identifier with which every tool's frames keep to 11 bits.
+// The largest base identifier for which the identifiers of all tools fit 11 bits.
 inline constexpr std::uint32_t k_can_base_max =
     k_can_identifier_max - (k_tools_max - 1) * k_can_tool_stride - 0xF;
 
@@ -64,7 +64,7 @@ inline constexpr double k_can_fd_position_step_m = 1e-6;
 inline constexpr double k_can_fd_rotation_step = 0x1p-30;
 inline constexpr double k_can_fd_age_step_s = 0.1e-3;
 
-// "This or more, or unknown".
+// Field values that mean "this or more, or unknown".
 inline constexpr std::uint64_t k_can_sigma_over = 0x3FF;
 inline constexpr std::uint64_t k_can_age_over = 0x7FF;
 inline constexpr std::uint64_t k_can_rms_over = 0x7F;
@@ -74,11 +74,11 @@ inline constexpr std::uint64_t k_can_fd_byte_over = 0xFF;
 struct CanPacking {
   CanFormat format = CanFormat::classic;
   std::uint32_t base_identifier = k_can_base_default;  // <= k_can_base_max
-  std::int64_t unix_offset_ns = 0;  // Unix time - the board's monotonic time; FD only
+  std::int64_t unix_offset_ns = 0;                     // Unix time - local monotonic time; FD only
 };
 
-// Adds one tool's frames, position first, since it is what a controller waits for. A tool number
-// beyond k_tools_max counts as one dropped frame.
+// Adds one tool's frames, position first, because a controller waits for it. A tool number outside
+// 0..k_tools_max - 1 adds one to frames.dropped.
 void add_pose_frames(const PoseSample& sample, const CanPacking& packing,
                      CanFrames& frames) noexcept GLINT_NONBLOCKING;
 

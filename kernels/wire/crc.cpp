@@ -5,7 +5,7 @@
 namespace glint {
 namespace {
 
-// Each polynomial's remainder of one byte, most significant bit first.
+// Table of the remainder of each byte by the polynomial, most significant bit first.
 template <class Word>
 constexpr std::array<Word, 256> table_of(Word polynomial) {
   constexpr int k_top = 8 * sizeof(Word) - 1;

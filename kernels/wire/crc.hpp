@@ -1,6 +1,6 @@
-// The cyclic redundancy checks of AUTOSAR's end-to-end profiles and of CanTSyn.
+// Cyclic redundancy checks (CRC-8, CRC-16) of AUTOSAR's end-to-end profiles and of CanTSyn.
 //
-// What:     table-driven CRC over bytes; a call continues where an earlier one ended.
+// What:     table-driven CRC over bytes; a step continues from the result of an earlier one.
 // Cost:     one table look-up a byte.
 // Worst:    the longest frame, 64 bytes and a data identifier: 66 look-ups.
 // Accuracy: exact; "123456789" gives 4B, DF and 29B1, see crc_test.cpp.
@@ -19,8 +19,8 @@ inline constexpr std::uint8_t k_crc8_start = 0xFF;
 inline constexpr std::uint8_t k_crc8_final_xor = 0xFF;
 inline constexpr std::uint16_t k_crc16_start = 0xFFFF;
 
-// The bare division: neither the start value nor the final inversion is applied, since profile 1
-// uses the first without either. crc8_j1850_step(0xFF, bytes) ^ 0xFF is the named CRC.
+// Polynomial division without start value and final inversion, because profile 1 uses the first CRC
+// without both. crc8_j1850_step(0xFF, bytes) ^ 0xFF is the named CRC.
 [[nodiscard]] std::uint8_t crc8_j1850_step(
     std::uint8_t crc, std::span<const std::uint8_t> bytes) noexcept GLINT_NONBLOCKING;
 [[nodiscard]] std::uint8_t crc8_h2f_step(

@@ -1,12 +1,11 @@
-// The frames that a node sends once, whatever the number of its tools: that it is alive, what time
-// it is, what went wrong.
+// CAN frames of a node: heartbeat, emergency and time synchronisation.
 //
 // What:     CANopen heartbeat and emergency, AUTOSAR CanTSyn SYNC and follow-up.
 // Cost:     at most one CRC over 7 bytes.
-// Worst:    the same for every call.
+// Worst:    data independent.
 // Accuracy: time to the nanosecond.
-// Source:   CiA 301, 7.2.7 (EMCY) and 7.2.8 (heartbeat); AUTOSAR Time Synchronization over
-// CAN, 7.2.
+// Source:   CiA 301, 7.2.7 (EMCY) and 7.2.8 (heartbeat); AUTOSAR Time Synchronization over CAN,
+//           7.2.
 #pragma once
 
 #include <array>
@@ -27,18 +26,18 @@ enum class CanNodeState : std::uint8_t {
   pre_operational = 0x7F
 };
 
-// Identifier 0x700 + node, node 1..127 (taken modulo 128).
+// Identifier 0x700 + node, node 1..127 (modulo 128).
 [[nodiscard]] CanFrame heartbeat_frame(unsigned node,
                                        CanNodeState state) noexcept GLINT_NONBLOCKING;
 
-// Identifier 0x80 + node. Error code FF00 + reason (0000: the error is over), error register 81
-// (generic, manufacturer's), then tool, track state, reason, registration state, 0.
+// Identifier 0x80 + node. Error code FF00 + reason (0000: error reset), error register 81 (generic,
+// manufacturer specific), then tool, track state, reason, registration state, 0.
 [[nodiscard]] CanFrame emergency_frame(unsigned node,
                                        const PoseSample& sample) noexcept GLINT_NONBLOCKING;
 
-// An activation that was not in time. Identifier and error code as above; then in the place of the
-// tool the rate group (0 frame, 1 tick), of the state the kind (1 noticed ahead, 2 missed), the
-// reason, 0, and the last node that ran.
+// Emergency frame for an activation with an overrun. Identifier and error code as above. The byte
+// of the tool holds the rate group (0 frame, 1 tick), that of the state the kind (1 detected ahead,
+// 2 missed); then the reason, 0, and the last node that ran.
 struct OverrunEmergency {
   std::uint8_t group = 0;
   std::uint8_t kind = 0;
@@ -58,13 +57,13 @@ struct TimeSync {
   std::array<std::uint8_t, 16> data_ids{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 };
 
-// SYNC: the whole seconds of `unix_ns`, the time just before it is sent. The time must lie in
-// 1970..2106, as the field has 32 bits: else Reason::out_of_range.
+// SYNC: the whole seconds of `unix_ns`, the time just before it is sent. Returns
+// Reason::out_of_range for a time outside 1970..2106 (a field of 32 bits).
 [[nodiscard]] Result<CanFrame> time_sync_frame(const TimeSync& sync, std::uint8_t counter,
                                                std::int64_t unix_ns) noexcept GLINT_NONBLOCKING;
 
-// Follow-up: the time at which the SYNC went out. The field has two bits for whole seconds since
-// SYNC's: more than that, or a time before SYNC's seconds, is Reason::out_of_range.
+// Follow-up: the time at which the SYNC was sent. The field has two bits for whole seconds since
+// those of SYNC. Returns Reason::out_of_range for more, or for a time before SYNC's seconds.
 [[nodiscard]] Result<CanFrame> time_follow_up_frame(
     const TimeSync& sync, std::uint8_t counter, std::int64_t sync_unix_ns,
     std::int64_t sent_unix_ns) noexcept GLINT_NONBLOCKING;

@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-// Walks the record in the order of its table: one order for both directions.
+// Writer and Reader follow the order of the table in output_record.hpp.
 class Writer {
  public:
   explicit Writer(std::span<std::uint8_t> bytes) : bytes_(bytes) {}

@@ -1,5 +1,6 @@
-// What Glint says about one tool at one tick: everything CAN and DDS carry, plus what a reader
-// needs to trust it. Its byte layout (output_record.hpp) is what output_sha256 is taken over.
+// Output sample of one tool at one tick: all fields of the CAN and DDS output, with their quality.
+//
+// output_record.hpp defines its byte layout, which output_sha256 hashes.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +15,12 @@ enum class TrackState : std::uint8_t { none = 0, predicted = 1, measured = 2, lo
 enum class RegistrationState : std::uint8_t { none = 0, given = 1, accepted = 2, refused = 3 };
 enum class ReferenceFrame : std::uint8_t { camera = 0, world = 1, robot = 2 };
 
-// Of the pen's buttons those that leave: bit 0 draw, 1 delete_last, 2 undo.
+// The pen's buttons in the output: bit 0 draw, 1 delete_last, 2 undo.
 inline constexpr unsigned k_buttons_mask = 7;
 
 struct PoseSample {
   Time tick;         // nominal release of the tick
-  Time measurement;  // mid-exposure of the frame the pose rests on
+  Time measurement;  // mid-exposure of the frame that the pose is based on
   std::uint64_t tick_number = 0;
   std::uint64_t frame_sequence = 0;
   std::uint8_t tool = 0;
@@ -34,11 +35,11 @@ struct PoseSample {
   Vector3 velocity_m_s = Vector3::Zero();  // of the tip, in `frame`
   Vector3 angular_velocity_rad_s = Vector3::Zero();
   Matrix6 covariance = Matrix6::Zero();  // x,y,z [m], rotation about fixed axes x,y,z [rad]: total
-  Matrix6 systematic = Matrix6::Zero();  // of it, what calibration errors cause
-  double sigma_position_m = 0;           // an axis: root of a third of the block's trace
-  double sigma_orientation_rad = 0;      // likewise
+  Matrix6 systematic = Matrix6::Zero();  // its part by systematic (calibration) errors
+  double sigma_position_m = 0;           // per axis: square root of trace / 3 of the position block
+  double sigma_orientation_rad = 0;      // likewise for the rotation block
   double registration_rms_m = 0;
-  double age_sigma_s = 0;  // of `measurement`; no part of the output record
+  double age_sigma_s = 0;  // of `measurement`; not in the output record
 
   [[nodiscard]] bool has_pose() const {
     return state == TrackState::predicted || state == TrackState::measured;

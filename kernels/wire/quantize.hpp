@@ -1,10 +1,10 @@
-// From SI values in double to the integers of a wire format and back.
+// Quantisation of SI values to the integers of a wire format, with range check.
 //
-// What:     nearest integer, half away from zero; out of range or NaN is said, never wrapped.
+// What:     nearest integer, half away from zero; returns fits = false for NaN or out of range.
 // Cost:     a multiplication, a floor and two comparisons.
 // Worst:    any double, infinities and NaN included.
 // Accuracy: exact: the nearest integer to the double product.
-// Source:   written out here, since the rounding of libm's nearbyint is a setting of the process.
+// Source:   own code, because libm's nearbyint depends on the rounding mode of the process.
 #pragma once
 
 #include <array>
@@ -16,11 +16,11 @@
 namespace glint {
 
 struct Quantized {
-  std::int64_t value = 0;  // 0 when it does not fit
+  std::int64_t value = 0;  // 0 if it does not fit
   bool fits = false;
 };
 
-// round(value * per_unit), if that lies in [low, high], |low|, |high| < 2^53.
+// Returns round(value * per_unit) if it is in [low, high]. Requires |low|, |high| < 2^53.
 [[nodiscard]] inline Quantized quantize(double value, double per_unit, std::int64_t low,
                                         std::int64_t high) noexcept {
   const double scaled = value * per_unit;
@@ -33,8 +33,8 @@ struct Quantized {
   return {whole, true};
 }
 
-// For values that only ever grow worse, like an uncertainty: `over` where the value does not fit
-// below it, so that a reader sees "this or more, or unknown".
+// For values of which larger is worse, such as a standard deviation. Returns `over` ("this or more,
+// or unknown") if the value does not fit below it.
 [[nodiscard]] inline std::uint64_t quantize_or(double value, double per_unit,
                                                std::uint64_t over) noexcept {
   const Quantized q = quantize(value, per_unit, 0, static_cast<std::int64_t>(over) - 1);
@@ -42,7 +42,7 @@ struct Quantized {
 }
 
 struct QuantizedVector {
-  std::array<std::int64_t, 3> value{};  // all 0 when one of them does not fit
+  std::array<std::int64_t, 3> value{};  // all 0 if one of them does not fit
   bool fits = false;
 };
 

@@ -1,10 +1,10 @@
-// A rotation in 50 bits: the largest of the four components is left out, since it follows.
+// Quaternion compression to 50 bits (smallest three): omits the largest of the four components.
 //
 // What:     unit quaternion -> index of the largest component, the other three as 16-bit integers.
 // Cost:     one square root each way.
-// Worst:    two components equally large: the first in the order x,y,z,w is left out.
-// Accuracy: 0.0037 deg at worst, see smallest_three_test.cpp.
-// Source:   |each of the three| <= 1/sqrt(2), as their squares and the largest one's sum to 1.
+// Worst:    two components equally large: omits the first in the order x,y,z,w.
+// Accuracy: maximum error 0.0037 deg, see smallest_three_test.cpp.
+// Source:   |each of the three| <= 1/sqrt(2), because all four squares sum to 1.
 #pragma once
 
 #include <array>
@@ -23,11 +23,11 @@ struct SmallestThree {
   bool valid = false;                       // false: the input was not a unit quaternion
 };
 
-// Unit within 1e-3; the remaining length error is divided out.
+// Requires a norm within 1e-3 of 1, else `valid` is false; normalises the rest.
 [[nodiscard]] SmallestThree to_smallest_three(const Quaternion& rotation) noexcept
     GLINT_NONBLOCKING;
 
-// Unit, whatever the integers are.
+// Returns a unit quaternion for any integers.
 [[nodiscard]] Quaternion from_smallest_three(const SmallestThree& packed) noexcept
     GLINT_NONBLOCKING;
 
