@@ -1,4 +1,5 @@
-// Inside Glint angles are radians; degrees are for people.
+// Conversion factors between radians and degrees. Inside Glint every angle is in radians; degrees
+// are for user input and output.
 #pragma once
 
 #include <numbers>

@@ -8,8 +8,8 @@
 namespace glint {
 namespace {
 
-// Constants that must be exact to more than a double are sums of doubles; all but the last part
-// have so few bits that their product with the reduction's integer is exact.
+// Constants that need more than double precision are sums of doubles. All parts but the last have
+// so few bits that their product with the reduction's integer is exact.
 constexpr double k_two_over_pi = 0x1.45f306dc9c883p-1;
 constexpr double k_half_pi_1 = 0x1.921fb544p+0;  // 33 bits
 constexpr double k_half_pi_2 = 0x1.0b4611a6p-34;
@@ -93,10 +93,10 @@ HighLow arc_tangent_of_ratio(double t) {
 SineCosine sine_cosine(double radians) noexcept {
   const double x = clamped(radians, -1e5, 1e5);
   const double turns = std::floor(x * k_two_over_pi + 0.5);
-  const double first = x - turns * k_half_pi_1;  // exact: both end at 2^-53 or above
+  const double first = x - turns * k_half_pi_1;  // exact: no operand has a bit below 2^-53
   const double piece = turns * k_half_pi_2;
   const double middle = first - piece;
-  const double back = first - middle;  // the rounding error of middle, Knuth's two-sum
+  const double back = first - middle;  // Knuth's two-sum: rounding error of middle
   const double error = (first - (middle + back)) + (back - piece);
   const double low = error - turns * k_half_pi_3;
   const double r = middle + low;
@@ -133,7 +133,7 @@ double logarithm(double x) noexcept {
     ++exponent;
   }
   // log(1+f) = 2 atanh(q), q = f/(2+f), |q| <= 0.172: terms to q^21; the next is 6e-19 of the sum.
-  // As 2q = f - qf, the large part f is exact.
+  // As 2q = f - qf, the large term f is exact.
   const double f = mantissa - 1.0;
   const double q = f / (2.0 + f);
   const double s = q * q;
@@ -187,7 +187,7 @@ double arc_tangent(double y, double x) noexcept {
   const double longer = steep ? up : along;
   const double ratio = longer > 0 ? (steep ? along : up) / longer : 0.0;
   const HighLow angle = arc_tangent_of_ratio(ratio);
-  // The angle from the x axis is base + sign * angle: folded at 45 degrees, then at 90.
+  // The angle from the x axis is base + sign * angle: reflected at 45 degrees, then at 90.
   double value = angle.high + angle.low;
   if (steep) {
     const double side = std::signbit(x) ? 1.0 : -1.0;

@@ -31,15 +31,15 @@ struct Pose {
   }
 };
 
-// [v]x: times a vector, it is v's cross product with it.
+// Skew-symmetric matrix [v]x of the cross product: [v]x w = v x w.
 [[nodiscard]] inline Matrix3 cross_matrix(const Vector3& v) {
   Matrix3 m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
   return m;
 }
 
-// The smallest turn that carries the direction `from` to `to`; about any axis across where they are
-// opposite. Eigen's FromTwoVectors gives it, too, by a decomposition that is slow to compile.
+// Smallest rotation that maps the direction `from` to `to`; for opposite directions, about any
+// perpendicular axis. Replaces Eigen's FromTwoVectors, whose decomposition is slow to compile.
 [[nodiscard]] inline Quaternion turn_between(const Vector3& from, const Vector3& to) {
   const Vector3 a = from.normalized(), b = to.normalized();
   const double w = 1 + a.dot(b);

@@ -1,7 +1,7 @@
-// Whether the kernels use x86-64's own instructions where its lanes need fewer of them.
+// Selects SSE2 instructions on x86-64 where they need fewer instructions than portable SIMD lanes.
 //
-// The portable lanes have the same bits. GLINT_PORTABLE_LANES takes them on x86-64 too, so that one
-// machine tests both.
+// Both variants have equal bits. GLINT_PORTABLE_LANES selects the portable one on x86-64 too, so
+// that one machine tests both.
 #pragma once
 
 #if defined(__SSE2__) && !defined(GLINT_PORTABLE_LANES)

@@ -1,5 +1,6 @@
-// The largest problem Glint takes on. Each is a constant of the code: every loop's maximum, every
-// buffer's size and so the computed worst case follow from these and from nothing that is measured.
+// Capacities of Glint: the largest problem that it accepts. Each is a constant of the code. Every
+// loop maximum, every buffer size and the computed worst case follow from these alone, not from
+// measurements.
 #pragma once
 
 namespace glint {
@@ -9,21 +10,22 @@ inline constexpr int k_height_max = 1024;
 inline constexpr int k_tools_max = 16;
 inline constexpr int k_markers_per_tool_max = 8;
 inline constexpr int k_blobs_max = 256;
-inline constexpr int k_row_bands = 4;  // how often the frame is split; never the worker count
+inline constexpr int k_row_bands = 4;  // partitions of the frame; independent of the worker count
 inline constexpr int k_runs_per_band_max = 4096;
-inline constexpr int k_reflectivity_bytes_max = 2;  // of a pixel
-// What all blobs share, in parts of a blob. Most take less, and a larger one what they leave.
-inline constexpr int k_centroid_pixels_a_blob = 360;   // of the box of a blob 11 pixels wide
-inline constexpr int k_range_pixels_a_blob = 128;      // looked at for depth
-inline constexpr int k_range_samples_a_blob = 16;      // ranges that are averaged
-inline constexpr int k_labelings_max = 8;              // kept for each tool, best first
-inline constexpr int k_lens_steps_max = 40;            // of a search in a lens table, a projection
-inline constexpr int k_ray_steps_max = 20;             // of finding a ray through a lens
-inline constexpr int k_search_steps_max = 4'096;       // of the correspondence search, a tool
-inline constexpr int k_background_steps_max = 50'000;  // of one background slice (slice_size.hpp)
+inline constexpr int k_reflectivity_bytes_max = 2;  // per pixel
+// Budgets that all blobs share, stated per blob. Most blobs need less; a large blob may use what
+// the others leave (shared_budget.hpp).
+inline constexpr int k_centroid_pixels_a_blob = 360;  // of the box of a blob 11 pixels wide
+inline constexpr int k_range_pixels_a_blob = 128;     // pixels read for depth
+inline constexpr int k_range_samples_a_blob = 16;     // ranges averaged
+inline constexpr int k_labelings_max = 8;             // kept per tool, best first
+inline constexpr int k_lens_steps_max = 40;           // of a search in a lens table, per projection
+inline constexpr int k_ray_steps_max = 20;            // of the ray iteration through a lens
+inline constexpr int k_search_steps_max = 4'096;      // of the correspondence search, per tool
+inline constexpr int k_background_steps_max = 50'000;  // per background slice (slice_size.hpp)
 
-// The problem that one cell takes on: at most the constants above. Nodes stop at these, and what a
-// chain may need at worst is computed from them; a smaller cell has a smaller bound.
+// Capacities of one cell: at most the constants above. Nodes stop at these limits, and the
+// worst-case execution time of a chain is computed from them; a smaller cell has a smaller bound.
 struct Limits {
   int width = k_width_max;
   int height = k_height_max;
@@ -32,10 +34,10 @@ struct Limits {
   int blobs = k_blobs_max;
   int runs_per_band = k_runs_per_band_max;
   int lens_steps = k_lens_steps_max;  // 0 for a lens without a table
-  int ray_steps = k_ray_steps_max;    // what the cell's lens takes: ray_steps_needed()
+  int ray_steps = k_ray_steps_max;    // of the cell's lens: ray_steps_needed()
   int search_steps = k_search_steps_max;
   int background_steps = k_background_steps_max;
-  int reference_steps = k_background_steps_max;  // of a slice of following a robot; 0: none is
+  int reference_steps = k_background_steps_max;  // per slice of robot tracking; 0: no robot
   int reflectivity_bytes = k_reflectivity_bytes_max;
   int centroid_pixels_a_blob = k_centroid_pixels_a_blob;
   int range_pixels_a_blob = k_range_pixels_a_blob;

@@ -1,9 +1,10 @@
-// The eigenvector of a symmetric 3x3 matrix whose eigenvalue lies apart from the two others.
+// Eigenvector of a symmetric 3x3 matrix for its most isolated eigenvalue, without iteration over
+// the matrix.
 //
-// What:     its eigenvalue from the characteristic equation, then the vector at right angles to two
-//           rows of what is left when that eigenvalue is taken off the diagonal.
-// Cost:     the same for every matrix: no iteration but k_eigenvalue_steps on one number.
-// Worst:    all three eigenvalues alike: any vector is as good, and z is given.
+// What:     the most isolated eigenvalue from the characteristic cubic by Newton's method, then the
+//           longest cross product of two rows of A - lambda I.
+// Cost:     data independent: k_eigenvalue_steps Newton steps on one number.
+// Worst:    three equal eigenvalues: every vector is an eigenvector; returns z.
 // Accuracy: see best_rotation.hpp.
 // Source:   Smith 1961, Communications of the ACM 4, p. 168; Eberly 2014, "A Robust Eigensolver for
 //           3x3 Symmetric Matrices".
@@ -16,7 +17,8 @@
 
 namespace glint {
 
-// Newton's steps on the eigenvalue, from within 1e-4 of it: one leaves 6e-9, two reach rounding.
+// Newton steps on the eigenvalue from an error below 1e-4: one step leaves 6e-9, two reach
+// rounding.
 inline constexpr int k_eigenvalue_steps = 2;
 
 struct SymmetricMatrix {
@@ -30,16 +32,16 @@ struct LoneVector {
 
 namespace detail {
 
-// Where the eigenvalues differ by less than this part of their sum, squared, they are the same to
-// rounding, and any axis is as good.
+// Relative limit of the eigenvalues' squared spread. Below it the eigenvalues are equal up to
+// rounding and every axis is valid.
 inline constexpr double k_all_equal = 1e-30;
 
-// From half the determinant h of a matrix with trace 0 and squares that sum to 6: the eigenvalue
-// that lies alone, 2 cos(acos(|h|) / 3), with h's sign. It is the only root of x^3 - 3 x = 2 |h|
-// beyond x = 1, between sqrt(3) and 2, where the slope is 6 to 9.
+// Isolated eigenvalue of a matrix with trace 0 and squared elements that sum to 6, from half its
+// determinant h: 2 cos(acos(|h|) / 3) with the sign of h. It is the only root of x^3 - 3 x = 2 |h|
+// beyond x = 1; it is between sqrt(3) and 2, where the slope is 6 to 9.
 inline double lone_eigenvalue(double h) {
   const double a = std::min(std::abs(h), 1.0);
-  // Within 1e-4 (its interpolant at Chebyshev's points); each step nearly squares what is wrong.
+  // Cubic interpolant at Chebyshev nodes, error below 1e-4; each Newton step nearly squares it.
   double x = 1.73213266 + a * (0.3306607 + a * (-0.0813824 + a * 0.01863937));
   for (int step = 0; step < k_eigenvalue_steps; ++step) {
     x -= (x * (x * x - 3) - 2 * a) / (3 * (x * x - 1));
@@ -67,7 +69,7 @@ inline const Vector3& longer(const Vector3& a, double a_square, const Vector3& b
                              sxz * (sxy * syz - by * sxz));
   const double value = detail::lone_eigenvalue(half);
   out.largest = half >= 0;
-  // What is left has rank two, and its rows stand at right angles to the vector.
+  // A - lambda I has rank two; its rows are perpendicular to the eigenvector.
   const Vector3 r0(bx - value, sxy, sxz), r1(sxy, by - value, syz), r2(sxz, syz, bz - value);
   const Vector3 a = r0.cross(r1), b = r0.cross(r2), d = r1.cross(r2);
   const Vector3& ab = detail::longer(a, a.squaredNorm(), b, b.squaredNorm());
@@ -76,7 +78,7 @@ inline const Vector3& longer(const Vector3& a, double a_square, const Vector3& b
   return out;
 }
 
-// Two directions at right angles to a unit vector n and to each other.
+// Two unit vectors perpendicular to a unit vector n and to each other (orthonormal basis).
 // Source: Duff et al. 2017, Journal of Computer Graphics Techniques 6(1).
 struct DirectionsAcross {
   Vector3 p, q;

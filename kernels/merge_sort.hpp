@@ -1,10 +1,10 @@
-// Sorts a few values in a number of steps that depends on how many there are, and on nothing else.
+// Branch-free merge sort of a short array. The number of steps depends on the count only.
 //
 // What:     ascending by <; equal values in any order.
-// Cost:     count x ceil(log2 count) steps, each the same: a comparison chooses without a branch;
-//           fours by a network of five exchanges.
-// Worst:    none is worse than another.
-// Accuracy: exact; values must have a total order, so no NaN.
+// Cost:     count x ceil(log2 count) equal steps: a comparison selects without a branch; groups of
+//           four by a network of five exchanges.
+// Worst:    data independent.
+// Accuracy: exact; requires a total order, so no NaN.
 // Source:   Knuth, "The Art of Computer Programming", vol. 3, section 5.2.4, straight merge sort.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace glint {
 
-// The first four of a longer list; an exchange needs no branch.
+// Sorts values[0] to values[3] by a sorting network.
 template <class T>
 void sort_four(T* values) noexcept {
   const auto exchange = [](T& a, T& b) {
@@ -31,14 +31,14 @@ void sort_four(T* values) noexcept {
   values[0] = a, values[1] = b, values[2] = c, values[3] = d;
 }
 
-// Sorts the first `count` values, with `spare` to write to in between.
+// Sorts the first `count` values; `spare` is scratch.
 template <class T, std::size_t N>
 void merge_sort(std::array<T, N>& values, std::array<T, N>& spare, int count) noexcept {
   T* from = values.data();
   T* to = spare.data();
   const int fours = count >= 8 ? count / 4 * 4 : 0;
   for (int begin = 0; begin < fours; begin += 4) sort_four(from + begin);
-  // What is left of less than four, and few values as a whole, one by one.
+  // Insertion sort: the remainder after the groups of four, or the whole array if count < 8.
   for (int i = fours + 1; i < count; ++i) {
     for (int j = i; j > fours && from[j] < from[j - 1]; --j) std::swap(from[j], from[j - 1]);
   }

@@ -1,8 +1,9 @@
-// A promise in a function's type: it neither blocks nor allocates, and calls nothing that may.
+// Macro for clang's nonblocking attribute: the function neither blocks nor allocates, and calls
+// only functions that do not either.
 //
-// Clang from version 20 follows it with -Wfunction-effects; other compilers do not know the word.
-// It stands after noexcept, on what is declared in a header and defined elsewhere: what is inline
-// the compiler sees through by itself.
+// Clang from version 20 checks it with -Wfunction-effects; for other compilers the macro is empty.
+// It follows noexcept on functions declared in a header and defined elsewhere; clang infers it for
+// inline functions.
 #pragma once
 
 #if defined(__has_cpp_attribute)

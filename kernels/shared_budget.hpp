@@ -1,16 +1,16 @@
-// What several takers share: each may have its equal part, and more where enough is left over when
-// those that come after have theirs.
+// Budget shared by several consumers. Each consumer may spend all that remains except the equal
+// shares reserved for the consumers after it.
 #pragma once
 
 namespace glint {
 
 class SharedBudget {
  public:
-  // A share for each of `takers_max`, of which `takers` come.
+  // Budget: share * takers_max. `takers` (at most takers_max) consumers spend from it.
   SharedBudget(int share, int takers_max, int takers)
       : left_(share * takers_max), share_(share), takers_left_(takers) {}
 
-  // To be called once for each taker, before it spends.
+  // Call once per consumer, before it spends.
   [[nodiscard]] int most_for_next() {
     --takers_left_;
     return left_ - share_ * takers_left_;

@@ -1,13 +1,12 @@
-// Sorts up to 64 doubles by a network: the same exchanges whatever the values are.
+// Sorting network for up to 64 doubles; data independent.
 //
-// What:     ascending. The values stand in rows of two; each column is sorted on its own, both at
-//           once, then the two are merged.
-// Cost:     for n values, filled up to 2 r, r the next of 4, 8, 16, 32: r / 4 (lg^2 r - lg r + 4)
-//           - 1 exchanges of rows, then 2 r + r / 2 lg r more.
+// What:     ascending. The values form rows of two; both columns are sorted at once, then merged.
+// Cost:     for n values, padded to 2 r, r the next of 4, 8, 16, 32: r / 4 (lg^2 r - lg r + 4) - 1
+//           exchanges of rows, then 2 r + r / 2 lg r more.
 // Worst:    one value more than 8, 16 or 32.
-// Accuracy: exact; values must have a total order, so no NaN.
+// Accuracy: exact; requires a total order, so no NaN.
 // Source:   Knuth, "The Art of Computer Programming", vol. 3, section 5.2.2, algorithm M; Batcher,
-//           AFIPS 32 (1968): the lesser halves of two sorted lists, one reversed, are bitonic.
+//           AFIPS 32 (1968): the smaller halves of two sorted lists, one reversed, are bitonic.
 #pragma once
 
 #include <limits>
@@ -18,14 +17,14 @@ namespace glint {
 
 namespace detail {
 
-// Row a gets the lesser, row b the greater of each column.
+// Row a receives the smaller, row b the larger value of each column.
 inline void exchange(TwoDoubles& a, TwoDoubles& b) {
   const TwoDoubles low = lesser(a, b), high = greater(a, b);
   a = low;
   b = high;
 }
 
-// Algorithm M's exchanges of one p and d, then those after them: each pass has constant bounds.
+// Exchanges of algorithm M for one p and d, then the following ones: each pass has constant bounds.
 template <int rows, int p = rows / 2, int q = rows / 2, int r = 0, int d = p>
 [[gnu::always_inline]] inline void sort_columns(TwoDoubles* row) {
   for (int from = r; from < rows - d; from += 2 * p) {
@@ -46,7 +45,7 @@ template <int rows, int d = rows / 2>
   if constexpr (d > 1) sort_bitonic<rows, d / 2>(row);
 }
 
-// Of two sorted columns the lesser half into the first, the greater into the second.
+// Moves the smaller half of two sorted columns to the first, the larger half to the second.
 template <int rows>
 void merge_columns(TwoDoubles* row) {
   for (int i = 0; i < rows / 2; ++i) {
@@ -78,8 +77,8 @@ void sort_rows(double* values, int count) {
 
 inline constexpr int k_sort_pairs_max = 64;
 
-// Sorts the first `count` values, at most as many as there may be; some of those behind them,
-// k_sort_pairs_max in all, become infinite.
+// Sorts the first `count` values; count <= k_sort_pairs_max, the size that `values` must have.
+// Overwrites some values behind `count` with infinity.
 inline void sort_pairs(double* values, int count) noexcept {
   if (count <= 8) return detail::sort_rows<4>(values, count);
   if (count <= 16) return detail::sort_rows<8>(values, count);

@@ -1,11 +1,11 @@
-// Two doubles that are worked on at once, for a loop whose steps do not wait for each other.
+// SIMD vector of two doubles, for loops with independent iterations.
 //
-// What:     sums, products, quotients and comparisons by lane are the language's; here what it
-//           lacks: loading, storing, square root, the lesser and the greater.
-// Cost:     one instruction each where the machine has lanes of doubles, else two.
-// Worst:    none is worse than another.
-// Accuracy: each lane has the bits that a double alone would have: IEEE 754 rounds all of these.
-// Source:   vector types as g++ and clang have them; x86-64's SSE2 for the square root.
+// What:     load, store, square root, minimum and maximum. The compiler's vector types provide
+//           sums, products, quotients and comparisons per lane.
+// Cost:     one instruction each on a machine with double lanes, else two.
+// Worst:    data independent.
+// Accuracy: each lane has the bits of the scalar operation: IEEE 754 rounds all of these.
+// Source:   vector types of g++ and clang; x86-64's SSE2 for the square root.
 #pragma once
 
 #include <cmath>
@@ -17,7 +17,7 @@
 namespace glint {
 
 using TwoDoubles = double __attribute__((vector_size(16)));
-// What a comparison gives: all bits of a lane are set, or none.
+// Result of a comparison: all bits of a lane are set, or none.
 using TwoMasks = std::int64_t __attribute__((vector_size(16)));
 
 [[nodiscard]] inline TwoDoubles load_two(const double* from) {
@@ -30,7 +30,7 @@ inline void store_two(const TwoDoubles& from, double* to) { std::memcpy(to, &fro
 
 [[nodiscard]] inline TwoDoubles both(double value) { return TwoDoubles{value, value}; }
 
-// The lanes that are set as they are, the others 0.
+// Keeps the lanes whose mask is set; the others become 0.
 [[nodiscard]] inline TwoDoubles where(const TwoMasks& set, const TwoDoubles& value) {
   return reinterpret_cast<TwoDoubles>(set & reinterpret_cast<TwoMasks>(value));
 }
@@ -52,7 +52,7 @@ inline void store_two(const TwoDoubles& from, double* to) { std::memcpy(to, &fro
 #endif
 }
 
-// Of numbers that are not negative.
+// Requires non-negative lanes.
 [[nodiscard]] inline TwoDoubles square_root(const TwoDoubles& of) {
 #ifdef GLINT_SSE2
   return reinterpret_cast<TwoDoubles>(_mm_sqrt_pd(reinterpret_cast<__m128d>(of)));

@@ -1,5 +1,5 @@
-// Time as a type: an int64 count of nanoseconds that cannot be mixed with a plain number.
-// Everything else inside Glint is SI in double: metres, radians, seconds.
+// Time and duration types: int64 counts of nanoseconds that do not mix with plain numbers. Every
+// other quantity inside Glint is SI in double: metres, radians, seconds.
 #pragma once
 
 #include <compare>
@@ -13,7 +13,7 @@ struct Duration {
   [[nodiscard]] constexpr double seconds() const { return static_cast<double>(nanoseconds) * 1e-9; }
 };
 
-// A point on the board's monotonic clock (in a simulation: since its start).
+// Time on the companion computer's monotonic clock (in a simulation: since its start).
 struct Time {
   std::int64_t nanoseconds = 0;
   constexpr auto operator<=>(const Time&) const = default;
