@@ -1,4 +1,5 @@
-// A row of equal values in memory that the caller owns: the core itself asks nobody for any.
+// Arena allocator and typed array in memory that the caller owns; the core itself allocates
+// nothing.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 
 namespace glint {
 
-// Hands out parts of one piece of memory, one behind the other. It must outlive what took them.
+// Bump allocator over one buffer. The buffer must outlive everything taken from it.
 class Arena {
  public:
   static constexpr std::size_t k_alignment = 64;  // a cache line
@@ -22,7 +23,7 @@ class Arena {
   [[nodiscard]] static constexpr std::size_t rounded(std::size_t bytes) noexcept {
     return (bytes + k_alignment - 1) / k_alignment * k_alignment;
   }
-  // Zeroed; nullptr: not enough is left.
+  // Returns zeroed memory, or nullptr if too little is left.
   [[nodiscard]] std::byte* take(std::size_t bytes) noexcept {
     if (rest_.size() < rounded(bytes)) return nullptr;
     std::byte* const taken = rest_.data();
@@ -43,11 +44,11 @@ class Column {
  public:
   static_assert(std::is_trivially_copyable_v<T>);
 
-  // What reserve() takes of an arena.
+  // Bytes that reserve() takes from an arena.
   [[nodiscard]] static constexpr std::size_t bytes(int count) noexcept {
     return Arena::rounded(static_cast<std::size_t>(count) * sizeof(T));
   }
-  // Zeroed. False: the arena has not enough left.
+  // Zeroes the values. Returns false if the arena has too little left.
   [[nodiscard]] bool reserve(int count, Arena& arena) noexcept {
     values_ = reinterpret_cast<T*>(arena.take(static_cast<std::size_t>(count) * sizeof(T)));
     return values_ != nullptr;

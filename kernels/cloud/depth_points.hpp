@@ -1,13 +1,13 @@
-// A depth picture as points of the world.
+// Back-projects the pixels of a depth image to points in the world frame.
 //
-// What:     each pixel's ray, from the lens, to the depth that stands there, moved by the camera's
-//           pose. Every stride-th pixel of every stride-th row, row by row.
-// Cost:     one unproject() a pixel taken (camera_model.hpp).
-// Worst:    pixels without a depth between the limits, or without a ray, are left out; a full cloud
-//           keeps the first ones.
-// Accuracy: in double, rounded to float at the end.
-// Source:   depth along the axis or along the ray: the pinhole's definition, and that of HoloLens
-//           2's research mode, whose depth is radial.
+// What:     scales each pixel's ray by its depth, then applies the camera's pose. Takes every
+//           stride-th pixel of every stride-th row, row by row.
+// Cost:     one unproject() per pixel taken (camera_model.hpp).
+// Worst:    discards pixels with a depth outside the limits or without a ray; a full cloud keeps
+//           the first points.
+// Accuracy: double, rounded to float at the end.
+// Source:   depth along the optical axis: definition of the pinhole model; depth along the ray:
+//           HoloLens 2 research mode.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace glint {
 
 enum class DepthAlong : std::uint8_t { axis, ray };
 
-// Metres, row by row, borrowed; 0 or not finite where nothing was measured.
+// Depth image: metres, row-major, borrowed; 0 or not finite where there is no measurement.
 struct DepthPicture {
   int width = 0, height = 0;
   std::span<const float> depth_m;
@@ -33,8 +33,9 @@ struct DepthPointSettings {
   float depth_max_m = 4.0f;
 };
 
-// Looks at pixels [from, from + most) of those that are taken, numbered along the rows; gives the
-// first not yet looked at, which is pixels_of() at the end. Adds what does not fit to `dropped`.
+// Number of pixels that a stride takes; they are numbered along the rows.
+// Processes pixels [from, from + most) of them; returns the first pixel not yet processed, which is
+// pixels_of() at the end. Adds the number of points that do not fit to `dropped`.
 [[nodiscard]] int pixels_of(const DepthPicture& picture, int stride) noexcept GLINT_NONBLOCKING;
 int add_depth_points(const DepthPicture& picture, const CameraModel& camera,
                      const Pose& T_world_camera, const DepthPointSettings& settings, int from,

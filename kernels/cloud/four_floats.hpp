@@ -1,11 +1,11 @@
-// Four floats that are worked on at once, for loops over points that lie side by side.
+// SIMD vector of four floats, for loops over points stored in columns.
 //
-// What:     arithmetic and comparisons by lane are the language's; here loading, spreading one
-//           value, a mask for what lies behind the end of a list, and sums of the lanes.
-// Cost:     one to four instructions each where the machine has lanes of floats.
-// Worst:    none is worse than another.
-// Accuracy: each lane has the bits that a float alone would have; a sum is (0 + 1) + (2 + 3).
-// Source:   vector types as g++ and clang have them.
+// What:     load, broadcast, a mask for the end of an array, and sums of the lanes. The compiler's
+//           vector types provide arithmetic and comparisons per lane.
+// Cost:     one to four instructions each on a machine with float lanes.
+// Worst:    data independent.
+// Accuracy: each lane has the bits of the scalar operation; a sum is (0 + 1) + (2 + 3).
+// Source:   vector types of g++ and clang.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@
 namespace glint {
 
 using FourFloats = float __attribute__((vector_size(16)));
-// What a comparison gives: all bits of a lane are set, or none.
+// Result of a comparison: all bits of a lane are set, or none.
 using FourMasks = std::int32_t __attribute__((vector_size(16)));
 
-// Lists that are read by fours may be read this far behind their end.
+// Arrays read four at a time are read up to this many elements beyond their end.
 inline constexpr int k_four_spare = 3;
 
 [[nodiscard]] inline FourFloats load_four(const float* from) {
@@ -30,7 +30,7 @@ inline constexpr int k_four_spare = 3;
   return FourFloats{value, value, value, value};
 }
 
-// The first `count` lanes are set; all of them from 4 on.
+// Sets the first `count` lanes; all of them from 4 on.
 [[nodiscard]] inline FourMasks first_lanes(int count) {
   return FourMasks{0, 1, 2, 3} < FourMasks{count, count, count, count};
 }
@@ -44,7 +44,7 @@ inline constexpr int k_four_spare = 3;
          (static_cast<double>(four[2]) + static_cast<double>(four[3]));
 }
 
-// How many lanes are set.
+// Number of set lanes.
 [[nodiscard]] inline int count_of(const FourMasks& set) {
   return -((set[0] + set[1]) + (set[2] + set[3]));
 }

@@ -5,7 +5,7 @@
 namespace glint {
 namespace {
 
-// False, too, where a number is none: comparisons with it are.
+// Returns false for NaN: every comparison with NaN is false.
 bool within(const LeftOut& capsule, const Vector3& point) noexcept {
   const Vector3 along = capsule.to - capsule.from, off = point - capsule.from;
   const double length = along.squaredNorm();

@@ -1,11 +1,12 @@
-// Takes points off a cloud that lie within thick lines: the tracked pen and hands, which are no
-// part of the place that is mapped.
+// Removes the points inside capsules from a point cloud: the tracked pen and hands, which are not
+// part of the mapped scene.
 //
-// What:     points at most radius_m from the line from `from` to `to` go, the others keep their
-//           order. A sphere has both ends in one place.
-// Cost:     a point's distance to each line.
-// Worst:    all points times all capsules. One that is not finite, or of no radius, takes none off.
-// Accuracy: in double.
+// What:     removes points within radius_m of the segment from `from` to `to`; the others keep
+//           their order. A capsule with equal ends is a sphere.
+// Cost:     per point one distance to each capsule.
+// Worst:    all points times all capsules. A capsule that is not finite or has no radius removes
+//           none.
+// Accuracy: double.
 // Source:   Ericson 2005, "Real-Time Collision Detection", 5.1.2 (closest point on a segment).
 #pragma once
 
@@ -17,14 +18,14 @@
 
 namespace glint {
 
-inline constexpr int k_left_out_max = 64;  // capsules at a time; the first ones count
+inline constexpr int k_left_out_max = 64;  // capsules per call; the first ones count
 
 struct LeftOut {
   Vector3 from = Vector3::Zero(), to = Vector3::Zero();  // in the cloud's frame
   double radius_m = 0;
 };
 
-// Of the points [first, points.count); gives how many went.
+// Processes the points [first, points.count); returns the number removed.
 int leave_out_capsules(std::span<const LeftOut> capsules, int first,
                        PointCloud& points) noexcept GLINT_NONBLOCKING;
 

@@ -8,10 +8,10 @@
 namespace glint {
 namespace {
 
-// A pivot below this part of its diagonal is rounding: sums are floats.
+// Relative pivot limit: a smaller pivot is rounding error of the float sums.
 constexpr double k_pivot_least = 1e-6;
 
-// exp(-t) for t from 0 to 4: the eighth power of its series about a sixteenth of that.
+// exp(-t) for t in [0, 4]: eighth power of exp(-t / 8), by its Taylor series about t = 2.
 FourFloats falling(const FourFloats& t) {
   const FourFloats h = 0.25f - 0.125f * t;
   const FourFloats series =
@@ -36,14 +36,14 @@ PlaneSums plane_sums(const Neighbours& near) {
           sum_of(yy), sum_of(zz), sum_of(xy), sum_of(xz), sum_of(yz)};
 }
 
-// The plane's frame at the foot of the point. Along the plane one unit is the radius.
+// Frame of the plane at the foot of the point. The unit of length along the plane is the radius.
 struct LocalFrame {
   Vector3 u, v, normal;
-  double height = 0;  // of the plane over the point, metres
+  double height = 0;  // of the plane above the point, metres
 };
 
-// Row by row the upper triangle of the weighted normal equations, and their right side last, in the
-// order uu, uv, vv, u, v, 1: what is wanted stands at the end, where solving begins.
+// Upper triangle of the weighted normal equations, row by row, and their right side last. Order of
+// the terms: uu, uv, vv, u, v, 1, so that back substitution starts with the required terms.
 constexpr int k_terms = 6;
 using Equations = std::array<std::array<double, k_terms + 1>, k_terms>;
 
@@ -80,13 +80,13 @@ Equations sheet_equations(const Neighbours& near, const LocalFrame& frame, float
            {0, 0, 0, 0, 0, sum_of(s00), sum_of(f00)}}};
 }
 
-// The height and its slopes along u and v at the foot of the point, in radii.
+// Height of the quadratic surface and its slopes along u and v at the foot of the point, in radii.
 struct Sheet {
   double height = 0, along_u = 0, along_v = 0;
   bool found = false;
 };
 
-// Golub and Van Loan 2013, algorithm 4.1.2 (LDL'), the right side carried along.
+// LDL' factorisation applied to the right side (Golub and Van Loan 2013, algorithm 4.1.2).
 Sheet solve(Equations& rows) {
   for (std::size_t k = 0; k < k_terms; ++k) {
     const double first = rows[k][k];

@@ -1,4 +1,4 @@
-// What a map is made by: the settings of its chain, one behind the other.
+// Settings of the mapping chain, in the order of its stages.
 #pragma once
 
 #include "kernels/cloud/depth_points.hpp"

@@ -7,10 +7,10 @@
 namespace glint {
 namespace {
 
-// Of a pixel, with its ray through a pinhole and its place in the voxels; of each look into a lens,
-// each capsule, each slot of the voxels.
+// Steps per pixel (pinhole ray and voxel index included), per step in a lens table or lens
+// iteration, per capsule, per voxel slot.
 constexpr int k_pixel_steps = 60, k_lens_step_steps = 16, k_capsule_steps = 12, k_probe_steps = 2;
-constexpr int k_call_steps = 32, k_begin_steps = 512;  // of a call; of beginning with a cloud
+constexpr int k_call_steps = 32, k_begin_steps = 512;  // per call; per start of a stage
 constexpr int k_write_steps = 12, k_snap_steps = 12;
 
 constexpr int pixel_steps_of(Lens lens) {
@@ -98,7 +98,7 @@ void MapSlices::make_map() noexcept {
 
 int MapSlices::step(int most_steps) noexcept {
   int taken = 0;
-  // Every turn takes steps.
+  // Terminates: every iteration takes steps.
   while (!idle() && taken < std::max(most_steps, 1)) {
     taken += step_of_stage(std::max(most_steps, 1) - taken);
   }
@@ -153,7 +153,7 @@ int MapSlices::add_points() noexcept {
   const int pixels = pixels_of(picture_.picture, settings_.depth.stride), from = at_;
   const std::int64_t probes = voxels_.probes();
   points_.count = 0;
-  int dropped = 0;  // none: the cloud has room for all
+  int dropped = 0;  // stays 0: the cloud has room for all
   at_ = add_depth_points(picture_.picture, picture_.camera, picture_.T_world_camera,
                          settings_.depth, at_, k_map_pixels_at_once, points_, dropped);
   totals_.left_out += leave_out_capsules(picture_.left_out, 0, points_);

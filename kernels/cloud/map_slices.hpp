@@ -1,13 +1,13 @@
-// A map that grows picture by picture, in slices of bounded work.
+// Incremental point-cloud map from depth images, in slices of bounded work.
 //
-// What:     a picture's points, without those within the tracked pen and hands, go into the voxels;
-//           after every pictures_a_map pictures voxels, outliers, smoothing, planes and the move
-//           onto them make a new map beside the one that is out, which it then replaces whole.
-// Cost:     a slice ends once its steps (slice_size.hpp) are used up; a map of v voxels takes some
-//           300 v steps, a picture 30 a pixel.
-// Worst:    the last point of a slice goes k_map_item_steps_max beyond its steps. While a map is
-//           made pictures wait for it: their owner leaves some out. Voxels beyond voxels_max are
-//           counted and left out.
+// What:     adds the points of an image to the voxels, without those inside the tracked pen and
+//           hands. After every pictures_a_map images it builds a new map: voxels, outlier removal,
+//           smoothing, planes, projection onto planes. The new map then replaces the published one.
+// Cost:     a slice ends once its steps (slice_size.hpp) are used up; a map of v voxels takes about
+//           300 v steps, an image 60 or more a pixel.
+// Worst:    the last item of a slice exceeds its steps by at most k_map_item_steps_max. No image is
+//           accepted while a map is built: the caller drops images. Voxels beyond voxels_max are
+//           counted and discarded.
 // Accuracy: that of the chain: slices of any size give the same bits.
 // Source:   Puljiz et al., Inside-out Infrared Marker Tracking via Head Mounted Displays for Smart
 //           Robot Programming (the chain).
@@ -22,12 +22,12 @@
 
 namespace glint {
 
-// What a map in slices may be asked for: so that no one of its points is a slice of its own.
+// Largest settings of a map in slices, so that the work for one point is bounded.
 inline constexpr int k_map_candidates_max = 1024, k_map_smoothed_over_max = 512;
 inline constexpr int k_map_item_steps_max = 13'000;
 inline constexpr int k_map_pixels_at_once = 8;
 
-// The same with no more candidates than that.
+// Reduces the numbers of candidates to these limits.
 [[nodiscard]] constexpr MapSettings in_slices(MapSettings settings) noexcept {
   const auto at_most = [](int& value, int most) { value = value < most ? value : most; };
   at_most(settings.outliers.candidates_max, k_map_candidates_max);
@@ -36,47 +36,48 @@ inline constexpr int k_map_pixels_at_once = 8;
   return settings;
 }
 
-// A depth picture, and how the camera that took it stood. All borrowed.
+// A depth image and the pose of its camera. All borrowed.
 struct MapPicture {
   DepthPicture picture;
   CameraModel camera;
   Pose T_world_camera;
-  std::span<const LeftOut> left_out;  // in the world
+  std::span<const LeftOut> left_out;  // in the world frame
 };
 
-// Since prepare().
+// Counts since prepare().
 struct MapTotals {
   std::int64_t pictures = 0, measured = 0, left_out = 0, maps = 0;
   std::int64_t dropped = 0, out_of_range = 0;  // points: beyond voxels_max, beyond the grid
   int voxels = 0;
-  int kept = 0, smoothed = 0, planes = 0, on_planes = 0;  // of the map that is out
+  int kept = 0, smoothed = 0, planes = 0, on_planes = 0;  // of the published map
 };
 
 class MapSlices {
  public:
-  // What prepare() takes of an arena; 0 where it would refuse the settings.
+  // Bytes that prepare() takes from an arena; 0 if prepare() would reject the settings.
   [[nodiscard]] static std::size_t bytes(const MapSettings& settings) noexcept;
-  // Reason: none; out_of_range (a setting; one that would make a slice longer than said above);
-  // not_prepared (the arena has not enough left).
+  // Reason: none; out_of_range (a setting, also one that would exceed k_map_item_steps_max);
+  // not_prepared (too little left in the arena).
   [[nodiscard]] Reason prepare(const MapSettings& settings, int pictures_a_map,
                                Arena& arena) noexcept;
 
-  // Whether nothing is under way: pictures may be shown, what they borrow may go.
+  // Returns true if no work is pending: the next image is accepted and borrowed data may be
+  // released.
   [[nodiscard]] bool idle() const noexcept { return stage_ == Stage::idle; }
-  // Begins with a picture. False: something is under way, or the picture's size is not its own.
+  // Starts an image. Returns false if work is pending or the image's size differs from its data.
   [[nodiscard]] bool look(const MapPicture& picture) noexcept GLINT_NONBLOCKING;
-  // Begins a map of what there is by now, if there is more than in the one that is out and nothing
-  // is under way.
+  // Starts a map of the present voxels. Does nothing if no image was added since the last map or
+  // work is pending.
   void make_map() noexcept GLINT_NONBLOCKING;
-  // One slice. Gives the steps that it took: 0 if nothing is under way, else at most
-  // most_steps + k_map_item_steps_max.
+  // Runs one slice. Returns the steps taken: 0 if no work is pending, else at most most_steps +
+  // k_map_item_steps_max.
   int step(int most_steps) noexcept GLINT_NONBLOCKING;
 
-  // The map that is out, whole; nothing in it before the first one is made.
+  // The published map; empty before the first one is complete.
   [[nodiscard]] const PointCloud& map() const noexcept { return maps_[out_]; }
   [[nodiscard]] const MapTotals& totals() const noexcept { return totals_; }
 
-  // What is under way: points of a picture, then those of a new map.
+  // Pending work: points of an image, or the stages of a new map.
   enum class Stage : std::uint8_t {
     idle,
     points,

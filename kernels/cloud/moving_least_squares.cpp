@@ -35,7 +35,7 @@ void MovingLeastSquares::begin(const PointCloud& points) noexcept {
   appended_ = dropped_ = lonely_ = flat_ = cut_ = 0;
 }
 
-// All points of a cell have the same candidates: they are brought together once.
+// All points of a cell have the same candidates: gathered once per cell.
 void MovingLeastSquares::gather_candidates() noexcept {
   candidates_ = 0;
   cell_cut_ = false;
@@ -54,7 +54,7 @@ void MovingLeastSquares::gather_candidates() noexcept {
   }
 }
 
-// Every candidate is written, and the next one over it where it is too far.
+// Branch-free compaction: writes every candidate; the next one overwrites it if it is too far.
 void MovingLeastSquares::gather_neighbours(int point) noexcept {
   const float x = grid_.x()[point], y = grid_.y()[point], z = grid_.z()[point];
   const float limit = settings_.radius_m * settings_.radius_m;
@@ -68,7 +68,7 @@ void MovingLeastSquares::gather_neighbours(int point) noexcept {
   near_.count = near;
 }
 
-// Gives the steps that it took.
+// Returns the steps taken.
 int MovingLeastSquares::smooth(int point, PointCloud& smoothed) noexcept {
   gather_neighbours(point);
   cut_ += cell_cut_ ? 1 : 0;

@@ -1,15 +1,14 @@
-// Smooths a surface's points: each is moved onto a curved sheet through its neighbours.
+// Moving-least-squares smoothing of a point cloud, with normals.
 //
-// What:     local_surface.hpp for every point of a cloud, over all points within radius_m of it.
-//           What comes out is sorted by the cells of a grid and has normals.
-// Cost:     sorting (neighbour_grid.hpp); for each point at most candidates_max distances, and what
-//           local_surface takes for those that are near: some 80 and 30 at voxels of a third of the
-//           radius.
+// What:     applies local_surface.hpp to every point of a cloud, over all points within radius_m of
+//           it. The output is sorted by the cells of a grid.
+// Cost:     sorting (neighbour_grid.hpp); for each point at most candidates_max distances, and
+//           local_surface for its neighbours: about 80 and 30 at voxels of a third of the radius.
 // Worst:    more than candidates_max points in the nine rows of cells around a point: the point's
-//           own row counts first, then the others in their order, and the cell is counted. A point
-//           with fewer than k_plane_neighbours_min neighbours, itself included, is left out.
-// Accuracy: order 2 leaves the bias of a curved surface below 0.6 mm at a radius of curvature of
-//           50 mm (moving_least_squares_accuracy_test.cpp).
+//           own row counts first, then the others in their order, and cut() counts the point.
+//           Discards a point with fewer than k_plane_neighbours_min neighbours, itself included.
+// Accuracy: order 2 leaves the bias of a curved surface below 0.6 mm at a radius of curvature of 50
+//           mm (moving_least_squares_accuracy_test.cpp).
 // Source:   Alexa et al. 2003, IEEE Transactions on Visualization and Computer Graphics 9(1).
 #pragma once
 
@@ -19,13 +18,13 @@
 
 namespace glint {
 
-// Of a cell for each candidate; of a point beside them, for each candidate, for each neighbour.
+// Steps: per candidate of a cell; per point, plus per candidate and per neighbour of a point.
 inline constexpr int k_gather_steps = 4, k_surface_steps = 600, k_near_steps = 5,
                      k_neighbour_steps = 12;
 
-// What a neighbour counts: as much as any other, or as much as the measurements that it is the mean
-// of. Where many measurements make a voxel's point, those in the middle of the noise have far more
-// of them than those at its edge, and equal weights bend the surface.
+// Weight of a neighbour: 1, or the number of measurements that it is the mean of. Where many
+// measurements form a voxel's point, points in the middle of the noise have far more of them than
+// points at its edge; equal weights then bend the surface.
 enum class NeighbourWeights : std::uint8_t { equal, by_measurements };
 
 struct MovingLeastSquaresSettings {
@@ -36,22 +35,23 @@ struct MovingLeastSquaresSettings {
 
 class MovingLeastSquares {
  public:
-  // What prepare() takes of an arena.
+  // Bytes that prepare() takes from an arena.
   [[nodiscard]] static constexpr std::size_t bytes(const MovingLeastSquaresSettings& settings,
                                                    int points) noexcept {
     return NeighbourGrid::bytes(points) + Column<std::int32_t>::bytes(points) +
            8 * Column<float>::bytes(settings.candidates_max + k_four_spare);
   }
-  // Reason: none; out_of_range (a setting, points); not_prepared (the arena has not enough left).
+  // Reason: none; out_of_range (a setting, points); not_prepared (too little left in the arena).
   [[nodiscard]] Reason prepare(const MovingLeastSquaresSettings& settings, int points,
                                Arena& arena) noexcept;
 
-  // Begins with this cloud, which must stay as it is until step() says true.
+  // Starts a cloud. It must not change until step() returns true.
   void begin(const PointCloud& points) noexcept GLINT_NONBLOCKING;
-  // Goes on for at most `most` points, appending each on its surface. True when all are there.
+  // Processes at most `most` points; appends each on its surface. Returns true when all are
+  // processed.
   [[nodiscard]] bool step(SliceSize most, PointCloud& smoothed) noexcept GLINT_NONBLOCKING;
 
-  // Of the last call of step(), at most steps_max() beyond those that it was given.
+  // Steps of the last call of step(); they exceed its limit by at most steps_max().
   [[nodiscard]] int steps() const noexcept { return walk_.steps(); }
   [[nodiscard]] static constexpr int steps_max(
       const MovingLeastSquaresSettings& settings) noexcept {
@@ -59,14 +59,15 @@ class MovingLeastSquares {
            settings.candidates_max * (k_gather_steps + k_near_steps + k_neighbour_steps);
   }
 
-  // Which point of the cloud the i-th one appended since begin() was.
+  // Index in the input cloud of the i-th point appended since begin().
   [[nodiscard]] int source_of(int i) const noexcept { return sources_[i]; }
 
-  // Points left out: `smoothed` or the grid was full; beyond the grid; with too few neighbours.
+  // Discarded points: `smoothed` or the grid was full; beyond the grid; too few neighbours.
   [[nodiscard]] int dropped() const noexcept { return dropped_ + grid_.dropped(); }
   [[nodiscard]] int out_of_range() const noexcept { return grid_.out_of_range(); }
   [[nodiscard]] int lonely() const noexcept { return lonely_; }
-  // Points on a plane, for no sheet would do; points whose candidates were not all looked at.
+  // Points projected onto the plane because the polynomial failed; points with more candidates than
+  // candidates_max.
   [[nodiscard]] int flat() const noexcept { return flat_; }
   [[nodiscard]] int cut() const noexcept { return cut_; }
   // none; cloud_full; search_full (some cut); not_prepared.

@@ -9,7 +9,7 @@ namespace {
 constexpr std::uint32_t k_no_key = ~std::uint32_t{0};
 constexpr std::uint32_t k_digit_mask = (1u << k_grid_axis_bits) - 1;
 
-// The cell along one axis, from 1 on; 0 where the grid has none.
+// Cell index along one axis, from 1; 0 outside the grid.
 std::uint32_t cell_along(float coordinate, float inverse) {
   const float scaled = coordinate * inverse;
   if (!(std::abs(scaled) < static_cast<float>(k_grid_cells_half))) return 0;
@@ -25,7 +25,7 @@ std::uint32_t key_of(float x, float y, float z, float inverse) {
   return (cz << k_grid_axis_bits | cy) << k_grid_axis_bits | cx;
 }
 
-// The first cell from `from` on whose key is at least `least`.
+// First cell from `from` on whose key is at least `least`: eight linear steps, then bisection.
 int first_at_least(const NeighbourGrid& grid, int from, std::uint32_t least, int& compared) {
   for (int step = 0; step < 8; ++step, ++from) {
     ++compared;
@@ -148,7 +148,7 @@ int NeighbourSweep::rows_around(const NeighbourGrid& grid, int cell, Rows& rows)
                                                         y, z - y,  z,  z + y};
   const std::int64_t key = grid.key(cell);
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    // Keys begin at one cell along every axis, so that none of these is below 0.
+    // Cell indices start at 1 on every axis, so that none of these is below 0.
     const auto least = static_cast<std::uint32_t>(key + steps[i] - 1);
     cells_begin_[i] = first_at_least(grid, cells_begin_[i], least, compared);
     cells_end_[i] =

@@ -1,13 +1,14 @@
-// Points sorted by the cells of a grid, so that those near a point lie in a few short rows.
+// Uniform grid for fixed-radius neighbour search: points sorted by cell.
 //
-// What:     cells as wide as the radius of the search; points sorted by cell, x fastest, so that
-//           three cells along x are one range of the sorted columns, and nine ranges hold every
-//           point within the radius. NeighbourSweep finds them for one cell after another.
-// Cost:     four passes over the points to sort them, whatever they are; for a cell 18 searches of
-//           at most k_row_search_max steps, usually one or two, for cells come in rising order.
-// Worst:    points beyond the grid (k_grid_cells_half cells from the origin along an axis) or not
-//           finite are counted and left out. Full: the cloud's first points are kept.
-// Accuracy: exact: coordinates are copied; equal cells keep the cloud's order.
+// What:     cells as wide as the search radius; points sorted by cell, x fastest. Three cells along
+//           x are then one range of the sorted columns, and nine ranges contain every point within
+//           the radius. NeighbourSweep finds the ranges for one cell after another.
+// Cost:     radix sort in four passes over the points, data independent; for a cell 18 searches of
+//           at most k_row_search_max steps, usually one or two, because cells come in ascending
+//           order.
+// Worst:    counts and discards points that are not finite or beyond the grid (k_grid_cells_half
+//           cells from the origin along an axis). A full grid keeps the cloud's first points.
+// Accuracy: exact: copies coordinates; points of equal cells keep the cloud's order.
 // Source:   counting sort by digits: Knuth, "The Art of Computer Programming", vol. 3, section
 //           5.2.5, algorithm R.
 #pragma once
@@ -22,10 +23,10 @@
 namespace glint {
 
 inline constexpr int k_grid_axis_bits = 10;
-// One cell at each end stays empty, so that a row never runs into the next.
+// One cell at each end stays empty, so that a row never continues in the next.
 inline constexpr int k_grid_cells_half = (1 << (k_grid_axis_bits - 1)) - 1;
 inline constexpr int k_cell_rows = 9;
-inline constexpr int k_row_search_max = 33;  // 8 steps one by one, then 25 halvings
+inline constexpr int k_row_search_max = 33;  // 8 linear steps, then 25 bisections
 
 class NeighbourGrid {
   struct Keyed {
@@ -38,14 +39,14 @@ class NeighbourGrid {
     return 2 * Column<Keyed>::bytes(points) + 3 * Column<float>::bytes(points + k_four_spare) +
            3 * Column<std::int32_t>::bytes(points + 1);
   }
-  // Reason: none; out_of_range (points); not_prepared (the arena has less than bytes(points) left).
+  // Reason: none; out_of_range (points); not_prepared (less than bytes(points) left in the arena).
   [[nodiscard]] Reason prepare(int points, Arena& arena) noexcept;
 
-  // Begins to sort this cloud, which must stay as it is until sorted() says true.
+  // Starts to sort a cloud. It must not change until sorted() returns true.
   void begin(const PointCloud& points, float cell_m) noexcept GLINT_NONBLOCKING;
-  // Goes on for at most `most` points.
+  // Processes at most `most` points.
   void sort(int most) noexcept GLINT_NONBLOCKING;
-  // Points that the pass under way has not come to.
+  // Points left in the current pass.
   [[nodiscard]] int left_in_pass() const noexcept {
     return sorted() ? 0 : (phase_ == 0 ? cloud_->count : count_) - at_;
   }
@@ -54,16 +55,16 @@ class NeighbourGrid {
 
   [[nodiscard]] int count() const noexcept { return count_; }
   [[nodiscard]] int cells() const noexcept { return cells_; }
-  // Points not in the grid: beyond it or not finite; and beyond its capacity.
+  // Points not in the grid: beyond it or not finite; beyond its capacity.
   [[nodiscard]] int out_of_range() const noexcept { return out_of_range_; }
   [[nodiscard]] int dropped() const noexcept { return dropped_; }
 
-  // Sorted columns, readable k_four_spare behind the end, and each point's place in the cloud.
+  // Sorted columns, readable k_four_spare beyond the end, and each point's index in the cloud.
   [[nodiscard]] const float* x() const noexcept { return x_.data(); }
   [[nodiscard]] const float* y() const noexcept { return y_.data(); }
   [[nodiscard]] const float* z() const noexcept { return z_.data(); }
   [[nodiscard]] int place_in_cloud(int i) const noexcept { return place_[i]; }
-  // The cell's first point; that of cells() is the number of points.
+  // First point of a cell; for cells() the number of points.
   [[nodiscard]] int first_point(int cell) const noexcept { return first_[cell]; }
   [[nodiscard]] std::uint32_t key(int cell) const noexcept { return cell_key_[cell]; }
 
@@ -88,7 +89,7 @@ class NeighbourGrid {
   Column<std::uint32_t> cell_key_;
 };
 
-// The ranges of points around one cell, then around another behind it. Row 0 is the cell's own.
+// Point ranges around one cell after another, in ascending order. Row 0 contains the cell itself.
 class NeighbourSweep {
  public:
   struct Row {
@@ -97,7 +98,7 @@ class NeighbourSweep {
   using Rows = std::array<Row, k_cell_rows>;
 
   void begin() noexcept { cells_begin_ = cells_end_ = {}; }
-  // Cells must not fall from call to call. Gives the cells that were compared.
+  // `cell` must not decrease from call to call. Returns the number of cells compared.
   int rows_around(const NeighbourGrid& grid, int cell, Rows& rows) noexcept GLINT_NONBLOCKING;
 
  private:

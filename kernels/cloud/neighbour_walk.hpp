@@ -1,8 +1,8 @@
-// Goes through a grid's points cell by cell, some at a time, with the points around each cell at
-// hand: what every filter that asks a point's neighbours does.
+// Iterates over the points of a neighbour grid cell by cell, in slices, with the point ranges
+// around each cell. Shared by all filters that use neighbours.
 //
-// Cost:  sorting (neighbour_grid.hpp), then the rows around each cell once.
-// Worst: each point in a cell of its own.
+// Cost:  sorting (neighbour_grid.hpp), then once per cell the rows around it.
+// Worst: each point in its own cell.
 #pragma once
 
 #include <algorithm>
@@ -12,31 +12,31 @@
 
 namespace glint {
 
-inline constexpr int k_key_steps = 20, k_sort_steps = 6;  // of a point, once; four times after
-// Of the sorting itself, at its beginning and between two passes: the digits are cleared and
-// summed.
+inline constexpr int k_key_steps = 20, k_sort_steps = 6;  // per point, once; per point, four times
+// At the start of sorting and between two passes: clearing and summing of the digits.
 inline constexpr int k_sort_turn_steps = 4096;
-// Of a cell, beside those of finding the rows around it.
+// Per cell, without the search for the rows around it.
 inline constexpr int k_cell_steps = 100;
 inline constexpr int k_cell_steps_max = k_cell_steps + 2 * k_cell_rows * k_row_search_max;
 
 class NeighbourWalk {
  public:
-  // To be called with the grid's own begin().
+  // Call together with the grid's begin().
   void begin() noexcept {
     sweep_.begin();
     at_ = 0;
     cell_ = -1;
     taken_ = 0;
   }
-  // Around the cell of the point that is looked at.
+  // Rows around the cell of the current point.
   [[nodiscard]] const NeighbourSweep::Rows& rows() const noexcept { return rows_; }
 
-  // Of the last call of step().
+  // Steps of the last call of step().
   [[nodiscard]] int steps() const noexcept { return taken_; }
 
-  // Sorts first, then calls enter() where a cell begins and look(i) for each sorted point i, at
-  // most `most` points a call; both say how many steps they took. True when all were looked at.
+  // Sorts first. Then calls enter() at the start of each cell and look(i) for each sorted point i,
+  // at most `most` points a call; both return the steps they took. Returns true when all points are
+  // processed.
   template <class Enter, class Look>
   [[nodiscard]] bool step(NeighbourGrid& grid, SliceSize most, Enter enter, Look look) noexcept {
     if (!grid.sorted()) {

@@ -40,7 +40,7 @@ bool PlaneSample::candidate_of(std::uint64_t drawn, const PlaneGate& gate,
   const float nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
   const float length = std::sqrt(nx * nx + ny * ny + nz * nz);
   const float least = gate.normal_cosine_min * length;
-  // Also false for points on a line, whose length is zero, and for what is no number.
+  // Also false for collinear points, whose length is zero, and for NaN.
   for (const int i : {a, b, c}) {
     const float along = std::abs(nx * nx_[i] + ny * ny_[i] + nz * nz_[i]);
     if (!(along >= least && length > 0)) return false;

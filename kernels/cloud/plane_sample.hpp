@@ -1,10 +1,11 @@
-// A sample of a cloud's points with normals, and planes through three of them.
+// RANSAC sample of a point cloud with normals: candidate planes through three points, and their
+// scores.
 //
-// What:     candidate_of() gives the plane through three points drawn by a counter, if all three
-//           normals are the plane's; score() how many of the sample lie on a plane.
-// Cost:     a try 30 ns; a score linear in the sample, by fours.
-// Worst:    points on a line, or three times the same: no plane.
-// Accuracy: float; the planes are only compared here.
+// What:     candidate_of() computes the plane through three points selected by a random number, if
+//           all three normals agree with it; score() counts the sample's points on a plane.
+// Cost:     a candidate 30 ns; a score linear in the sample, by fours.
+// Worst:    collinear or coincident points: no plane.
+// Accuracy: float; planes are only compared here.
 // Source:   Fischler and Bolles 1981, Communications of the ACM 24(6); Schnabel, Wahl and Klein
 //           2007, Computer Graphics Forum 26(2), section 4 (normals that must agree).
 #pragma once
@@ -22,14 +23,14 @@ struct CandidatePlane {
   float nx = 0, ny = 0, nz = 1, offset_m = 0;  // n . p = offset
 };
 
-// What lies on a plane: near it, and with its normal up to the sign.
+// Condition for a point on a plane: near it, and with its normal up to the sign.
 struct PlaneGate {
   float threshold_m = 0.01f;
-  float normal_cosine_min = 0.93969262f;  // of 20 degrees
+  float normal_cosine_min = 0.93969262f;  // cosine of 20 degrees
 };
 
-// Numbers that follow from seed, stream and counter alone.
-// Source: Steele, Lea and Flood 2014, fig. 13, at the counter's place.
+// Counter-based random number (SplitMix64): a function of random seed, stream and counter alone.
+// Source: Steele, Lea and Flood 2014, fig. 13, evaluated at the counter.
 [[nodiscard]] inline std::uint64_t random_at(std::uint64_t seed, int stream, int counter) {
   const std::uint64_t place =
       (static_cast<std::uint64_t>(stream) << 40) + static_cast<std::uint64_t>(counter) + 1;
@@ -44,15 +45,16 @@ class PlaneSample {
   [[nodiscard]] static constexpr std::size_t bytes() noexcept {
     return 6 * Column<float>::bytes(k_plane_sample);
   }
-  // Reason: none, or not_prepared: the arena has not enough left.
+  // Reason: none; not_prepared (too little left in the arena).
   [[nodiscard]] Reason prepare(Arena& arena) noexcept;
 
   void clear() noexcept { count_ = 0; }
-  // A point of the cloud; at most k_plane_sample of them.
+  // Adds a point of the cloud; keeps at most k_plane_sample.
   void add(const PointCloud& cloud, int point) noexcept GLINT_NONBLOCKING;
   [[nodiscard]] int count() const noexcept { return count_; }
 
-  // False: the three points that `drawn` stands for have no plane with their normals.
+  // Returns false if the three points selected by `drawn` give no plane that agrees with their
+  // normals.
   [[nodiscard]] bool candidate_of(std::uint64_t drawn, const PlaneGate& gate,
                                   CandidatePlane& out) const noexcept GLINT_NONBLOCKING;
   [[nodiscard]] int score(const CandidatePlane& plane,

@@ -1,9 +1,10 @@
-// The plane through points by least squares, from their sums.
+// Total-least-squares plane through points, from their sums.
 //
 // What:     the normal is the eigenvector of the points' covariance with the smallest eigenvalue.
-// Cost:     the same for every sum: 0.1 us.
-// Worst:    points on a line or in one place: a plane through them, and `spread` says so.
-// Accuracy: coordinates should be taken from a point near by: squares of them are subtracted.
+// Cost:     data independent: 0.1 us.
+// Worst:    collinear or coincident points: returns one of the planes through them; `spread` is
+//           near 0.
+// Accuracy: coordinates should be relative to a point nearby: their squares are subtracted.
 // Source:   Pearson 1901, Philosophical Magazine 2(11), p. 559.
 #pragma once
 
@@ -26,10 +27,10 @@ struct FittedPlane {
   Vector3 mean = Vector3::Zero();
   Vector3 normal = Vector3::UnitZ();
   double variance = 0;  // along the normal
-  double spread = 0;    // the smaller of the two variances across it
+  double spread = 0;    // smaller of the two in-plane variances
 };
 
-// n at least 1.
+// Requires n >= 1.
 [[nodiscard]] inline FittedPlane fit_plane(const PlaneSums& s) {
   const double part = 1 / s.n;
   FittedPlane out;
@@ -44,7 +45,7 @@ struct FittedPlane {
                    c.xz * v.x() + c.yz * v.y() + c.zz * v.z());
   };
   const LoneVector lone = lone_eigenvector(c);
-  // The two other vectors lie across the lone one.
+  // The two other eigenvectors are perpendicular to the isolated one.
   const auto [p, q] = directions_across(lone.v);
   const Vector3 cp = times(p), cq = times(q);
   const double middle = 0.5 * (p.dot(cp) + q.dot(cq));
@@ -56,7 +57,7 @@ struct FittedPlane {
     out.spread = middle - apart;
     return out;
   }
-  // The larger column of what is left when the larger eigenvalue is taken off the diagonal.
+  // Larger column of C - lambda_max I, C the 2x2 covariance in p and q: eigenvector of lambda_min.
   const double along_p = half < 0 ? apart - half : mixed;
   const double along_q = half < 0 ? -mixed : -(apart + half);
   const double length = std::sqrt(along_p * along_p + along_q * along_q);

@@ -42,7 +42,7 @@ bool PlaneSearch::step(SliceSize most) noexcept {
   steps_ = 0;
   if (!prepared_ || phase_ == Phase::done) return true;
   steps_ = k_plane_turn_steps;
-  // The first item not to be looked at in this call.
+  // End of the items of this call; counts their steps.
   const auto end_of = [&](int all, int steps_each) {
     const int items = std::min(all - at_, most.items_of(steps_each));
     steps_ += items * steps_each;
@@ -112,7 +112,8 @@ void PlaneSearch::list_free(int end) noexcept {
 }
 
 void PlaneSearch::draw_sample(int end) noexcept {
-  // One out of each of as many equal parts: no point twice.
+  // Stratified: one random point from each of sample_size_ equal parts, so that none is drawn
+  // twice.
   for (; at_ < end; ++at_) {
     const auto part = [&](int i) {
       return static_cast<std::uint64_t>(free_count_) * static_cast<std::uint64_t>(i) /

@@ -1,8 +1,8 @@
-// Points of a surface, each coordinate in a column of its own, so that four are worked on at once.
+// Point cloud in columns: one array per coordinate, so that SIMD lanes process four points at once.
 //
-// Metres, in one frame, which is the user's to name (a map: the headset's world). Normals are unit
-// vectors across the surface, of either sign, or zero where none is known. A point's weight is the
-// number of measurements it is the mean of.
+// Units: metres, in one frame that the user selects (a map: the headset's world). Normals are unit
+// vectors perpendicular to the surface, of either sign, or zero if unknown. A point's weight is the
+// number of measurements that it is the mean of.
 #pragma once
 
 #include "kernels/cloud/column.hpp"
@@ -10,7 +10,7 @@
 
 namespace glint {
 
-// The largest cloud that a kernel takes on: what 32 bits of a sorted point's place leave room for.
+// Capacity of a cloud; bounded by the 32-bit index of a sorted point.
 inline constexpr int k_cloud_points_max = 1 << 24;
 
 struct PointCloud {
@@ -23,8 +23,8 @@ struct PointCloud {
   [[nodiscard]] static constexpr std::size_t bytes(int points) noexcept {
     return 7 * Column<float>::bytes(points);
   }
-  // Reason: none; out_of_range for a capacity below 1 or above k_cloud_points_max; not_prepared
-  // where the arena has less than bytes(points) left.
+  // Reason: none; out_of_range (capacity below 1 or above k_cloud_points_max); not_prepared (less
+  // than bytes(points) left in the arena).
   [[nodiscard]] Reason prepare(int points, Arena& arena) noexcept {
     count = capacity = 0;
     if (points < 1 || points > k_cloud_points_max) return Reason::out_of_range;
@@ -35,7 +35,7 @@ struct PointCloud {
     return Reason::none;
   }
 
-  // A point without a normal. False: full, and the point is left out.
+  // Adds a point without a normal. Returns false, and discards the point, if the cloud is full.
   [[nodiscard]] bool add(float px, float py, float pz, float measurements = 1) noexcept {
     if (count == capacity) return false;
     x[count] = px, y[count] = py, z[count] = pz;

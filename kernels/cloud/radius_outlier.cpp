@@ -25,7 +25,7 @@ void RadiusOutlier::begin(const PointCloud& points) noexcept {
   dropped_ = undecided_ = 0;
 }
 
-// Whether enough others lie near. The point itself is among those counted.
+// Returns true if enough other points are near. `near` counts the point itself too.
 bool RadiusOutlier::has_neighbours(int point) noexcept {
   const float* const xs = grid_.x();
   const float* const ys = grid_.y();

@@ -1,15 +1,15 @@
-// Drops points that hang in the air: those with too few others near them.
+// Radius outlier removal: discards points with too few neighbours.
 //
-// What:     a point stays if at least neighbours_min others lie within radius_m of it. Those that
-//           stay come out sorted by the cells of a grid.
+// What:     keeps a point if at least neighbours_min others are within radius_m of it. The output
+//           is sorted by the cells of a grid.
 // Cost:     sorting (neighbour_grid.hpp), then at most candidates_max distances for each point;
-//           usually 16 to 32, for the search ends with the last neighbour that is needed.
-// Worst:    many points within two radii of a point, but few within one. A point whose candidates
-//           are used up is dropped and counted: nothing shows that it is one of many. At voxels of
-//           a fifth of the radius there are at most 27 x 125 candidates.
-// Accuracy: exact for float coordinates, squares of distances being rounded once an operation.
-// Source:   Rusu and Cousins 2011, "3D is here: Point Cloud Library (PCL)" (the filter); a search
-//           by cells: Bentley and Friedman 1979, Computing Surveys 11(4), section 2.3.
+//           usually 16 to 32, because the search ends at the last neighbour needed.
+// Worst:    many points within two radii of a point, but few within one. A point that uses up its
+//           candidates is undecided: discarded and counted. At voxels of a fifth of the radius
+//           there are at most 27 x 125 candidates.
+// Accuracy: exact for float coordinates; each operation of a squared distance rounds once.
+// Source:   Rusu and Cousins 2011, "3D is here: Point Cloud Library (PCL)" (the filter); search by
+//           cells: Bentley and Friedman 1979, Computing Surveys 11(4), section 2.3.
 #pragma once
 
 #include "kernels/cloud/neighbour_grid.hpp"
@@ -17,7 +17,7 @@
 
 namespace glint {
 
-inline constexpr int k_outlier_steps = 40, k_candidate_steps = 2;  // of a point, of a candidate
+inline constexpr int k_outlier_steps = 40, k_candidate_steps = 2;  // per point, per candidate
 
 struct RadiusOutlierSettings {
   float radius_m = 0.05f;
@@ -30,22 +30,22 @@ class RadiusOutlier {
   [[nodiscard]] static constexpr std::size_t bytes(int points) noexcept {
     return NeighbourGrid::bytes(points);
   }
-  // Reason: none; out_of_range (a setting, points); not_prepared (the arena has not enough left).
+  // Reason: none; out_of_range (a setting, points); not_prepared (too little left in the arena).
   [[nodiscard]] Reason prepare(const RadiusOutlierSettings& settings, int points,
                                Arena& arena) noexcept;
 
-  // Begins with this cloud, which must stay as it is until step() says true.
+  // Starts a cloud. It must not change until step() returns true.
   void begin(const PointCloud& points) noexcept GLINT_NONBLOCKING;
-  // Goes on for at most `most` points, appending those that stay. True when all are judged.
+  // Processes at most `most` points; appends the points kept. Returns true when all are processed.
   [[nodiscard]] bool step(SliceSize most, PointCloud& kept) noexcept GLINT_NONBLOCKING;
 
-  // Of the last call of step(), at most steps_max() beyond those that it was given.
+  // Steps of the last call of step(); they exceed its limit by at most steps_max().
   [[nodiscard]] int steps() const noexcept { return walk_.steps(); }
   [[nodiscard]] static constexpr int steps_max(const RadiusOutlierSettings& settings) noexcept {
     return k_cell_steps_max + k_outlier_steps + k_candidate_steps * (settings.candidates_max + 3);
   }
 
-  // Points left out because `kept` was full, or the grid; beyond the grid; undecided.
+  // Discarded points: `kept` or the grid was full; beyond the grid; undecided.
   [[nodiscard]] int dropped() const noexcept { return dropped_ + grid_.dropped(); }
   [[nodiscard]] int out_of_range() const noexcept { return grid_.out_of_range(); }
   [[nodiscard]] int undecided() const noexcept { return undecided_; }

@@ -1,11 +1,11 @@
-// Makes flat what is flat: points on a plane that was found are moved onto it.
+// Projects the points of each detected plane onto the plane.
 //
-// What:     each point moves along its plane's normal, which becomes its own. What is on a plane
-//           planes.hpp and plane_support.hpp
-//           have decided: within the threshold *and* with its normal, among others that are. By
-//           distance alone a plane swallows the feet of all that stands on it.
+// What:     moves each point along its plane's normal, which becomes the point's normal. planes.hpp
+//           and plane_support.hpp assign points to planes: within the threshold *and* with the
+//           plane's normal, among neighbours on the same plane. A distance test alone would also
+//           flatten the lower ends of objects that stand on the plane.
 // Cost:     linear in the points.
-// Worst:    none is worse than another.
+// Worst:    data independent.
 // Accuracy: no point moves further than the threshold, up to the rounding of its coordinates.
 // Source:   Puljiz et al., section on referencing: points near a plane are moved onto it.
 #pragma once
@@ -15,7 +15,8 @@
 
 namespace glint {
 
-// Points [from, from + most) of the cloud that was searched; gives the first one not yet looked at.
+// Processes points [from, from + most) of the segmented cloud; returns the first one not yet
+// processed.
 int snap_to_planes(const PlaneSearch& planes, const PlaneSupport& support, int from, int most,
                    PointCloud& points) noexcept GLINT_NONBLOCKING;
 

@@ -5,7 +5,7 @@
 namespace glint {
 namespace {
 
-// A part of a voxel's key: its place along one axis, or -1 where the grid has none.
+// Voxel index along one axis, part of the key; -1 outside the grid.
 std::int64_t place_of(float coordinate, float inverse) {
   const float scaled = coordinate * inverse;
   if (!(std::abs(scaled) < static_cast<float>(k_voxel_range))) return -1;
@@ -14,7 +14,7 @@ std::int64_t place_of(float coordinate, float inverse) {
   return toward_zero - below + k_voxel_range;
 }
 
-// At most half of the slots are ever taken.
+// Load factor of the hash table: at most one half.
 int slot_bits_for(int voxels) {
   int bits = 1;
   while ((1 << bits) < 2 * voxels) ++bits;
@@ -72,7 +72,7 @@ int VoxelGrid::find_or_add(std::uint64_t key) noexcept {
 int VoxelGrid::add(const PointCloud& points, int from, int most) noexcept {
   const int end = std::min(points.count, from + std::max(most, 0));
   if (capacity_ == 0) return end;
-  // Neighbours of a depth picture mostly share a voxel.
+  // Neighbouring pixels of a depth image mostly share a voxel.
   std::uint64_t last_key = ~std::uint64_t{0};
   int voxel = -1;
   for (int i = from; i < end; ++i) {
