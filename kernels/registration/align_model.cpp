@@ -10,7 +10,7 @@ Matrix6 covariance_of(const AlignmentSums& sums, const Vector3& middle,
                       const Pose& T_world_base) noexcept {
   const Result<PoseFactor> factor = pose_factor(sums.matrix);
   if (!factor || sums.count <= 6) return Matrix6::Zero();
-  // The base's origin moves by shift + turn x (origin - middle).
+  // Motion of the base's origin: shift + turn x (origin - middle).
   const Vector3 l = T_world_base.translation - middle;
   Matrix6 to_origin = Matrix6::Identity();
   to_origin.topRightCorner<3, 3>() << 0, l.z(), -l.y(), -l.z(), 0, l.x(), l.y(), -l.x(), 0;
@@ -64,7 +64,7 @@ bool AlignmentRun::step(std::span<const SceneView> views, StepBudget& budget,
     begin_gate();
   }
   if (phase_ == Phase::grid) {
-    // No thinner than every other pixel: pairs are then apart mostly along the normal.
+    // Subsamples the scene by at most 2, so that pairs are apart mainly along the normal.
     search_scene(views[view_], gate_.step > 2 ? 2 : 1, gate_.gate_m, scratch.views[view_]);
     if (++view_ < views.size()) return true;
     view_ = 0;
@@ -96,7 +96,7 @@ void AlignmentRun::start_view(std::span<const SceneView> views,
   phase_ = Phase::render;
 }
 
-// The middle of what is seen, in the world: turns about it move it least.
+// Centroid of the visible points in the world frame: rotations about it move the points least.
 void AlignmentRun::find_middle(std::span<const SceneView> views, StepBudget& budget,
                                const AlignmentScratch& scratch) noexcept {
   const AlignmentScratch::View& memory = scratch.views[view_];
@@ -124,7 +124,7 @@ void AlignmentRun::begin_pairs() noexcept {
 
 void AlignmentRun::pair(std::span<const SceneView> views, StepBudget& budget,
                         const AlignmentScratch& scratch) noexcept {
-  // How the model moved in the world since it was rendered.
+  // Motion of the model in the world since its rendering.
   const Pose T_world_since = result_.T_world_base * T_world_rendered_.inverse();
   const AlignmentScratch::View& memory = scratch.views[view_];
   const Pose& T_camera_world = views[view_].T_camera_world;

@@ -1,14 +1,16 @@
-// The pose of a model in a scene, from a rough one: coarse to fine, over several views at once.
+// Registration of a model to depth images from an initial pose: coarse-to-fine ICP over several
+// views at once, with covariance.
 //
-// What:     at each gate the model is rendered where it stands, the points that can be seen are
-//           paired with the scene's (match_points.hpp), and Gauss-Newton moves the model until it
-//           rests. The last stage renders anew at each step. Sums go view by view, point by point.
-// Cost:     gates * steps * points pairs, and a rendering a gate and view.
-// Worst:    a start from which it does not come to rest: steps_max at each gate.
-// Accuracy: on simulated depth with 1 % noise about its own covariance's; see the experiment
+// What:     at each gate renders the model at its current pose, pairs the visible points with the
+//           scene's (match_points.hpp), and moves the model by Gauss-Newton until it converges.
+//           Gates with render_each render again at each step. Sums run view by view, point by
+//           point.
+// Cost:     gates * steps * points pairs, and one rendering per gate and view.
+// Worst:    an initial pose without convergence: steps_max at each gate.
+// Accuracy: on simulated depth with 1 % noise about that of its own covariance; see the experiment
 //           "reference".
-// Source:   Besl and McKay 1992; the rendering at the present guess is what makes its optimum
-//           right, with the whole model it lies centimetres off.
+// Source:   Besl and McKay 1992. Rendering at the current estimate makes the optimum unbiased: with
+//           the whole model it is centimetres off.
 #pragma once
 
 #include <array>
@@ -22,14 +24,14 @@ namespace glint {
 
 inline constexpr int k_gates_max = 8;
 inline constexpr int k_alignment_steps_max = 60;
-// Of a pair of points, and of a step of Gauss-Newton beside its pairs.
+// Steps per pair of points; per Gauss-Newton step without its pairs.
 inline constexpr int k_pair_steps = 80, k_solve_steps = 4000;
-inline constexpr int k_middle_steps = 4;  // of a point, when the middle of all is found
+inline constexpr int k_middle_steps = 4;  // per point of the centroid
 
 struct Gate {
   double gate_m = 0;
   Matching matching = Matching::plane;
-  int step = 1;        // pixels of the picture from one point to the next, along both sides
+  int step = 1;        // pixels from one model point to the next, in both directions
   int steps_max = 10;  // of Gauss-Newton
   bool render_each = false;
 };
@@ -42,27 +44,27 @@ struct AlignmentSettings {
        {0.04, Matching::projective, 1, 6, true},
        {0.035, Matching::projective, 1, 12, true}}};  // 3 sigma of 1 % at 1.2 m
   int gate_count = 5;
-  // A step below both is rest; while the gate is wide, below a fiftieth of it.
+  // Convergence limits of a step, both required. Point and plane gates use at least gate_m / 50.
   double rest_shift_m = 1e-4;
   double rest_turn_rad = 1e-4;
 };
 
 struct ModelAlignment {
   Pose T_world_base;
-  Matrix6 covariance = Matrix6::Zero();  // of shift and turn about the base's origin, world axes
-  double residual_m = 0;                 // root of the mean square at the last gate
+  Matrix6 covariance = Matrix6::Zero();  // translation, rotation at the base's origin, world axes
+  double residual_m = 0;                 // RMS at the last gate
   int pairs = 0;
   int steps = 0;
-  Reason reason = Reason::none;  // degenerate: too little was seen to fix a pose
+  Reason reason = Reason::none;  // degenerate: too little visible for a pose
 };
 
-// An alignment in slices: step() after step() until it says false, with the same views and scratch
-// each time. A slice is a grid or a rendering of one view, or one step of Gauss-Newton over all; or
-// a part of these that takes no more than the budget's steps and those of one point beyond them,
-// where the model is points and all gates are projective.
+// An alignment in slices: call step() with the same views and scratch until it returns false. A
+// slice is a grid or a rendering of one view, or one Gauss-Newton step over all views. With a
+// budget a slice is a part of these that exceeds the budget's steps by at most one point's, if the
+// model is a point cloud and all gates are projective.
 class AlignmentRun {
  public:
-  // How many slices it takes at most.
+  // Largest number of slices.
   [[nodiscard]] static int slices_max(const AlignmentSettings& settings, int views) noexcept;
 
   void start(const Pose& T_world_base,
@@ -72,9 +74,10 @@ class AlignmentRun {
   [[nodiscard]] bool step(std::span<const SceneView> views, StepBudget& budget,
                           AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;
 
-  // Complete when step() has said false.
+  // Complete once step() has returned false.
   [[nodiscard]] const ModelAlignment& result() const noexcept { return result_; }
-  // Of what was seen at the last rendering, in the world: what turns are about.
+  // Centroid of the points visible at the last rendering, in the world frame; rotations are about
+  // it.
   [[nodiscard]] const Vector3& middle() const noexcept { return middle_; }
 
  private:
@@ -96,16 +99,16 @@ class AlignmentRun {
   Vector3 middle_ = Vector3::Zero();
   Gate gate_;
   Phase phase_ = Phase::done;
-  int number_ = 0, step_ = 0;  // of the gate, and in it
+  int number_ = 0, step_ = 0;  // of the gate, and within it
   std::size_t view_ = 0;
-  int at_ = 0;  // of the view's points
+  int at_ = 0;  // index of the view's points
   ModelRendering rendering_;
-  Vector3 of_view_ = Vector3::Zero(), of_all_ = Vector3::Zero();  // sums of what is seen
+  Vector3 of_view_ = Vector3::Zero(), of_all_ = Vector3::Zero();  // sums of the visible points
   int seen_ = 0;
   AlignmentSums sums_;
 };
 
-// All slices at once. Reason::not_prepared: the scratch is too small for the views.
+// Runs all slices. Reason::not_prepared: the scratch is too small for the views.
 [[nodiscard]] ModelAlignment align_model(std::span<const SceneView> views, const Pose& T_world_base,
                                          const AlignmentSettings& settings,
                                          AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;

@@ -1,4 +1,4 @@
-// The memory of an alignment: rendered pictures, points seen, grids.
+// Preallocated memory of an alignment: rendered images, visible points, search grids.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace glint {
 
 class AlignmentScratch {
  public:
-  // Allocates, for so many views of so many pixels, and corners or points of a model, each.
-  // Reason::out_of_range: none or too many.
+  // Allocates memory for `views` views, each with `pixels` pixels and a model of `corners` corners
+  // or points. Reason::out_of_range: a size below 1 or above its maximum.
   [[nodiscard]] Reason prepare(int views, int pixels, int corners);
 
   struct View {
@@ -25,22 +25,22 @@ class AlignmentScratch {
     std::vector<ProjectedCorner> corners;
     std::vector<SeenPoint> seen;
     std::vector<Vector3f> scene;
-    std::vector<Vector6> patches;  // of patch_covariance.hpp: no more than a 16th of the pixels
+    std::vector<Vector6> patches;  // of patch_covariance.hpp: at most 1/16 of the pixels
     PointGrid grid;                // of the scene
     int seen_count = 0;
   };
   std::vector<View> views;
 };
 
-// Whether the scratch is large enough, and each view as large as its camera says.
+// Returns true if the scratch is large enough and each view's data has its camera's size.
 [[nodiscard]] bool scene_fits(std::span<const SceneView> views,
                               const AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;
 
-// What is seen of the model, every step-th pixel of every step-th row.
+// Visible points of the model at every step-th pixel of every step-th row.
 void render_model(const SceneView& view, const Pose& T_world_base, int step,
                   AlignmentScratch::View& memory) noexcept GLINT_NONBLOCKING;
 
-// The same in slices, step by step until true. A model of triangles is rendered at once.
+// The same in slices: call step() until it returns true. A triangle model is rendered in one slice.
 class ModelRendering {
  public:
   void start(const SceneView& view, const Pose& T_world_base, int step,
@@ -53,11 +53,12 @@ class ModelRendering {
   bool of_points_ = false;
 };
 
-// Makes the scene's points, every step-th, ready for searches within reach_m.
+// Builds the search grid of the scene's points, every step-th pixel in both directions, for
+// searches within reach_m.
 void search_scene(const SceneView& view, int step, double reach_m,
                   AlignmentScratch::View& memory) noexcept GLINT_NONBLOCKING;
 
-// The same of all pixels, in slices.
+// The same for all pixels, in slices.
 inline constexpr int k_scene_pixel_steps = 16;
 class SceneIndexing {
  public:

@@ -1,10 +1,10 @@
-// The normal equations of a small motion of the model, in one order.
+// Normal equations of a small rigid motion of a model (Gauss-Newton), accumulated in a fixed order.
 //
-// What:     for residuals r with the gradient g at a point p: matrix = sum w J' J, slope =
-//           sum w J' r, with J = [g', ((p - m) x g)']: a shift, and a turn about the middle m.
+// What:     for residuals r with the gradient g at a point p: matrix = sum w J' J, slope = sum w J'
+//           r, with J = [g', ((p - m) x g)']: a translation, and a rotation about the centroid m.
 // Cost:     28 multiplications a residual.
-// Worst:    none is worse than another.
-// Accuracy: sums of doubles in the order of the calls; equal bits wherever.
+// Worst:    data independent.
+// Accuracy: sums of doubles in the order of the calls; equal bits on any machine.
 // Source:   Gauss-Newton's equations, e.g. Nocedal and Wright 2006, eq. (10.23); Chen and Medioni
 //           1992 for residuals along normals.
 #pragma once
@@ -16,7 +16,7 @@
 namespace glint {
 
 struct AlignmentSums {
-  Matrix6 matrix = Matrix6::Zero();  // the lower half holds
+  Matrix6 matrix = Matrix6::Zero();  // lower triangle
   Vector6 slope = Vector6::Zero();
   double squares = 0;  // sum w r^2
   int count = 0;
@@ -26,13 +26,14 @@ struct AlignmentSums {
 
 struct AlignmentStep {
   Vector3 shift = Vector3::Zero();  // metres
-  Vector3 turn = Vector3::Zero();   // radians about the middle
+  Vector3 turn = Vector3::Zero();   // radians about the centroid
 };
 
-// The motion with the least squares. Reason::degenerate: the residuals leave a direction open.
+// Least-squares motion. Reason::degenerate: the residuals do not determine all six degrees of
+// freedom.
 [[nodiscard]] Result<AlignmentStep> solve(const AlignmentSums& sums) noexcept GLINT_NONBLOCKING;
 
-// T, shifted and turned about the point that is at `middle`.
+// Translates T and rotates it about the point `middle`.
 [[nodiscard]] Pose moved(const Pose& T, const AlignmentStep& step,
                          const Vector3& middle) noexcept GLINT_NONBLOCKING;
 

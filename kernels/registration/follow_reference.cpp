@@ -8,7 +8,7 @@
 namespace glint {
 namespace {
 
-// The turn that brings b to a, about fixed axes: radians times its axis.
+// Rotation vector from b to a about fixed axes, radians.
 Vector3 turn_between(const Quaternion& a, const Quaternion& b) noexcept {
   const Quaternion q = a * b.conjugate();
   const double sine = q.vec().norm();
@@ -17,7 +17,7 @@ Vector3 turn_between(const Quaternion& a, const Quaternion& b) noexcept {
   return q.vec() * ((q.w() < 0 ? -angle : angle) / sine);
 }
 
-// Of a call, with what it does once whatever it goes on with.
+// Per call: its fixed part.
 constexpr int k_follow_call_steps = 200;
 
 double sigma_of(const Matrix6& covariance, int first) noexcept {
@@ -109,7 +109,7 @@ int ReferenceFollower::step(int most_steps) noexcept {
   return before - budget.left();
 }
 
-// The budget is not spent when it comes, so that each call goes on by something.
+// Requires an unspent budget, so that every call makes progress.
 bool ReferenceFollower::step(StepBudget& budget) noexcept {
   const std::span<const SceneView> views(&view_, 1);
   bool more = true;
@@ -140,7 +140,7 @@ FollowOutcome ReferenceFollower::outcome() const noexcept {
       j.unhidden_seen_through_share() > settings.seen_through_share_max) {
     return FollowOutcome::unexplained;
   }
-  // Three sigma of noise must not look like a jump.
+  // Three standard deviations of noise must not exceed the jump limits.
   if (3 * sigma_of(report_.seen.covariance, 0) > settings.jump_m ||
       3 * sigma_of(report_.seen.covariance, 3) > settings.jump_rad) {
     return FollowOutcome::unsure;

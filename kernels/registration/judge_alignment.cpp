@@ -86,7 +86,7 @@ void JudgeRun::look_at(const SceneView& view, const SeenPoint& seen, const Point
   if (!(z > 0)) return;
   ++result_.measured;
   const double behind = static_cast<double>(z - seen.point.z());
-  // What the mask says is something else hides the model from however near.
+  // A pixel outside the mask hides the model at any distance in front of it.
   const bool something_else = !view.may_be_model(pixel) && behind < 0;
   if (something_else || behind < -settings_.far_m) {
     ++result_.hidden;

@@ -1,12 +1,12 @@
-// How well each link of a robot at a pose is explained by what is seen.
+// Evaluation of an alignment per robot link: pixels explained, observed and seen through.
 //
-// What:     the model is rendered into each view, and its pixels are counted by link: looked at
-//           (measured, and not hidden as in judge_alignment.hpp), explained where a scene point
-//           lies within inlier_m, seen through where the scene is more than far_m behind.
-// Cost:     a rendering, a grid of the picture, and a search a pixel.
-// Worst:    the model fills the picture and is nowhere near the scene.
+// What:     renders the model into each view and counts its pixels by link: observed (measured, and
+//           not hidden as in judge_alignment.hpp), explained where a scene point is within
+//           inlier_m, seen through where the scene is more than far_m behind.
+// Cost:     a rendering, a grid of the image, and a search a pixel.
+// Worst:    the model fills the image, far from any scene point.
 // Accuracy: counts.
-// Source:   wrong joint positions leave single links unexplained where the base still fits.
+// Source:   wrong joint positions leave single links unexplained although the base fits.
 #pragma once
 
 #include <array>
@@ -27,8 +27,8 @@ struct LinkJudgement {
   Reason reason = Reason::none;  // not_prepared: the scratch is too small for the views
 };
 
-// link_numbers: for each view the link of each triangle, or point of a model that is points. A
-// view without numbers adds nothing, nor does a number that is no link.
+// link_numbers: per view the link of each triangle, or of each point of a point cloud model.
+// Ignores a view without numbers, and a number that is no link.
 [[nodiscard]] LinkJudgement judge_links(
     std::span<const SceneView> views, std::span<const std::span<const std::uint16_t>> link_numbers,
     const Pose& T_world_base, const JudgeSettings& settings,

@@ -5,7 +5,7 @@
 namespace glint {
 namespace {
 
-// The pixel in which a point lies; -1: none.
+// Pixel that contains a point's projection; -1: none.
 int pixel_of(const Pinhole& camera, const Vector3& p) noexcept {
   if (!(p.z() > k_render_near_m)) return -1;
   const double u = camera.fx * p.x() / p.z() + camera.cx;
@@ -14,7 +14,8 @@ int pixel_of(const Pinhole& camera, const Vector3& p) noexcept {
   return static_cast<int>(v) * camera.width + static_cast<int>(u);
 }
 
-// Whether what stands before a point is nearer by more than the gate: something else.
+// Returns true if the measured depth at a point's pixel is nearer than the point by more than the
+// gate (occlusion).
 bool hidden(const SceneView& view, const Vector3& p, double gate_m) noexcept {
   const int pixel = pixel_of(view.camera, p);
   if (pixel < 0) return false;

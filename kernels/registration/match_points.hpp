@@ -1,18 +1,19 @@
-// Which point of the scene belongs to a point of the model, and what their distance pulls at.
+// ICP correspondences between model and scene points, and their residuals: point-to-point,
+// point-to-plane or projective.
 //
-// What:     three ways behind one call.
-//           point:      the nearest scene point; its three coordinates pull alike.
-//           plane:      the nearest scene point; only what is along the model's normal pulls.
-//           projective: the scene point of the same pixel; along the normal, divided by the cosine
-//                       between normal and ray: then all pull as exactly as depth is measured.
-//           A pair farther apart than the gate pulls nothing: what is hidden behind something
-//           nearer is left out so, and what the scene does not have. By the first two ways a
-//           hidden point would find neighbours aside: it is left out where its pixel is nearer by
-//           more than the gate.
-// Cost:     a search in the grid, or a look into the picture; one or three rows of the sums.
-// Worst:    a search that finds nothing looks at all cells within the gate.
-// Accuracy: that of the pairs; a surface that is seen at less than k_least_cosine is left out by
-//           the projective way: there a part of a pixel is more than depth's noise.
+// What:     three methods behind one call.
+//           point:      the nearest scene point; one residual for each of three coordinates.
+//           plane:      the nearest scene point; the residual is along the model's normal.
+//           projective: the scene point of the same pixel; the residual along the normal is
+//                       divided by the cosine between normal and ray, so that every residual has
+//                       the noise of depth.
+//           Discards pairs farther apart than the gate: hidden points, and points without a scene
+//           counterpart. By the first two methods a hidden point could pair with points beside
+//           it: it is discarded where its pixel is nearer than the point by more than the gate.
+// Cost:     a search in the grid, or one pixel access; one or three rows of the sums.
+// Worst:    a search without result visits all cells within the gate.
+// Accuracy: that of the pairs. The projective method discards surfaces with a cosine below
+//           k_least_cosine: there a fraction of a pixel exceeds the depth noise.
 // Source:   Besl and McKay 1992 (point); Chen and Medioni 1992 (plane); Blais and Levine 1995
 //           (projective).
 #pragma once
@@ -32,15 +33,15 @@ enum class Matching : std::uint8_t { point, plane, projective };
 
 inline constexpr double k_least_cosine = 0.2;
 
-// What is known of a view's scene.
+// Search structure of a view's scene.
 struct SceneSearch {
   const PointGrid* grid = nullptr;   // of the scene's points in the camera's frame
-  std::span<const Vector3f> points;  // those that the grid was built of
+  std::span<const Vector3f> points;  // the points that the grid was built from
 };
 
-// Adds the pairs of these points, seen in the view from where the model stood then, after it moved
-// by T_moved (in the camera's frame) since. `turn` and `middle` bring levers and gradients into the
-// frame of the sums: x_world = turn * x_camera, about the middle, which is in the camera's frame.
+// Adds the pairs of `points`, the visible points at the rendered pose, after the model moved by
+// T_moved (camera frame) since. `turn` and `middle` transform lever arms and gradients to the frame
+// of the sums: x_world = turn * x_camera, about `middle` (camera frame).
 void add_pairs(std::span<const SeenPoint> points, const Pose& T_moved, Matching matching,
                double gate_m, const SceneView& view, const SceneSearch& search,
                const Quaternion& turn, const Vector3& middle,

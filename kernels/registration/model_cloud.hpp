@@ -1,11 +1,11 @@
-// A model as points with normals: what a board has of a robot, which reads no meshes.
+// Robot model as a point cloud with normals (surfels), posed by its links. A companion computer
+// uses it in place of meshes, which it does not read.
 //
-// What:     points that stand for the links' surfaces, and where they are when the links stand at
-//           their poses.
-// Cost:     two rotations a point, and a rotation made of a quaternion where the link is another
-//           than the last point's. All at once or in slices (slice_size.hpp): the same bits.
-// Worst:    points that lie on other links in turn.
-// Accuracy: float's rounding.
+// What:     points that represent the links' surfaces, transformed by the links' poses.
+// Cost:     two rotations a point, and one rotation matrix where the link differs from the last
+//           point's. All at once or in slices (slice_size.hpp): the same bits.
+// Worst:    consecutive points on different links.
+// Accuracy: float rounding.
 // Source:   surfels: Pfister et al. 2000, section 3.
 #pragma once
 
@@ -23,10 +23,10 @@ namespace glint {
 
 inline constexpr int k_model_points_max = 1 << 20;
 
-// Borrowed. Normals are of unit length and may point to either side.
+// Borrowed. Normals have unit length and either sign.
 struct ModelCloud {
-  std::span<const Vector3f> points, normals;  // metres; as many of one as of the other
-  float spacing_m = 0;  // the side of the square of surface that a point stands for
+  std::span<const Vector3f> points, normals;  // metres; equal in number
+  float spacing_m = 0;  // side of the square of surface that a point represents
 };
 
 // Each point in the frame of its link. Borrowed.
@@ -35,22 +35,21 @@ struct LinkCloud {
   std::span<const std::uint16_t> links;
 };
 
-// Of a point, and of another link than the last point's.
+// Steps per point; per change of link.
 inline constexpr int k_posed_point_steps = 16, k_posed_link_steps = 16;
 inline constexpr int k_posed_item_steps_max = k_posed_point_steps + k_posed_link_steps;
 
-// The cloud in the root's frame, in slices of at most the budget's steps and those of one point
-// beyond it. What it is given must stay until step() says false.
+// Transforms the cloud to the root's frame, in slices that exceed the budget's steps by at most one
+// point's. The arguments of start() must not change until step() returns false.
 class PoseCloudRun {
  public:
-  // Reason::out_of_range: spans of different sizes, or too many points; there is nothing to do.
+  // Reason::out_of_range: spans of different sizes, or too many points; step() then has no work.
   [[nodiscard]] Reason start(const LinkCloud& robot, const LinkPoses& poses,
                              std::span<Vector3f> points,
                              std::span<Vector3f> normals) noexcept GLINT_NONBLOCKING;
-  // True while there is more.
+  // Returns true while there is more.
   [[nodiscard]] bool step(StepBudget& budget) noexcept GLINT_NONBLOCKING;
-  // Also Reason::out_of_range: ended at a link that has no pose; what was written until then
-  // stands.
+  // Also Reason::out_of_range: stopped at a link without a pose; the points written before remain.
   [[nodiscard]] Reason reason() const noexcept { return reason_; }
 
  private:
@@ -66,7 +65,7 @@ class PoseCloudRun {
   Reason reason_ = Reason::none;
 };
 
-// All slices at once; what start() or reason() says.
+// Runs all slices; returns the reason of start() or reason().
 [[nodiscard]] Reason pose_cloud(const LinkCloud& robot, const LinkPoses& poses,
                                 std::span<Vector3f> points,
                                 std::span<Vector3f> normals) noexcept GLINT_NONBLOCKING;

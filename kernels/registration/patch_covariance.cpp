@@ -12,7 +12,7 @@ int patch_of(std::int32_t pixel, int width) noexcept {
   return pixel / width / k_patch_pixels * across + pixel % width / k_patch_pixels;
 }
 
-// Each patch's sum of J'r, and the view's sums.
+// Sum of J'r of each patch, and sums of the view.
 void add_patches(const SceneView& view, const Pose& T_world_base, double gate_m,
                  AlignmentScratch::View& memory, AlignmentSums& all) noexcept {
   render_model(view, T_world_base, 1, memory);
@@ -20,7 +20,7 @@ void add_patches(const SceneView& view, const Pose& T_world_base, double gate_m,
   const Vector3 origin = view.T_camera_world * T_world_base.translation;
   std::fill(memory.patches.begin(), memory.patches.end(), Vector6::Zero());
   const int width = view.camera.width;
-  // What lies side by side in one patch goes together.
+  // Adds consecutive points of one patch together.
   for (int from = 0, to = 0; from < memory.seen_count; from = to) {
     const int patch = patch_of(memory.seen[static_cast<std::size_t>(from)].pixel, width);
     while (to < memory.seen_count &&
@@ -48,7 +48,7 @@ Result<Matrix6> patch_covariance(std::span<const SceneView> views, const Pose& T
   for (std::size_t v = 0; v < views.size(); ++v) {
     add_patches(views[v], T_world_base, gate_m, scratch.views[v], all);
     for (const Vector6& sum : scratch.views[v].patches) {
-      if (!(sum.squaredNorm() > 0)) continue;  // no pair lies in it
+      if (!(sum.squaredNorm() > 0)) continue;  // no pair in the patch
       spread += sum * sum.transpose();
       ++patches;
     }

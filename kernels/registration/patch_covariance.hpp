@@ -1,15 +1,16 @@
-// How sure an alignment is where neighbouring pixels err alike.
+// Covariance of an alignment with spatially correlated residuals: cluster-robust (sandwich)
+// estimator over image patches.
 //
-// What:     something that touches the model, a surface seen at a grazing angle, a lens: a residual
-//           errs as its neighbours do, and a covariance of independent noise says too little. Here
-//           only patches of k_patch_pixels by as many are taken as independent. With A = sum J'J
-//           over all pairs and s = sum J'r over those of one patch, the covariance is
-//           A^-1 (sum s s') A^-1, times patches / (patches - 6) for what the fit took. Where noise
-//           is independent this is that of align_model.hpp on average.
+// What:     an object that touches the model, a surface at a grazing angle or a lens causes
+//           residuals that correlate with their neighbours'; a covariance of independent noise is
+//           then too small. Here only patches of k_patch_pixels by k_patch_pixels are independent.
+//           With A = sum J'J over all pairs and s = sum J'r over those of one patch, the covariance
+//           is A^-1 (sum s s') A^-1, times patches / (patches - 6) for the fit's degrees of
+//           freedom. For independent noise it equals that of align_model.hpp on average.
 // Cost:     a rendering of each view and its projective pairs, once.
-// Worst:    the model fills the pictures.
-// Accuracy: a variance to about sqrt(2 / patches) of itself; errors that reach over many patches,
-//           as of a wrong model, are not in it.
+// Worst:    the model fills the images.
+// Accuracy: relative error of a variance about sqrt(2 / patches). Errors that extend over many
+//           patches, as from a wrong model, are not included.
 // Source:   Liang and Zeger 1986, Biometrika 73(1), equation (8), with patches as clusters.
 #pragma once
 
@@ -18,12 +19,13 @@
 namespace glint {
 
 inline constexpr int k_patch_pixels = 16;
-// With fewer that have pairs nothing is said.
+// Smallest number of patches with pairs.
 inline constexpr int k_patches_least = 18;
 
-// Of shift and turn about the base's origin, world axes, for a model that rests at T_world_base;
-// gate_m as the last one that it was aligned with. Reason: not_prepared (the scratch is too small
-// for the views), degenerate (too few patches, or they leave a direction open).
+// Covariance of translation and rotation about the base's origin, world axes, for a model that has
+// converged at T_world_base; gate_m: the last gate of that alignment. Reason: not_prepared (the
+// scratch is too small for the views), degenerate (too few patches, or an undetermined degree of
+// freedom).
 [[nodiscard]] Result<Matrix6> patch_covariance(
     std::span<const SceneView> views, const Pose& T_world_base, double gate_m,
     AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;

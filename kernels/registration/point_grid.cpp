@@ -8,8 +8,8 @@
 namespace glint {
 namespace {
 
-constexpr int k_cells_reach = 2;          // cells on each side that a search looks at
-constexpr float k_coordinate_max = 1e4f;  // metres; beyond, nothing is a cell
+constexpr int k_cells_reach = 2;          // cells searched on each side
+constexpr float k_coordinate_max = 1e4f;  // metres; larger coordinates have no cell
 
 constexpr std::uint64_t mixed(std::uint64_t x) noexcept {  // SplitMix64's finalizer
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
@@ -17,11 +17,10 @@ constexpr std::uint64_t mixed(std::uint64_t x) noexcept {  // SplitMix64's final
   return x ^ (x >> 31);
 }
 
-// The 125 cells about one, nearest first: a search may end when what it has is nearer than any
-// cell that is left.
+// The 125 cells around one, nearest first: a search skips cells farther than its best point.
 struct Offset {
   std::int8_t x, y, z;
-  float least_m;  // in cells: how far any point of that cell lies at least from any of this one
+  float least_m;  // in cells: lower bound of the distance between points of the two cells
 };
 constexpr int k_offsets = 125;
 constexpr std::array<Offset, k_offsets> offsets() {
@@ -32,7 +31,7 @@ constexpr std::array<Offset, k_offsets> offsets() {
       for (int y = -2; y <= 2; ++y) {
         for (int z = -2; z <= 2; ++z) {
           if (x * x + y * y + z * z != squares) continue;
-          // Only the widest gap along one axis counts: 0 for neighbours, one cell for the others.
+          // Uses only the widest gap along one axis: 0 for neighbours, one cell for the others.
           const bool far = x * x == 4 || y * y == 4 || z * z == 4;
           list[static_cast<std::size_t>(n++)] = {static_cast<std::int8_t>(x),
                                                  static_cast<std::int8_t>(y),

@@ -1,11 +1,11 @@
-// The nearest of many points, by a grid of cells in a table of fixed size.
+// Nearest-neighbour search within a radius by spatial hashing, in a table of fixed size.
 //
-// What:     points sorted by cell; a cell's points are found by the hash of its place.
-// Cost:     building is linear; a search looks at the 27 to 125 cells about its point, the nearest
-//           first, and at the points in them.
-// Worst:    all points in one cell: a search then looks at k_grid_points_looked_at of them, in the
-//           order in which they came, and takes the nearest of those.
-// Accuracy: exact, but for the worst case above; of equally near points the first.
+// What:     points sorted by cell; the hash of a cell's index finds its points.
+// Cost:     building is linear; a search visits the 27 to 125 cells around its point, nearest
+//           first, and the points in them.
+// Worst:    all points in one cell: a search compares k_grid_points_looked_at of them, in the order
+//           of input, and returns the nearest of those.
+// Accuracy: exact, except in the worst case above; of equally near points the first.
 // Source:   Teschner et al. 2003, "Optimized spatial hashing", section 4.
 #pragma once
 
@@ -20,11 +20,11 @@
 
 namespace glint {
 
-inline constexpr int k_grid_points_looked_at = 4096;  // of one search
-inline constexpr int k_grid_probes_max = 64;          // of one look-up of a cell
+inline constexpr int k_grid_points_looked_at = 4096;  // per search
+inline constexpr int k_grid_probes_max = 64;          // per look-up of a cell
 
-// Of cleared, of counted, of summed cells or points and of placed points; of a cell that is looked
-// up and of each probe; of a point that is looked at.
+// Steps per cell cleared, point inserted, cell summed, point placed; per cell looked up, per probe;
+// per point compared.
 inline constexpr int k_grid_clear_steps = 1, k_grid_insert_steps = 24, k_grid_sum_steps = 3,
                      k_grid_place_steps = 8, k_grid_find_steps = 10, k_grid_probe_steps = 2,
                      k_grid_point_steps = 4;
@@ -35,27 +35,28 @@ inline constexpr int k_nearest_steps_max =
     k_grid_points_looked_at * k_grid_point_steps;
 
 struct Nearest {
-  std::int32_t index = -1;  // of the point as it was given; -1: none within the radius
+  std::int32_t index = -1;  // index in the input; -1: none within the radius
   float square_m2 = 0;
 };
 
 class PointGrid {
  public:
-  // Allocates for so many points.
+  // Allocates memory for points_max points.
   [[nodiscard]] Reason prepare(int points_max);
 
-  // Takes the points with finite coordinates; cells are reach_m / 2 wide, and nearest() finds what
-  // lies within reach_m. Reason::not_prepared: more points than prepared for; out_of_range: no
-  // reach.
+  // Builds the grid of all points with finite coordinates. Cells are reach_m / 2 wide; nearest()
+  // searches up to reach_m. Reason::not_prepared: more points than prepared for; out_of_range:
+  // invalid reach.
   [[nodiscard]] Reason build(std::span<const Vector3f> points,
                              double reach_m) noexcept GLINT_NONBLOCKING;
 
-  // The same in slices: begin, then step by step until true. The points must stay as they are.
+  // The same in slices: begin_build(), then build_step() until it returns true. The points must not
+  // change meanwhile.
   [[nodiscard]] Reason begin_build(std::span<const Vector3f> points,
                                    double reach_m) noexcept GLINT_NONBLOCKING;
   [[nodiscard]] bool build_step(StepBudget& budget) noexcept GLINT_NONBLOCKING;
 
-  // radius_m: at most the reach. Takes at most k_nearest_steps_max steps.
+  // Requires radius_m <= reach_m. Takes at most k_nearest_steps_max steps.
   [[nodiscard]] Nearest nearest(const Vector3f& point,
                                 float radius_m) const noexcept GLINT_NONBLOCKING;
 
@@ -81,11 +82,11 @@ class PointGrid {
 
   std::vector<Cell> cells_;
   std::vector<Entry> entries_;
-  std::vector<std::int32_t> slot_of_;  // of each point given; -1: not taken
+  std::vector<std::int32_t> slot_of_;  // of each input point; -1: not stored
   float cell_m_ = 1;
   float reach_m_ = 0;
   int count_ = 0;
-  std::span<const Vector3f> points_;  // while it is built
+  std::span<const Vector3f> points_;  // during the build
   Phase phase_ = Phase::done;
   int at_ = 0;
   std::int32_t begin_ = 0;

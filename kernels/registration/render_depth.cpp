@@ -13,7 +13,7 @@ struct Box {
   int left, right, top, bottom;  // inclusive
 };
 
-// The first pixel whose centre is at or right of u; clamped before it becomes an integer.
+// First pixel whose centre is at or right of u; clamped before the conversion to an integer.
 int first_pixel(double u, int size) noexcept {
   const double clamped = std::clamp(u - 0.5, 0.0, static_cast<double>(size));
   const int whole = static_cast<int>(clamped);
@@ -38,7 +38,7 @@ void fill(const Corner (&c)[3], const Box& box, std::int32_t number, const Pinho
           const DepthBuffer& buffer) noexcept {
   const double area = edge(c[0], c[1], c[2].u, c[2].v);
   if (!(std::abs(area) > 0)) return;
-  const double scale = 1 / area;  // signed: both sides of a surface are seen
+  const double scale = 1 / area;  // signed: renders both sides of a surface
   for (int y = box.top; y <= box.bottom; ++y) {
     for (int x = box.left; x <= box.right; ++x) {
       const double u = x + 0.5, v = y + 0.5;

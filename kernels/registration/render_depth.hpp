@@ -1,11 +1,11 @@
-// What a camera could see of a model: depth and triangle of each pixel.
+// Renders a triangle mesh into a z-buffer: depth and triangle index of each pixel.
 //
-// What:     triangles, transformed and projected, into a z-buffer; 1/z is linear in the picture.
-// Cost:     a transformation a corner, an edge test a pixel of its box.
-// Worst:    triangles that each fill the picture: ended after k_render_tests_a_pixel tests a pixel
-//           of the picture (Reason::search_full), what is rendered by then stands.
-// Accuracy: depth to float's rounding, 1e-7 of it, at the pixels' centres. A triangle that reaches
-//           nearer than k_render_near_m is left out.
+// What:     transforms and projects triangles into a z-buffer; 1/z is linear in the image.
+// Cost:     a transformation a corner, an edge test a pixel of its bounding box.
+// Worst:    triangles that each fill the image: stops after k_render_tests_a_pixel tests a pixel of
+//           the image (Reason::search_full); the pixels rendered before remain.
+// Accuracy: depth to float rounding, a relative 1e-7, at the pixel centres. Discards a triangle
+//           with a corner nearer than k_render_near_m.
 // Source:   Catmull 1974 (z-buffer); Pineda 1988 (edge functions).
 #pragma once
 
@@ -22,19 +22,19 @@ inline constexpr double k_render_near_m = 0.05;
 // A robot's 40,000 triangles take 3 to 8.
 inline constexpr int k_render_tests_a_pixel = 256;
 
-// A corner in the picture.
+// A corner in the image.
 struct ProjectedCorner {
   double u = 0, v = 0, inverse_z = 0;  // pixels, 1/m; 0: not in front of the camera
 };
 
 struct DepthBuffer {
-  std::span<float> z_m;                // width * height, 0 where nothing is
-  std::span<std::int32_t> triangle;    // as many, -1 where nothing is
+  std::span<float> z_m;                // width * height; 0: nothing rendered
+  std::span<std::int32_t> triangle;    // same size; -1: nothing rendered
   std::span<ProjectedCorner> corners;  // at least as many as the surface has
 };
 
-// Reason::out_of_range: the buffer does not have the camera's size, has
-// too few corners, or a face names a corner that is not there.
+// Reason::out_of_range: the buffer does not have the camera's size, has too few corners, or a face
+// has an invalid corner index.
 [[nodiscard]] Reason render_depth(const Surface& model, const Pose& T_camera_model,
                                   const Pinhole& camera,
                                   const DepthBuffer& buffer) noexcept GLINT_NONBLOCKING;

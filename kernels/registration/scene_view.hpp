@@ -1,4 +1,4 @@
-// One depth image of the scene, and the model as it stood in it: what a model is aligned with.
+// Input of an alignment: one depth image of the scene, and the model at its joint positions.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 namespace glint {
 
 inline constexpr int k_scene_views_max = 16;
-// Of a view's picture. Depth of 1280 x 720 is brought down by four: pixels a few millimetres apart
-// at arm's length, about as exact as the depth itself.
+// Of a view's image. Depth of 1280 x 720 is reduced by four: adjacent pixels are then a few
+// millimetres apart at arm's length, about the accuracy of depth.
 inline constexpr int k_scene_pixels_max = 1 << 17;
 inline constexpr int k_scene_corners_max = 1 << 23;  // of a view's model
 
@@ -19,10 +19,10 @@ inline constexpr int k_scene_corners_max = 1 << 23;  // of a view's model
 struct SceneView {
   Pinhole camera;
   std::span<const float> depth_m;      // z of each pixel, 0 where there is none
-  std::span<const std::uint8_t> mask;  // 0: not the model; empty: nobody knows
+  std::span<const std::uint8_t> mask;  // 0: not the model; empty: unknown
   Surface model;                       // in the base's frame, at this view's joint positions
-  Pose T_camera_world;                 // identity for a camera that stands still
-  ModelCloud cloud{};                  // in place of the model's triangles, if it has points
+  Pose T_camera_world;                 // identity for a static camera
+  ModelCloud cloud{};                  // replaces the triangles of `model` if it has points
 
   [[nodiscard]] bool may_be_model(std::size_t pixel) const {
     return mask.empty() || mask[pixel] != 0;

@@ -1,12 +1,12 @@
-// The points of a model that a camera sees at a pose: a rendered pixel each.
+// Visible points of a model at a pose: one point with normal per rendered pixel.
 //
-// What:     for each rendered pixel of a raster its point and its triangle's normal, towards the
-//           camera, in the camera's frame.
+// What:     for each rendered pixel of a raster its point, and its triangle's normal towards the
+//           camera, in the camera frame.
 // Cost:     one rendering, and a cross product and a root for each pixel taken.
-// Worst:    the model fills the picture: a point for every pixel of the raster.
+// Worst:    the model fills the image: one point for every pixel of the raster.
 // Accuracy: that of render_depth.hpp.
-// Source:   what is hidden must not pull: the far side of a whole model is drawn to the near side
-//           of the scene.
+// Source:   hidden points must not enter the fit: the far side of a whole model would be paired
+//           with the near side of the scene.
 #pragma once
 
 #include <span>
@@ -22,7 +22,8 @@ struct SeenPoint {
   std::int32_t pixel = 0;
 };
 
-// step: every such pixel of every such row. Returns how many were written: at most points.size().
+// Takes every step-th pixel of every step-th row. Returns the number of points written: at most
+// points.size().
 [[nodiscard]] int seen_points(const SceneView& view, const Pose& T_camera_base, int step,
                               const DepthBuffer& buffer,
                               std::span<SeenPoint> points) noexcept GLINT_NONBLOCKING;

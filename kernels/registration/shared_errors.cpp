@@ -31,7 +31,7 @@ void add_view(const SceneView& view, const Pose& T_world_base, double gate_m,
         cosine < k_least_cosine) {
       continue;
     }
-    // The projective pair of match_points.cpp, its residual that of one metre of depth.
+    // The projective pair of match_points.cpp; its residual is that of a depth error of one metre.
     AlignmentSums pair;
     pair.add(to_world * (p - origin), to_world * normal * (-1 / cosine), range / p.z(), 1);
     sums.matrix += pair.matrix;
@@ -41,7 +41,7 @@ void add_view(const SceneView& view, const Pose& T_world_base, double gate_m,
   }
 }
 
-// A turn of a view's rays about each of its axes turns the base about the camera.
+// A rotation of a view's rays about one of its axes rotates the base about the camera.
 Matrix6 turned_rays(const SceneView& view, const Pose& T_world_base) noexcept {
   const Pose T_world_camera = view.T_camera_world.inverse();
   const Vector3 lever = T_world_base.translation - T_world_camera.translation;

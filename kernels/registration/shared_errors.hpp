@@ -1,11 +1,12 @@
-// What errors that a whole picture shares do to an alignment: a covariance to add to its own.
+// Consider covariance of an alignment for systematic errors common to a whole image; add it to the
+// alignment's own covariance.
 //
-// What:     depth that is off by a constant and by slopes along both sides of the picture, and a
-//           camera whose rays are turned. With A = sum J'J over the projective pairs, and
-//           B = sum J'b over the depth error b of one unit, the pose errs by A^-1 B; turned rays
-//           turn the pose about the camera. All views share one camera's errors.
+// What:     depth errors (a constant and slopes along both sides of the image), and a rotation of
+//           the camera's rays. With A = sum J'J over the projective pairs, and B = sum J'b over the
+//           depth error b of one unit, the pose error is A^-1 B; rotated rays rotate the pose about
+//           the camera. All views share the errors of one camera.
 // Cost:     a rendering of each view and its projective pairs, once.
-// Worst:    the model fills the pictures.
+// Worst:    the model fills the images.
 // Accuracy: first order. The magnitudes are declared, not estimated.
 // Source:   consider covariance: Schmidt 1966; Bierman 1977, section VIII.2.
 #pragma once
@@ -17,12 +18,13 @@
 namespace glint {
 
 struct SharedErrors {
-  double depth_sigma_m = 0.006;  // of the constant, and of each slope at the picture's edge
-  double ray_sigma_rad = 0.003;  // a pixel of 320 across 60 deg
+  double depth_sigma_m = 0.006;  // of the constant, and of each slope at the image's edge
+  double ray_sigma_rad = 0.003;  // one pixel of 320 across 60 deg
 };
 
-// Of shift and turn about the base's origin, world axes, as patch_covariance(). Reason:
-// not_prepared (the scratch is too small for the views), degenerate (a direction is open).
+// Covariance of translation and rotation about the base's origin, world axes, as
+// patch_covariance(). Reason: not_prepared (the scratch is too small for the views), degenerate (an
+// undetermined degree of freedom).
 [[nodiscard]] Result<Matrix6> shared_error_covariance(
     std::span<const SceneView> views, const Pose& T_world_base, double gate_m,
     const SharedErrors& errors, AlignmentScratch& scratch) noexcept GLINT_NONBLOCKING;

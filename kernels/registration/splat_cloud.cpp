@@ -7,8 +7,8 @@ namespace glint {
 namespace {
 
 struct Disc {
-  Vector3f middle, normal;  // in the camera's frame
-  float height = 0;         // of its plane over the camera: normal . middle
+  Vector3f middle, normal;  // centre and normal, camera frame
+  float height = 0;         // distance of its plane from the camera: normal . middle
 };
 
 class Splatter {
@@ -27,8 +27,8 @@ class Splatter {
     return disc;
   }
 
-  // Where the ray of a pixel's middle meets the disc's plane, if within so many spacings of the
-  // disc's middle: its z, else 0.
+  // Intersects the ray of a pixel's centre with the disc's plane. Returns z if the point is within
+  // `radius` spacings of the disc's centre, else 0.
   [[nodiscard]] float met(const Disc& disc, int x, int y, float radius) const {
     const Vector3f ray = pixel_point(camera_, x, y, 1.0f);
     const float along = disc.normal.dot(ray);

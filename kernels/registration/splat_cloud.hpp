@@ -1,14 +1,16 @@
-// What a camera could see of a model that is points: discs in a z-buffer.
+// Renders a point cloud model into a z-buffer by splatting: one disc per point; returns the visible
+// points.
 //
-// What:     each point is a disc across its normal, k_disc_radius of the cloud's spacing wide, so
-//           that discs leave no hole. A pixel keeps the disc that is nearest to the camera; of
-//           discs of one surface, not farther apart in depth than the spacing, the one whose middle
-//           is nearest to the pixel. Seen is what a pixel's ray meets within k_seen_radius of
-//           its disc's middle: beyond, a disc may stick out of the model's edge.
-// Cost:     a transformation a point, and a plane met by a ray for each pixel about it.
-// Worst:    a model near the camera: k_splat_reach pixels on each side; ended after
-//           k_splat_tests_a_pixel tests a pixel of the picture (Reason::search_full).
-// Accuracy: on a flat surface exact at the pixel's middle; on a curved one the disc's height over
+// What:     each point is a disc perpendicular to its normal with a radius of k_disc_radius
+//           spacings, so that the discs leave no hole. A pixel keeps the disc nearest to the
+//           camera; of discs of one surface, no farther apart in depth than the spacing, the one
+//           whose centre is nearest to the pixel. A point is visible where a pixel's ray meets its
+//           disc within k_seen_radius spacings of the centre: farther out a disc may extend beyond
+//           the model's edge.
+// Cost:     a transformation a point, and a ray-plane intersection for each pixel around it.
+// Worst:    a model near the camera: k_splat_reach pixels on each side; stops after
+//           k_splat_tests_a_pixel tests a pixel of the image (Reason::search_full).
+// Accuracy: exact at the pixel's centre on a flat surface; on a curved one the disc's height above
 //           it: 0.1 mm for 4 mm of spacing and a radius of 50 mm. Edges: k_seen_radius spacings.
 // Source:   visibility splatting, Zwicker et al. 2001, section 3; Botsch and Kobbelt 2003.
 #pragma once
@@ -23,24 +25,24 @@ namespace glint {
 inline constexpr float k_disc_radius = 1.5f;
 inline constexpr float k_seen_radius = 0.75f;
 inline constexpr int k_splat_reach = 6;
-// 60,000 points at 1.2 m take 20 of a picture of 320 x 288.
+// 60,000 points at 1.2 m take 20 in an image of 320 x 288.
 inline constexpr int k_splat_tests_a_pixel = 256;
 
-// Of pixels cleared, of a point, of each pixel that it is tested at; of a pixel of the raster and
-// of one that is seen.
+// Pixels cleared per step; steps per point, per pixel tested; per pixel of the raster, per visible
+// pixel.
 inline constexpr int k_splat_cleared_a_step = 2, k_splat_point_steps = 40, k_splat_test_steps = 10,
                      k_splat_pixel_steps = 4, k_splat_seen_steps = 40;
 inline constexpr int k_splat_item_steps_max =
     k_splat_point_steps + (2 * k_splat_reach + 1) * (2 * k_splat_reach + 1) * k_splat_test_steps;
 
-// Both in slices of at most the budget's steps and those of one point beyond it.
+// Rendering and visible points in slices that exceed the budget's steps by at most one point's.
 class CloudSplat {
  public:
-  // Reason::out_of_range as splat_cloud() gives it; step() then says true at once, of no points.
+  // Reason::out_of_range as splat_cloud(); step() then returns true at once, without points.
   [[nodiscard]] Reason start(const ModelCloud& model, const Pose& T_camera_model,
                              const Pinhole& camera, int raster, const DepthBuffer& buffer,
                              std::span<SeenPoint> points) noexcept GLINT_NONBLOCKING;
-  // True when all is rendered and the points that are seen are there.
+  // Returns true when rendering is complete and the visible points are written.
   [[nodiscard]] bool step(StepBudget& budget) noexcept GLINT_NONBLOCKING;
 
   [[nodiscard]] int count() const noexcept { return static_cast<int>(count_); }
@@ -63,14 +65,14 @@ class CloudSplat {
   std::size_t count_ = 0;
 };
 
-// As render_depth(), with a point's number where a triangle's was. Reason::out_of_range: the buffer
-// does not have the camera's size, or fewer corners than the cloud has points; or normals
-// are not as many as points.
+// As render_depth(), with a point's index in place of a triangle's. Reason::out_of_range: the
+// buffer does not have the camera's size or has fewer corners than the cloud has points; or the
+// numbers of normals and points differ.
 [[nodiscard]] Reason splat_cloud(const ModelCloud& model, const Pose& T_camera_model,
                                  const Pinhole& camera,
                                  const DepthBuffer& buffer) noexcept GLINT_NONBLOCKING;
 
-// As seen_points(), of the view's cloud.
+// As seen_points(), for the view's cloud.
 [[nodiscard]] int seen_cloud_points(const SceneView& view, const Pose& T_camera_base, int step,
                                     const DepthBuffer& buffer,
                                     std::span<SeenPoint> points) noexcept GLINT_NONBLOCKING;

@@ -1,4 +1,4 @@
-// A surface as triangles, and a camera without a lens: what a model is rendered with.
+// Triangle mesh and pinhole camera without lens distortion, for the rendering of a model.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@ struct Triangle {
   Vector3f a, b, c;  // metres
 };
 
-// Triangles that share corners. Borrowed.
+// Indexed triangle mesh. Borrowed.
 struct Face {
-  std::int32_t a = 0, b = 0, c = 0;  // numbers of corners
+  std::int32_t a = 0, b = 0, c = 0;  // indices of corners
 };
 struct Surface {
   std::span<const Vector3f> corners;  // metres
