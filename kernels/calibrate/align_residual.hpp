@@ -1,11 +1,11 @@
-// What is left between one tracker's pose and another's of the same body.
+// Residual of the calibration between two trackers of one body (A X = Y B) with a time offset.
 //
-// What:     the reference at the sample's time plus the offset, against X pose Y: X carries the
-//           sample's frame into the reference's, Y the reference's body into the tool (its
-//           translation is the lever arm). Position and 2 vec(q) of the rotation, in sigmas.
+// What:     the reference at the sample's time plus the offset, against X pose Y. X transforms the
+//           sample's frame to the reference's, Y the reference's body to the tool (its translation
+//           is the lever arm). Position and 2 vec(q) of the rotation, each divided by its sigma.
 // Cost:     blended_pose.hpp and four quaternion products; no loop.
-// Worst:    every input alike; sigmas must be positive.
-// Accuracy: the rotation's part is 2 sin(angle / 2) instead of the angle: 1e-5 less at 1 degree.
+// Worst:    data independent; requires positive sigmas.
+// Accuracy: the rotation part is 2 sin(angle / 2) instead of the angle: 1e-5 less at 1 degree.
 // Source:   Shah, Eastman and Hong 2012, "An overview of robot-sensor calibration methods", eq. (2)
 //           (A X = Y B in absolute form); the offset as in Furgale et al. 2013, eq. (9).
 #pragma once
@@ -17,15 +17,15 @@ namespace glint {
 struct AlignSample {
   double seconds = 0;
   Pose pose;              // of the tool, in the frame to be aligned
-  MotionPiece reference;  // around seconds + the offset to begin with
+  MotionPiece reference;  // around seconds + the initial offset
   double position_sigma_m = 1;
   double rotation_sigma_rad = 1;
 };
 
 template <class Scalar>
 struct AlignResidual {
-  Vector3Of<Scalar> position;  // in sigmas
-  Vector3Of<Scalar> rotation;  // in sigmas
+  Vector3Of<Scalar> position;  // divided by its sigma
+  Vector3Of<Scalar> rotation;  // divided by its sigma
 };
 
 template <class Scalar>

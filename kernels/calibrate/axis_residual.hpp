@@ -1,11 +1,11 @@
-// What is left when a tool turns about its own axis, which keeps its direction.
+// Residual of a spin calibration: a tool rotates about its own axis, whose direction is constant.
 //
 // What:     R axis_tool - axis_tracker, for unit vectors: 0 for a true spin.
 // Cost:     one quaternion product; no loop.
-// Worst:    every input alike.
+// Worst:    data independent.
 // Accuracy: its length is 2 sin(angle / 2) instead of the angle between the two.
 // Source:   Siciliano and Khatib 2016, "Springer Handbook of Robotics", section 2.2.4 (the axis of
-//           a rotation is the direction that it leaves alone).
+//           a rotation is the direction that it does not change).
 #pragma once
 
 #include "kernels/calibrate/scalar.hpp"

@@ -1,12 +1,14 @@
-// A recorded motion at any time, with its derivative by that time.
+// Interpolation of a recorded motion at any time, with its time derivative: Catmull-Rom spline for
+// position, normalised linear interpolation for rotation.
 //
-// What:     between the middle two of four samples: position by the cubic that has their finite
-//           differences as slopes, rotation by the normalized blend of both.
+// What:     interpolates between the middle two of four samples. Position: cubic with their finite
+//           differences as slopes. Rotation: normalised linear blend of the two quaternions.
 // Cost:     no loop, one square root.
-// Worst:    opposite rotations of the middle two; neighbours a hand's motion apart never are.
-// Accuracy: position to the third order of the gap; rotation within angle^3 / 100 of SLERP:
-//           1e-5 deg for neighbours one degree apart.
-// Source:   Catmull and Rom 1974, "A class of local interpolating splines", for uneven stamps.
+// Worst:    opposite rotations of the middle two samples; these do not occur in a hand's motion.
+// Accuracy: position to the third order of the gap; rotation within angle^3 / 100 of SLERP: 1e-5
+//           deg for neighbours one degree apart.
+// Source:   Catmull and Rom 1974, "A class of local interpolating splines", for non-uniform time
+//           stamps.
 #pragma once
 
 #include <cmath>
@@ -15,11 +17,11 @@
 
 namespace glint {
 
-// Four successive samples; seconds rise.
+// Four consecutive samples with increasing time stamps.
 struct MotionPiece {
   double seconds[4] = {};
   Vector3 position_m[4];
-  Quaternion rotation[2];  // of the middle two, in one half of the sphere
+  Quaternion rotation[2];  // of the middle two, in one hemisphere
 };
 
 template <class Scalar>
@@ -28,14 +30,15 @@ struct PoseOf {
   Vector3Of<Scalar> translation;
 };
 
-// Beyond the middle two it goes on a little: an offset's derivative is as good there.
+// Extrapolates slightly beyond the middle two samples: the derivative by a time offset remains
+// valid there.
 template <class Scalar>
 [[nodiscard]] PoseOf<Scalar> blended_pose(const MotionPiece& piece,
                                           const Scalar& seconds) noexcept {
   using std::sqrt;
   const double gap = piece.seconds[2] - piece.seconds[1];
   const Scalar u = (seconds - Scalar(piece.seconds[1])) / Scalar(gap);
-  const auto slope = [&](int i) -> Vector3 {  // at sample i, a whole gap's worth
+  const auto slope = [&](int i) -> Vector3 {  // at sample i, per gap
     const double before = piece.seconds[i] - piece.seconds[i - 1];
     const double after = piece.seconds[i + 1] - piece.seconds[i];
     const Vector3 left = (piece.position_m[i] - piece.position_m[i - 1]) / before;

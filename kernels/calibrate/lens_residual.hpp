@@ -1,10 +1,10 @@
-// By how many pixels a lens misses where a ray is seen.
+// Reprojection residual of a lens model (brown or rational), in pixels.
 //
-// What:     the pixel of a point on the plane z = 1 by the brown or rational lens, less the pixel
-//           where it was seen. Pixel centres are at integer + 0.5.
+// What:     the pixel of a point on the plane z = 1 by the brown or rational lens, minus the
+//           measured pixel. Pixel centres are at integer + 0.5.
 // Cost:     no loop, one division.
-// Worst:    a denominator of zero: a lens that no fit comes near.
-// Accuracy: to rounding of what camera_model.hpp projects.
+// Worst:    a denominator of zero: a lens far from any fit.
+// Accuracy: equal to camera_model.hpp's projection up to rounding.
 // Source:   OpenCV's distortion model: (1 + k1 r2 + k2 r4 + k3 r6) / (1 + k4 r2 + k5 r4 + k6 r6),
 //           tangential p1, p2; brown is the one with k4 = k5 = k6 = 0.
 #pragma once

@@ -1,8 +1,9 @@
-// What is left between a measured marker and the tool's, both tool and pose unknown.
+// Residual of a tool calibration: a measured marker against the tool's marker; tool and pose are
+// unknown (bundle adjustment).
 //
 // What:     (R marker + t - measured) / sigma.
 // Cost:     one quaternion product; no loop.
-// Worst:    every input alike; sigma must be positive.
+// Worst:    data independent; requires positive sigma.
 // Accuracy: to rounding.
 // Source:   Triggs et al. 2000, "Bundle adjustment: a modern synthesis", section 2 (structure and
 //           poses at once), for points measured in three dimensions.

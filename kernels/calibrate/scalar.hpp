@@ -1,4 +1,5 @@
-// Vectors and rotations of any scalar, so that one text gives a residual and its derivatives.
+// Vectors and rotations for any scalar type, so that one template computes a residual and its
+// derivatives.
 #pragma once
 
 #include "kernels/geometry.hpp"

@@ -9,8 +9,8 @@
 namespace glint {
 namespace {
 
-constexpr double k_nowhere = 2;      // beyond any segment
-constexpr double k_rounding = 1e-6;  // far more than rounding leaves of a unit quaternion
+constexpr double k_nowhere = 2;      // parameter beyond any segment
+constexpr double k_rounding = 1e-6;  // far above the rounding error of a unit quaternion
 
 bool usable(double number) noexcept { return std::isfinite(number) && number > 0; }
 
@@ -71,14 +71,15 @@ StrokeResampler::Neighbours StrokeResampler::neighbours_of(std::int64_t middle) 
     turn += side * pose.rotation.coeffs();
   }
   mean.place /= static_cast<double>(2 * half);
-  // Neighbours of one hand lie close together: the sum of unit quaternions is far from zero. Were
-  // it not, the sample's own rotation stands for them.
+  // Rotations of one hand within 20 ms are close: the sum of unit quaternions is far from zero.
+  // Otherwise uses the sample's own rotation.
   const double length = turn.norm();
   mean.rotation = length > 1e-3 ? Quaternion(Eigen::Vector4d(turn / length)) : own.rotation;
   return mean;
 }
 
-// The share of the segment at which it is far enough from the last point.
+// Segment parameter at which the distance or rotation from the last point reaches the spacing;
+// k_nowhere if it does not.
 double StrokeResampler::crossing() const noexcept {
   double u = k_nowhere;
   if ((to_.place - kept_.place).norm() >= settings_.spacing_m) {
@@ -108,7 +109,7 @@ UncertainPose StrokeResampler::between(double u) const noexcept {
   point.pose.translation = constant_velocity(a.pose.translation, b.pose.translation, u);
   point.pose.rotation = slerp(a.pose.rotation, b.pose.rotation, u);
   point.covariance = (1 - u) * a.covariance + u * b.covariance;
-  // A constant acceleration leaves the line by a u (1 - u) t^2 / 2.
+  // Deviation from the chord at a constant acceleration a: a u (1 - u) t^2 / 2.
   const double bow = 0.5 * u * (1 - u) * gap.seconds() * gap.seconds();
   for (int i = 0; i < 6; ++i) {
     const double off =
@@ -119,7 +120,7 @@ UncertainPose StrokeResampler::between(double u) const noexcept {
 }
 
 StrokeResampler::Next StrokeResampler::next(UncertainPose& point) noexcept {
-  for (int i = 0; i <= k_ring; ++i) {  // segments that wait: never more than the ring holds
+  for (int i = 0; i <= k_ring; ++i) {  // pending segments: at most the ring's capacity
     if (!segment_open_) {
       const bool known = middle_ + k_half < count_ || (ending_ && middle_ < count_);
       if (!known) return last_point(point);

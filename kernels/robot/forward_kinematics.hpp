@@ -1,8 +1,8 @@
-// Where every link of a robot is, from its joints' positions.
+// Forward kinematics of a robot: the pose of every link from the joint positions.
 //
 // What:     T_root_link(i + 1) = T_root_link(parent) * T_parent_joint * motion(position).
 // Cost:     a sine and cosine and two products of poses for each joint.
-// Worst:    k_robot_joints_max joints that all turn; none costs more than another.
+// Worst:    k_robot_joints_max revolute joints; all revolute joints cost the same.
 // Accuracy: 1e-14 a joint of a metre's length; against Orocos KDL within 1e-9.
 // Source:   URDF's definition of a joint; Craig 2005, Introduction to Robotics, equation (3.6) is
 //           the same product with other parameters.
@@ -17,7 +17,7 @@
 
 namespace glint {
 
-// Beyond it a joint's position is no position: it is also where sine_cosine() ends.
+// Largest joint position accepted; also the range of sine_cosine().
 inline constexpr double k_joint_position_max = 1e5;
 
 struct LinkPoses {
@@ -25,9 +25,9 @@ struct LinkPoses {
   int count = 0;
 };
 
-// values: radians or metres, one for each input. Reason::out_of_range: too few or many values, or
-// one that is not finite or beyond k_joint_position_max; Reason::not_prepared: a tree whose
-// parents do not stand before their children. `poses` is then as it was.
+// values: radians or metres, one for each input. Reason::out_of_range: wrong number of values, or
+// one that is not finite or beyond k_joint_position_max. Reason::not_prepared: a tree whose parents
+// do not precede their children. On an error `poses` is unchanged.
 [[nodiscard]] Reason forward_kinematics(const JointTree& tree, std::span<const double> values,
                                         LinkPoses& poses) noexcept GLINT_NONBLOCKING;
 

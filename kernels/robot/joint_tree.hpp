@@ -1,4 +1,5 @@
-// A robot's joints as a tree of fixed capacity: what a URDF says of its motion.
+// Kinematic tree of a robot's joints with fixed capacity: the content of a URDF that forward
+// kinematics needs.
 #pragma once
 
 #include <array>
@@ -18,8 +19,8 @@ struct TreeJoint {
   Pose T_parent_joint;              // in the parent link, at position zero
   Vector3 axis = Vector3::UnitX();  // unit length, in the joint's frame
   JointKind kind = JointKind::fixed;
-  int parent_link = 0;  // at most this joint's own index: parents stand before children
-  int input = -1;       // whose value moves it; several may share one (mimic)
+  int parent_link = 0;  // at most this joint's own index: parents precede children
+  int input = -1;       // index of the value that moves it; several may share one (mimic)
   double multiplier = 1, offset = 0;  // position = multiplier * value + offset: radians or metres
 };
 
