@@ -1,4 +1,4 @@
-// The rules that a graph must keep, each as a template whose name and arguments are the message:
+// Compile-time checks of a graph's rules. The name and arguments of each template are the message:
 // the compiler prints `NoWriter<Blobs, CountBlobs, false>` and the sentence.
 #pragma once
 
@@ -51,7 +51,7 @@ struct Cycle {
 
 namespace detail {
 
-// Whether two tokens are parts of one type, but of another number.
+// True for two tokens that are parts of one type with different counts.
 template <class A, class B>
 inline constexpr bool differ_in_count = false;
 template <class T, int N, int M>

@@ -1,5 +1,5 @@
-// A graph in words: its nodes in order, what flows between them, and a signature that changes when
-// the wiring does. All constants of the graph's type, equal on g++ and clang++.
+// Description of a graph: nodes in execution order, edges, and a signature that changes with the
+// wiring. All are constants of the graph's type, equal on g++ and clang++.
 #pragma once
 
 #include <array>
@@ -13,15 +13,15 @@ namespace glint::graph {
 
 enum class EdgeKind : std::uint8_t { token, latest, parts, previous };
 
-// One node, each copy of a split by itself, at the place of its number in the order of execution.
+// One node; each copy of a split is a separate entry. Indexed by number in the execution order.
 struct NodeInfo {
   std::string_view name;
   int copy = 0;
   int copies = 1;
-  int level = 0;  // nodes of one level may run side by side
+  int level = 0;  // nodes of one level may run in parallel
 };
 
-// One token on its way; for a split the numbers are its first copy's. -1: the world outside.
+// One edge; for a split the numbers are those of its first copy. -1: outside the graph.
 struct EdgeInfo {
   int from = -1;
   int to = -1;
@@ -125,7 +125,7 @@ struct Description {
     return infos;
   }();
 
-  // What a plan or a recording was made for: names, copies and ports in the order of execution.
+  // Identifies the graph of a plan or a recording: names, copies and ports in execution order.
   static constexpr std::uint64_t signature = [] {
     detail::Fnv fnv;
     constexpr auto names = detail::unit_names(typename Wires::Listed{});

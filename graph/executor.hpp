@@ -1,10 +1,10 @@
-// The reference executor: all nodes one after another in the caller's thread.
+// Serial executor, the reference: runs all nodes one after another in the caller's thread.
 #pragma once
 
 namespace glint::graph {
 
-// Sees each node begin and end; its number counts in the order of execution. Empty calls cost
-// nothing.
+// Receives the begin and end of each node; `node` is the number in execution order. Empty calls
+// cost nothing.
 template <class T>
 concept Trace = requires(T& trace, int node) {
   trace.on_node_begin(node);

@@ -1,10 +1,10 @@
-// A dataflow graph whose wiring is its nodes' signatures.
+// Static dataflow graph, wired at compile time by the signatures of its nodes.
 //
 //   using Tracker = Graph<Inputs<Frame>, Outputs<Estimates>, Split<RoiThreshold, 2>, FindBlobs,
 //   ..>; static_assert(valid<Tracker>);
 //
 // Nodes may be listed in any order: they run in a topological order found at compile time, ties in
-// the order listed. All tokens and nodes live in the object, so it belongs in static memory.
+// the order listed. The object contains all tokens and nodes, so it belongs in static memory.
 // Cost: an activation is one direct call a node; feedback tokens swap two buffers by an index.
 #pragma once
 
@@ -29,10 +29,10 @@
 
 namespace glint::graph {
 
-// What prepare() found: the first node that could not get ready, and why. A node's prepare() gives
-// an enumeration whose value 0 means that all is well; `reason` is the value of another.
+// Result of prepare(): the first node whose prepare() failed, and the reason. A node's prepare()
+// returns an enumeration whose value 0 means success; `reason` is the value of the failure.
 struct Prepared {
-  int node = -1;  // its number in the order of execution
+  int node = -1;  // number in execution order
   std::string_view name;
   int reason = 0;
   [[nodiscard]] explicit operator bool() const noexcept { return node < 0; }
@@ -46,14 +46,14 @@ class Graph {
   static constexpr int unit_count = Wires::unit_count;  // listed nodes
   static constexpr int node_count = Wires::node_count;  // with every copy of a split
   static constexpr int level_count = Wires::order.levels;
-  // Whether workers beyond the first would have anything to do.
+  // True if workers beyond the first have nodes to run.
   static constexpr bool has_split = ((Unit<Nodes>::count > 1) || ...);
 
   Graph() = default;
   Graph(const Graph&) = delete;
   Graph& operator=(const Graph&) = delete;
 
-  // A node, or copy `index` of a split one: its settings are set here, before prepare().
+  // A node, or copy `index` of a split node. Set its settings here, before prepare().
   template <class Node>
   [[nodiscard]] Node& node(int index = 0) noexcept {
     auto& copies = slot_of<Node>().copies;
@@ -66,7 +66,7 @@ class Graph {
     for (auto& cell : slot_of<Node>().copies) f(cell.node);
   }
 
-  // What the caller hands in before an activation.
+  // Input token; the caller writes it before an activation.
   template <class T>
   [[nodiscard]] T& input() noexcept {
     static_assert(Wires::template is_input<T>, "Inputs does not list this token");
@@ -76,7 +76,7 @@ class Graph {
   [[nodiscard]] Latest<T>& latest() noexcept {
     return input<Latest<T>>();
   }
-  // What the last activation left.
+  // Output token of the last activation.
   template <class T>
   [[nodiscard]] const T& output() const noexcept {
     static_assert(index_of<T>(typename Wires::OutputTokens{}) >= 0,
@@ -88,13 +88,13 @@ class Graph {
     static_assert(index_of<T>(typename Wires::Tokens{}) >= 0, "this graph has no such token");
     return tokens_.template slot<T>().now();
   }
-  // Part `index` of a token that a split writes.
+  // Part `index` of a token written by a split.
   template <class T>
   [[nodiscard]] const T& parts(int index) const noexcept {
     return token<detail::PartsIn<T, typename Wires::Tokens>>()[index];
   }
 
-  // Gets every node ready that has a prepare(), in the order of execution, up to the first failure.
+  // Calls prepare() of every node that has one, in execution order, up to the first failure.
   [[nodiscard]] Prepared prepare() {
     Prepared result;
     in_order([&]<int unit>() { prepare_unit<unit>(result); });
@@ -119,8 +119,8 @@ class Graph {
   template <class Executor>
   requires(!Trace<Executor>) void activate(Executor& executor) noexcept { executor.execute(*this); }
 
-  // Runs the nodes in order until the boundary ends the activation; the number of the last node
-  // that ran. Nodes left out: feedback stays as it was before.
+  // Runs the nodes in order until the boundary ends the activation. Returns the number of the last
+  // node that ran. If nodes were skipped, the feedback stays as before the activation.
   template <Trace T, Boundary B>
   int activate_until(T& trace, B& boundary) noexcept {
     begin_activation();
@@ -135,17 +135,18 @@ class Graph {
     return node_count - 1;
   }
 
-  // For executors: what is now becomes what was before. Once an activation, ahead of all nodes.
+  // For executors: makes the current tokens the previous ones. Once per activation, before all
+  // nodes.
   void begin_activation() noexcept { tokens_.begin_activation(); }
-  // For executors: undoes begin_activation() where nodes were left out, so that the next activation
-  // reads the feedback that this one read.
+  // For executors: undoes begin_activation() if nodes were skipped, so that the next activation
+  // reads the same feedback.
   void abandon_activation() noexcept { tokens_.abandon_activation(); }
-  // For executors: a node by its number in the order of execution; its writers must have run.
+  // For executors: runs a node by its number in execution order; its writers must have run.
   template <Trace T>
   void call_number(int number, T& trace) noexcept {
     (this->*calls_by_number<T>[static_cast<std::size_t>(number)])(trace);
   }
-  // For executors: one copy of one listed node, whose writers must have run.
+  // For executors: runs one copy of one listed node; its writers must have run.
   template <int unit, int copy, class Trace>
   void call(Trace& trace) noexcept {
     constexpr int number = Wires::first_node[unit] + copy;
@@ -177,7 +178,7 @@ class Graph {
     return static_cast<detail::NodeSlot<typename detail::EntryOf<Node, Nodes...>::Type>&>(nodes_);
   }
 
-  // Calls f<unit>() for every listed node in the order of execution.
+  // Calls f<unit>() for every listed node in execution order.
   template <class F>
   static void in_order(F&& f) {
     for_each_index<unit_count>(
@@ -241,7 +242,7 @@ inline constexpr bool valid_graph<Graph<In, Out, Nodes...>> =
     check_graph<Wiring<In, Out, Nodes...>, Nodes...>();
 }  // namespace detail
 
-// True for a graph that keeps all rules; a compile error that names the token for any other.
+// True for a graph that satisfies all rules; otherwise a compile error that names the token.
 template <class G>
 inline constexpr bool valid = detail::valid_graph<G>;
 

@@ -1,12 +1,13 @@
-// A value that crosses a rate boundary: the newest version, wait-free on both sides.
+// Triple buffer: passes the newest version of a value across a rate boundary, wait-free on both
+// sides.
 //
-// One writer, one reader. Three slots: the writer owns one, the reader owns one, the third waits in
-// between; publishing and sampling swap slots by one atomic exchange. Neither side ever waits for
-// the other, also not when one preempts the other on a single core.
-// Cost: publish one exchange; sample one load and at most one exchange. (arm64 before version 8.1
-// builds an exchange from a retry loop, which one preemption can make turn once more.)
-// Source: the triple buffer of computer graphics; every interleaving is tried in
-// tests/unit/graph/latest_model_test.cpp.
+// One writer, one reader. Of three slots the writer owns one, the reader owns one, and the third is
+// in between; publishing and sampling swap slots by one atomic exchange. Neither side waits for the
+// other, even if one preempts the other on a single core.
+// Cost:   publish one exchange; sample one load and at most one exchange. (arm64 before version 8.1
+//         implements an exchange as a retry loop; one preemption can cause one more iteration.)
+// Source: the triple buffer of computer graphics; tests/unit/graph/latest_model_test.cpp checks
+//         every interleaving.
 #pragma once
 
 #include <atomic>
@@ -16,23 +17,25 @@
 
 namespace glint::graph {
 
-// Which slot belongs to whom. Each function is at most one atomic step, so that a model can try all
-// interleavings of this very code with an atomic of its own.
+// Slot ownership of a triple buffer. Each function is at most one atomic step, so that a model test
+// can run all interleavings of this code with its own atomic type.
 template <class Atomic = std::atomic<std::uint32_t>>
 class TripleIndex {
  public:
   [[nodiscard]] int writer_slot() const noexcept { return static_cast<int>(writer_); }
   [[nodiscard]] int reader_slot() const noexcept { return static_cast<int>(reader_); }
 
-  // Writer: gives its slot away as the newest and gets a free one.
+  // Writer: exchanges its slot, now the newest, for a free one.
   void publish() noexcept {
     writer_ = waiting_.exchange(writer_ | k_fresh, std::memory_order_acq_rel) & k_slot_mask;
   }
-  // Reader: whether something newer waits. Relaxed, because only take() looks into a slot.
+  // Reader: true if a newer version is available. Relaxed, because only take() gives access to a
+  // slot.
   [[nodiscard]] bool fresh() const noexcept {
     return (waiting_.load(std::memory_order_relaxed) & k_fresh) != 0;
   }
-  // Reader: gives its slot back for the newest. Only after fresh() said so, else it goes backwards.
+  // Reader: exchanges its slot for the newest. Requires fresh(); otherwise the reader receives an
+  // older version.
   void take() noexcept {
     reader_ = waiting_.exchange(reader_, std::memory_order_acq_rel) & k_slot_mask;
   }
@@ -48,9 +51,9 @@ class TripleIndex {
 template <class T>
 class TripleBuffer {
  public:
-  // Writer: the slot to fill, whole, before publish(). It holds some older version.
+  // Writer: the slot to fill completely before publish(). It contains an older version.
   [[nodiscard]] T& write_slot() noexcept { return slots_[index_.writer_slot()].value; }
-  // Writer: versions count from 1 and rise; 0 means "never written".
+  // Writer: publishes the slot. Versions start at 1 and increase; 0 means "never written".
   void publish(std::uint64_t version, std::int64_t time_ns) noexcept {
     Slot& slot = slots_[index_.writer_slot()];
     slot.version = version;
@@ -58,13 +61,13 @@ class TripleBuffer {
     index_.publish();
   }
 
-  // Reader: moves on to the newest version; false if there is none newer than the one it holds.
+  // Reader: moves to the newest version; returns false if there is no newer one.
   bool sample() noexcept {
     if (!index_.fresh()) return false;
     index_.take();
     return true;
   }
-  // Reader: what the last sample() found; T{}, version 0 before anything was published.
+  // Reader: the version of the last sample(); T{} with version 0 before the first publish().
   [[nodiscard]] const T& value() const noexcept { return slots_[index_.reader_slot()].value; }
   [[nodiscard]] std::uint64_t version() const noexcept {
     return slots_[index_.reader_slot()].version;
@@ -83,14 +86,14 @@ class TripleBuffer {
   Slot slots_[3]{};
 };
 
-// A node's view of a value from another rate group. It belongs to the reading graph and changes
-// only in sample() or set(), so that all nodes of an activation see one version.
+// A node's view of a value from another rate group. The reading graph owns it; it changes only in
+// sample() or set(), so that all nodes of an activation read one version.
 template <class T>
 class Latest {
  public:
-  // Reads from a buffer from now on; the buffer outlives this and has no other reader.
+  // Binds to a buffer, which must outlive this object and have no other reader.
   void bind(TripleBuffer<T>& buffer) noexcept { buffer_ = &buffer; }
-  // Hands in a value without a buffer: a constant, a test's value, one from a recording.
+  // Sets a value without a buffer: a constant, a test's value, one from a recording.
   void set(const T& value, std::uint64_t version, std::int64_t time_ns) noexcept {
     buffer_ = nullptr;
     held_ = value;

@@ -1,8 +1,9 @@
-// How often a node's loops may run in one activation, and how often they did.
+// Loop counts of a node per activation: maxima under given limits, and actual counts. Input of the
+// worst-case execution time.
 //
-// A worst case is a sum of counts times costs. The counts are the code's: a node names its loops,
-// says how often each may run under given limits, and after an activation how often each did. The
-// costs belong to a board and are no affair of this folder.
+// A worst case is a sum of counts times costs. The counts are the code's: a node declares its
+// loops, returns their maxima under given limits, and after an activation their actual counts. The
+// costs are measured on a companion computer and are not part of this folder.
 //
 //   struct FindBlobs {
 //     static constexpr std::array<std::string_view, 3> k_loops = {"call", "runs", "pixels"};
@@ -32,7 +33,7 @@ struct LoopCounts {
   bool operator==(const LoopCounts&) const = default;
 };
 
-// Whether no loop ran more often than it may.
+// True if no count exceeds its maximum.
 [[nodiscard]] constexpr bool within(const LoopCounts& counts, const LoopCounts& worst) {
   for (std::size_t loop = 0; loop < k_loops_max; ++loop) {
     if (counts[loop] > worst[loop]) return false;
@@ -40,7 +41,7 @@ struct LoopCounts {
   return true;
 }
 
-// A node whose worst case can be computed: of one copy, where it stands under Split.
+// A node with a computable worst case; under Split that of one copy.
 template <class Node, class Limits>
 concept Budgeted = requires(const Node& node, const Limits& limits) {
   requires Node::k_loops.size() >= 1 && Node::k_loops.size() <= k_loops_max;

@@ -1,9 +1,9 @@
-// What is done about an activation that takes, or will take, longer than its chain may wait.
+// Overrun handling: policy and decision for an activation that misses, or will miss, its deadline.
 //
-// An overrun is noticed at a node's boundary: after node k either the deadline has passed, or what
-// the remaining nodes may need at worst (their bounds) no longer fits before it (`will_miss`). The
-// remaining nodes are then not run, and the chain's declared policy says what leaves instead. The
-// decision is data: recorded, it makes a replay do the same without a clock.
+// An overrun is detected at a node's boundary: after node k the deadline has passed (`missed`), or
+// the worst case of the remaining nodes (their bounds) no longer fits before it (`will_miss`). The
+// remaining nodes then do not run, and the chain's declared policy determines the output. The
+// decision is data: a recording of it lets a replay reproduce the activation without a clock.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@
 namespace glint::graph {
 
 enum class OverrunPolicy : std::uint8_t {
-  skip_output = 0,  // nothing leaves for this activation
-  hold_last = 1,    // what left last leaves again, no longer called measured
-  predict = 2,      // the last known motion is extrapolated
-  stop_safe = 3,    // everything is declared lost until the next activation that is in time
+  skip_output = 0,  // no output for this activation
+  hold_last = 1,    // the previous output again, no longer marked as measured
+  predict = 2,      // the last motion estimate is extrapolated
+  stop_safe = 3,    // every tool is declared lost until the next activation in time
 };
 
 [[nodiscard]] constexpr std::string_view name_of(OverrunPolicy policy) {
@@ -25,12 +25,11 @@ enum class OverrunPolicy : std::uint8_t {
 
 enum class OverrunKind : std::uint8_t { none = 0, will_miss = 1, missed = 2 };
 
-// One activation's decision. In a recording it stands as two bytes, and {} means that there was
-// none.
+// Decision for one activation. A recording stores it as two bytes; {} means no overrun.
 struct OverrunDecision {
   OverrunKind kind = OverrunKind::none;
   OverrunPolicy policy = OverrunPolicy::skip_output;
-  std::uint8_t after_node = 0;  // the last node that ran, in the graph's order of execution
+  std::uint8_t after_node = 0;  // the last node that ran, in execution order
 
   [[nodiscard]] constexpr bool happened() const { return kind != OverrunKind::none; }
   bool operator==(const OverrunDecision&) const = default;

@@ -1,4 +1,5 @@
-// Who runs which node, and in which order: a plan as an executor reads it, checked once.
+// Static schedule in the executor's form: allocation of nodes to workers and order per worker, with
+// its validity check.
 #pragma once
 
 #include <algorithm>
@@ -12,10 +13,10 @@ namespace glint::graph {
 
 inline constexpr int k_plan_workers_max = 4;
 
-// Bit i: node i of the order of execution.
+// Bit i: node i of the execution order.
 using NodeSet = std::uint64_t;
 
-// By node: whose data it reads in the same activation.
+// Predecessors of each node: the nodes whose data it reads in the same activation.
 template <class G>
 inline constexpr auto needs = [] {
   using Wires = typename G::Wires;
@@ -41,7 +42,8 @@ struct PlanTables {
   std::array<std::array<std::uint8_t, k_nodes>, k_plan_workers_max> order{};
   std::array<std::uint8_t, k_plan_workers_max> count{};
 
-  // Takes the node as the worker's next one; without room or with an unknown worker, false.
+  // Appends the node to the worker's order. Returns false for an invalid node or worker, or without
+  // room.
   constexpr bool add(int node, int on) noexcept {
     if (node < 0 || node >= G::node_count || on < 0 || on >= workers) return false;
     const auto w = static_cast<std::size_t>(on);
@@ -61,11 +63,11 @@ struct PlanTables {
 enum class PlanError : std::uint8_t {
   none,
   workers,       // fewer than 1 or more than k_plan_workers_max
-  unknown_node,  // a number that the graph does not have
+  unknown_node,  // a number outside the graph
   ran_twice,
   left_out,
   first_node,  // node 0 is not the first of worker 0
-  waits,       // in this order the node waits for ever for data it reads
+  waits,       // deadlock: in this order the node never receives the data it reads
 };
 struct PlanFault {
   PlanError error = PlanError::none;
@@ -73,8 +75,8 @@ struct PlanFault {
   [[nodiscard]] constexpr bool found() const noexcept { return error != PlanError::none; }
 };
 
-// What makes the tables unfit to run: each node runs once, and the workers' orders together let
-// each node find its data. Found by running the plan without the nodes.
+// Checks the tables: each node runs once, and the workers' orders together provide each node's
+// data. Simulates the schedule without the nodes. Returns the first fault.
 template <class G>
 [[nodiscard]] constexpr PlanFault plan_fault(const PlanTables<G>& tables) noexcept {
   if (tables.workers < 1 || tables.workers > k_plan_workers_max) return {PlanError::workers, -1};
@@ -114,8 +116,8 @@ template <class G>
   return {};
 }
 
-// Without a plan of the bounds: copy i of a split on worker i modulo the workers, every other node
-// on worker 0, in the graph's order: what graph/workers.hpp does between its meetings.
+// Default schedule, without computed bounds: copy i of a split on worker i modulo the workers,
+// every other node on worker 0, in the graph's order; as graph/workers.hpp between its barriers.
 template <class G>
 [[nodiscard]] constexpr PlanTables<G> plan_by_rule(int workers) noexcept {
   PlanTables<G> tables;

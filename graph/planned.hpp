@@ -1,11 +1,12 @@
-// The planned executor: W workers follow an order made ahead for each of them, without a barrier.
+// Planned executor: W workers follow static per-worker schedules, synchronised by data, without
+// barriers.
 //
-// A node begins when every node whose data it reads has ended, which each node says by storing the
-// activation's number. Nodes of one worker need no such look: the plan's order holds the data's.
-// The bytes are Serial's. Worst input: a part that comes late. Its reader goes on waiting
-// (rest.hpp), as no other node writes the data, and counts one overrun; worker 0 asks the boundary
-// meanwhile, so that a watched activation ends at its deadline and the output need not wait. A
-// worker that is still inside a node then is waited for by settle(), after the output has left.
+// A node starts when every node whose data it reads has finished; each node stores the activation's
+// number when it finishes. Nodes of one worker need no check: the schedule preserves the order of
+// their data. The output has the bytes of Serial. Worst input: a delayed node. Its reader keeps
+// waiting (rest.hpp), as no other node writes the data, and counts one overrun. Meanwhile worker 0
+// queries the boundary, so that a watched activation ends at its deadline without delay of the
+// output. settle() waits for a worker that is still inside a node, after the output is published.
 #pragma once
 
 #include <array>
@@ -23,7 +24,7 @@ namespace glint::graph {
 template <class G, Rest R>
 class Planned {
  public:
-  // The tables were checked: plan_fault() found none. `rest` outlives this.
+  // Requires tables without a fault by plan_fault(). `rest` must outlive this object.
   Planned(const PlanTables<G>& tables, R& rest) noexcept : tables_(tables), rest_(&rest) {
     for (int node = 0; node < G::node_count; ++node) {
       const auto i = static_cast<std::size_t>(node);
@@ -34,13 +35,13 @@ class Planned {
 
   [[nodiscard]] int workers() const noexcept { return tables_.workers; }
 
-  // Worker 0, after settle() and before it releases the others for an activation.
+  // Call on worker 0, after settle() and before it releases the others for an activation.
   void begin(G& graph) noexcept {
     graph.begin_activation();
     ++activation_;
   }
 
-  // Workers 1 and on, each once an activation.
+  // Call on workers 1 and above, each once per activation.
   template <Trace T>
   void help(G& graph, int worker, T& trace) noexcept {
     const auto w = static_cast<std::size_t>(worker);
@@ -53,10 +54,10 @@ class Planned {
     rest_->report_progress();
   }
 
-  // Worker 0. Gives how far the graph's order has run without a gap: its last node where all have
-  // run, also where the boundary said no only after that. (Beyond a gap a node may have run as
-  // well, on another worker: so no node that keeps a state may stand behind a split, or a replay
-  // would see it differ.)
+  // Call on worker 0. Returns the last node of the gap-free prefix of the execution order that has
+  // run; the last node of all if every node has run, even if the boundary then returned false.
+  // Nodes beyond a gap may have run on other workers. Therefore no node with state may follow a
+  // split, or a replay would differ.
   template <Trace T, Boundary B>
   [[nodiscard]] int lead(G& graph, T& trace, B& boundary) noexcept {
     int last = -1;
@@ -67,7 +68,7 @@ class Planned {
       if (!await(node, 0, goes_on)) return abandon();
       run_node(graph, node, trace);
       last = node;
-      // After the group's last node nothing is left to be saved by stopping.
+      // After the last node, stopping saves nothing.
       if (!boundary.go_on(node) && !(step + 1 == count && others_have_run())) return abandon();
     }
     for (int worker = 1; worker < tables_.workers; ++worker) {
@@ -77,9 +78,9 @@ class Planned {
     return G::node_count - 1;
   }
 
-  // Worker 0, once after each lead(): returns when no other worker is inside the graph, and only
-  // then takes back what an abandoned activation would have fed back. The wait is bounded by the
-  // longest node that one of them is in; what leaves for this activation has left before.
+  // Call on worker 0 once after each lead(). Waits until no other worker is inside the graph, then
+  // undoes the feedback of an abandoned activation. The wait is bounded by the longest node in
+  // progress; the activation's output is already published.
   void settle(G& graph) noexcept {
     for (int worker = 1; worker < tables_.workers; ++worker) {
       const Mark& mark = finished_[static_cast<std::size_t>(worker)];
@@ -89,7 +90,7 @@ class Planned {
     if (is_now(abandoned_)) graph.abandon_activation();
   }
 
-  // Waits that were longer than rest.hpp allows, of all workers since the start.
+  // Number of waits longer than rest.hpp allows, over all workers since the start.
   [[nodiscard]] std::uint64_t overruns() const noexcept {
     std::uint64_t sum = 0;
     for (const Mark& mark : overruns_) sum += mark.at.load(std::memory_order_relaxed);
@@ -121,7 +122,7 @@ class Planned {
     if ((awaited_ >> node & 1u) != 0) rest_->report_progress();
   }
 
-  // False: the activation was abandoned while this worker waited, or before.
+  // Returns false if the activation was abandoned before or during the wait.
   template <class GoesOn>
   [[nodiscard]] bool await(int node, int worker, const GoesOn& goes_on) noexcept {
     if (worker != 0 && is_now(abandoned_)) return false;
@@ -138,7 +139,7 @@ class Planned {
                     [&] { return !(worker != 0 && is_now(abandoned_)) && goes_on(); });
   }
 
-  // What the others may have done by now does not count as all: the feedback will be undone.
+  // Never returns the last node, even if the others have finished by now: the feedback is undone.
   int abandon() noexcept {
     abandoned_.at.store(activation_, std::memory_order_release);
     rest_->report_progress();
@@ -150,7 +151,7 @@ class Planned {
   PlanTables<G> tables_;
   std::array<NodeSet, static_cast<std::size_t>(G::node_count)> foreign_{};
   NodeSet awaited_ = 0;           // nodes that another worker waits for
-  std::uint64_t activation_ = 0;  // counts from 1; written by worker 0 before it releases others
+  std::uint64_t activation_ = 0;  // from 1; written by worker 0 before it releases the others
   std::array<Mark, static_cast<std::size_t>(G::node_count)> done_{};
   std::array<Mark, k_plan_workers_max> finished_{};
   std::array<Mark, k_plan_workers_max> overruns_{};

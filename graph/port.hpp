@@ -1,12 +1,12 @@
-// The words of the dataflow language: what a graph takes and gives, and how a node's parameters say
-// what it reads and writes.
+// Port types of the dataflow language: graph inputs and outputs, and the parameter types by which a
+// node declares what it reads and writes.
 //
 //   const T&            this activation's token
-//   T&                  the token that this node writes, whole, at every activation
+//   T&                  the token that this node writes completely at every activation
 //   const Previous<T>&  the last activation's token (T{} before the first)
 //   const Latest<T>&    the newest version from another rate group (graph/latest.hpp)
-//   const Parts<T, N>&  what the N copies of a Split wrote, in index order
-//   Slice               which copy this is; only under Split
+//   const Parts<T, N>&  the output of the N copies of a Split, in index order
+//   Slice               index of this copy and number of copies; only under Split
 #pragma once
 
 #include <cassert>
@@ -14,16 +14,17 @@
 
 namespace glint::graph {
 
-// Keeps what two cores write on separate lines; 64 bytes on x86-64 and on the arm64 boards' cores.
+// Alignment that keeps data written by two cores on separate cache lines: 64 bytes on x86-64 and on
+// the arm64 companion computers.
 inline constexpr std::size_t k_cache_line = 64;
 
-// What is handed in before an activation, and what may be taken out after it.
+// Tokens that the caller writes before an activation, and tokens that it may read after it.
 template <class... T>
 struct Inputs {};
 template <class... T>
 struct Outputs {};
 
-// The last activation's token: feedback that is visible in the type.
+// The last activation's token: explicit feedback.
 template <class T>
 class Previous {
  public:
@@ -35,14 +36,14 @@ class Previous {
   const T* value_;
 };
 
-// Which part of the data a copy works on: 0 <= index < count.
+// Partition of the data that a copy processes: index of count, 0 <= index < count.
 struct Slice {
   int index = 0;
   int count = 1;
 };
 
-// N copies of a node that may run side by side. Copy i writes part i of each of its outputs. N
-// belongs to the graph and never depends on the number of workers: the result would change with it.
+// N copies of a node that may run in parallel. Copy i writes part i of each of its outputs. N is a
+// property of the graph, independent of the number of workers: the result depends on it.
 template <class Node, int N>
 struct Split {
   static_assert(N >= 1, "a split needs at least one copy");

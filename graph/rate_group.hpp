@@ -1,5 +1,5 @@
-// A graph with a rate of its own: at each release it samples what comes from other groups, once,
-// and notes which versions it got. These notes are all that a replay needs to decide alike.
+// Rate group: a graph with its own rate. Each release samples the inputs from other groups once and
+// records their versions; a replay needs only these records.
 #pragma once
 
 #include <array>
@@ -12,11 +12,11 @@ namespace glint::graph {
 
 inline constexpr int k_latest_max = 8;  // Latest<> inputs of one graph
 
-// What a group was given at one release. The versions stand in the order of Inputs<>.
+// Inputs of a group at one release. The versions are in the order of Inputs<>.
 struct Choice {
   std::uint32_t group = 0;
   std::uint64_t activation = 0;  // counts from 1
-  std::int64_t nominal_ns = 0;   // the release as planned, never as it came
+  std::int64_t nominal_ns = 0;   // the planned release time, not the actual one
   int version_count = 0;
   std::array<std::uint64_t, k_latest_max> versions{};
   bool operator==(const Choice&) const = default;
@@ -34,15 +34,15 @@ class RateGroup {
  public:
   RateGroup(G& graph, std::uint32_t group) noexcept : graph_(&graph) { choice_.group = group; }
 
-  // Live: takes the newest version of every Latest<> input. The nodes run in activate().
+  // Live: samples the newest version of every Latest<> input. activate() runs the nodes.
   const Choice& release(std::int64_t nominal_ns) noexcept {
     graph_->sample();
     begin(choice_.activation + 1, nominal_ns);
     return choice_;
   }
 
-  // Replay: leaves alone what already has the recorded version and samples the rest. False if then
-  // a version differs: the replay has not published what was read, or has published too much.
+  // Replay: samples only inputs that do not have the recorded version yet. Returns false if a
+  // version then differs: the replay has not published that version, or has published a newer one.
   [[nodiscard]] bool release_as(const Choice& recorded) noexcept {
     int i = 0;
     each_latest([&](auto& latest) {

@@ -1,9 +1,10 @@
-// A bounded queue from one thread to one other: wait-free on both sides, static storage.
+// Bounded single-producer single-consumer queue (ring buffer): wait-free on both sides, static
+// storage.
 //
-// When it is full the new item is dropped and counted: the producer is never held up by whoever
-// writes to a disk or a network. Cost: one atomic load, one store and a copy of T on either side.
+// A full queue drops the new item and counts it: a slow consumer (disk, network) never blocks the
+// producer. Cost: one atomic load, one store and a copy of T on either side.
 // Source: Lamport 1983, "Specifying concurrent program modules", the bounded buffer of two
-// counters; every interleaving is tried in tests/unit/graph/ring_model_test.cpp.
+//         counters; tests/unit/graph/ring_model_test.cpp checks every interleaving.
 #pragma once
 
 #include <atomic>
@@ -13,8 +14,9 @@
 
 namespace glint::graph {
 
-// How many items were ever pushed and popped, modulo 2^32. Each function is at most one atomic
-// step, so that a model can try all interleavings of this very code with an atomic of its own.
+// Numbers of items pushed and popped since the start, modulo 2^32. Each function is at most one
+// atomic step, so that a model test can run all interleavings of this code with its own atomic
+// type.
 template <int N, class Atomic = std::atomic<std::uint32_t>>
 class RingIndex {
   static_assert(N >= 1 && (N & (N - 1)) == 0, "the counters wrap: N is a power of two");
@@ -23,14 +25,14 @@ class RingIndex {
   explicit constexpr RingIndex(std::uint32_t start = 0) noexcept
       : push_count_(start), pushed_(start), pop_count_(start), popped_(start) {}
 
-  // Producer: whether a slot is free, which one it is, and handing it over filled.
+  // Producer: tests for a free slot, returns its index, and passes the filled slot to the consumer.
   [[nodiscard]] bool has_room() const noexcept {
     return push_count_ - popped_.load(std::memory_order_acquire) < N;
   }
   [[nodiscard]] int push_slot() const noexcept { return static_cast<int>(push_count_ % N); }
   void push() noexcept { pushed_.store(++push_count_, std::memory_order_release); }
 
-  // Consumer: whether an item waits, in which slot, and giving the slot back.
+  // Consumer: tests for an item, returns its slot, and releases the slot.
   [[nodiscard]] bool has_item() const noexcept {
     return pushed_.load(std::memory_order_acquire) != pop_count_;
   }
@@ -47,7 +49,7 @@ class RingIndex {
 template <class T, int N>
 class Ring {
  public:
-  // Producer: false and one more dropped() when the ring is full.
+  // Producer: if the ring is full, returns false and increments dropped().
   bool push(const T& item) noexcept {
     if (!index_.has_room()) {
       dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
@@ -57,14 +59,14 @@ class Ring {
     index_.push();
     return true;
   }
-  // Consumer: the oldest item; false, and `item` as it was, when there is none.
+  // Consumer: returns the oldest item; false, with `item` unchanged, if the ring is empty.
   bool pop(T& item) noexcept {
     if (!index_.has_item()) return false;
     item = slots_[index_.pop_slot()];
     index_.pop();
     return true;
   }
-  // Items that found no room since the start; any thread may ask.
+  // Items dropped since the start; callable from any thread.
   [[nodiscard]] std::uint64_t dropped() const noexcept {
     return dropped_.load(std::memory_order_relaxed);
   }

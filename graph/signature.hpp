@@ -1,4 +1,4 @@
-// Reads a node's interface off its call operator.
+// Derives a node's interface from the signature of its call operator.
 #pragma once
 
 #include <type_traits>
@@ -11,8 +11,8 @@ namespace glint::graph {
 
 enum class PortKind { read, write, previous, slice, wrong };
 
-// What one parameter of a call operator stands for. By value (but Slice), by pointer, by rvalue
-// reference, or a graph word that a node may only read taken by T&: wrong.
+// Kind and token of one parameter of a call operator. Kind `wrong`: by value (except Slice), by
+// pointer, by rvalue reference, or a read-only graph type by T&.
 template <class Parameter>
 struct Port {
   static constexpr PortKind kind = PortKind::wrong;
@@ -69,7 +69,7 @@ template <class Node, class... P>
 struct CallOf<void (Node::*)(P...) const noexcept> : CallOf<void (Node::*)(P...) noexcept> {};
 #if defined(__has_cpp_attribute)
 #if __has_cpp_attribute(clang::nonblocking)
-// Where the compiler knows the promise, it is part of a call operator's type.
+// Compilers with this attribute make it part of a call operator's type.
 template <class Node, class... P>
 struct CallOf<void (Node::*)(P...) noexcept [[clang::nonblocking]]>
     : CallOf<void (Node::*)(P...) noexcept>{};
@@ -87,7 +87,7 @@ struct SignatureOf<Node> : CallOf<decltype(&Node::operator())> {};
 
 }  // namespace detail
 
-// One entry of a graph's list of nodes: a node, or the copies of one.
+// One entry of a graph's list of nodes: a node, or the copies of a split node.
 template <class Listed>
 struct Unit {
   using Node = Listed;
@@ -105,7 +105,7 @@ struct Unit<Split<SplitNode, N>> {
   using Written = Parts<T, N>;
 };
 
-// Whether the node has one call operator `void operator()(...) noexcept`, and its parameters.
+// True if the node has one call operator `void operator()(...) noexcept`; and its parameters.
 template <class Listed>
 inline constexpr bool callable = detail::SignatureOf<typename Unit<Listed>::Node>::fits;
 template <class Listed>
@@ -131,7 +131,7 @@ struct PortTokens<Listed, TypeList<P...>> {
 
 }  // namespace detail
 
-// The graph's token behind each parameter: where a split writes T, that is Parts<T, N>.
+// The graph's token for each parameter: Parts<T, N> where a split writes T.
 template <class Listed, class Parameter>
 using TokenOf = typename detail::PortToken<Listed, Parameter, Port<Parameter>::kind>::Type;
 template <class Listed>

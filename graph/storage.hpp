@@ -1,5 +1,4 @@
-// Where a graph's tokens and nodes live: inside the graph object, so that its size is its
-// footprint.
+// Storage of a graph's tokens and nodes inside the graph object; its size is the memory footprint.
 #pragma once
 
 #include <array>
@@ -10,7 +9,7 @@
 
 namespace glint::graph::detail {
 
-// A token. Where Previous<> reads it there are two buffers that change places; else there is one.
+// A token: double-buffered if a Previous<> reads it, else one buffer.
 template <class Token, bool fed_back>
 class TokenSlot {
  public:
@@ -37,7 +36,7 @@ class TokenSlot<Token, true> {
   int current_ = 0;
 };
 
-// All tokens; a slot is found by its type, which costs nothing at run time.
+// All tokens; the type selects the slot at compile time.
 template <class Token, bool fed_back>
 struct NamedSlot {
   TokenSlot<Token, fed_back> slot;
@@ -60,7 +59,7 @@ struct TokenStore<Wires, TypeList<Token...>>
   void abandon_activation() noexcept { (slot<Token>().abandon_activation(), ...); }
 };
 
-// A node, or the copies of one; each on cache lines of its own, since workers write their states.
+// A node, or its copies; each on separate cache lines, because workers write their states.
 template <class Listed>
 struct NodeSlot {
   struct alignas(k_cache_line) Cell {
@@ -72,7 +71,7 @@ struct NodeSlot {
 template <class... Listed>
 struct NodeStore : NodeSlot<Listed>... {};
 
-// The parts of T among a graph's tokens.
+// Finds Parts<T, N> among a graph's tokens.
 template <class T, class Tokens>
 struct FindParts;
 template <class T, int N, class... Rest>
@@ -84,7 +83,7 @@ struct FindParts<T, TypeList<First, Rest...>> : FindParts<T, TypeList<Rest...>> 
 template <class T, class Tokens>
 using PartsIn = typename FindParts<T, Tokens>::Type;
 
-// The listed entry that a node type belongs to.
+// The listed entry of a node type.
 template <class Node, class... Listed>
 struct EntryOf {
   static constexpr int index = index_of<Node>(TypeList<typename Unit<Listed>::Node...>{});

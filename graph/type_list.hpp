@@ -1,4 +1,4 @@
-// Lists of types at compile time: just what wiring a graph needs.
+// Compile-time lists of types: the operations that a graph's wiring needs.
 #pragma once
 
 #include <type_traits>
@@ -11,7 +11,7 @@ struct TypeList {
   static constexpr int size = sizeof...(T);
 };
 
-// Position of T in the list, -1 where it is absent.
+// Index of T in the list; -1 if absent.
 template <class T, class... U>
 [[nodiscard]] consteval int index_of(TypeList<U...> /*list*/) {
   int index = -1;
@@ -69,16 +69,16 @@ struct UniqueOf<TypeList<T...>> : UniqueStep<TypeList<>, T...> {};
 
 }  // namespace detail
 
-// The type at a position, 0 <= index < size.
+// The type at an index, 0 <= index < size.
 template <int index, class List>
 using At = typename decltype(detail::pick<index>(
     static_cast<typename detail::Pick<List>::Table*>(nullptr)))::type;
 
-// All lists one after another.
+// Concatenation of all lists.
 template <class... Lists>
 using Join = typename detail::JoinStep<Lists...>::Type;
 
-// The list without repetitions; the first of equals stays.
+// The list without repetitions; keeps the first of equal types.
 template <class List>
 using Unique = typename detail::UniqueOf<List>::Type;
 

@@ -1,5 +1,5 @@
-// The name of a type as it stands in the source, without its namespaces; equal on g++ and clang++
-// for named types that are no templates (pretty-printed template arguments differ).
+// Name of a type as in the source, without its namespaces. Equal on g++ and clang++ for named types
+// that are not templates (pretty-printed template arguments differ).
 #pragma once
 
 #include <string_view>

@@ -1,9 +1,9 @@
-// What an executor asks after each node: whether the activation goes on.
+// Boundary: decides after each node whether the activation continues (deadline monitoring).
 //
-// A boundary is told which node has ended and answers. Three of them: always on; by a deadline and
-// a clock that the host hands in; as a recording decided. An answer of false ends the activation:
-// the remaining nodes are not run, and what the nodes so far have fed back is taken back.
-// Cost: NoBoundary none; DeadlineWatch one look at the clock a node.
+// A boundary receives the node that has finished and returns whether to continue. Three kinds:
+// always; by a deadline and the host's clock; by a recording. False ends the activation: the
+// remaining nodes do not run, and the feedback of the nodes so far is undone.
+// Cost: NoBoundary none; DeadlineWatch one reading of the clock per node.
 #pragma once
 
 #include <concepts>
@@ -14,8 +14,8 @@
 
 namespace glint::graph {
 
-// go_on(node) is called when a node has ended, and again while worker 0 waits for a part that
-// another worker still computes: node is the last one that worker 0 ran.
+// The executor calls go_on(node) when a node has finished, and again while worker 0 waits for
+// another worker's part; node is then the last one that worker 0 ran.
 template <class T>
 concept Boundary = requires(T& boundary, int node) {
   { boundary.go_on(node) } -> std::same_as<bool>;
@@ -25,18 +25,18 @@ struct NoBoundary {
   static constexpr bool go_on(int /*node*/) noexcept { return true; }
 };
 
-// Nanoseconds since the activation's nominal release; may lag behind, never goes backwards.
+// Nanoseconds since the activation's nominal release; may lag, never decreases.
 template <class T>
 concept ActivationClock = requires(T& clock) {
   { clock.elapsed_ns() } -> std::same_as<std::int64_t>;
 };
 
-// The deadline counts from the nominal release, so that a late wake-up counts, too.
+// The deadline is relative to the nominal release, so that it includes the release jitter.
 template <ActivationClock Clock>
 class DeadlineWatch {
  public:
-  // `remaining_ns`, by node: what may be needed at worst from that node's end to the group's end;
-  // empty: there is no bound, and only a deadline that has passed is noticed. It outlives this.
+  // `remaining_ns`, by node: worst case from that node's end to the group's end. If empty, only a
+  // deadline that has passed is detected. The span's data must outlive this object.
   DeadlineWatch(Clock& clock, std::int64_t deadline_ns, std::span<const std::int64_t> remaining_ns,
                 OverrunPolicy policy) noexcept
       : clock_(&clock), deadline_ns_(deadline_ns), remaining_ns_(remaining_ns), policy_(policy) {}
@@ -56,7 +56,7 @@ class DeadlineWatch {
     decision_.after_node = static_cast<std::uint8_t>(node);
     return false;
   }
-  // {} while the activation goes on.
+  // {} while the activation continues.
   [[nodiscard]] const OverrunDecision& decision() const noexcept { return decision_; }
 
  private:
@@ -67,7 +67,7 @@ class DeadlineWatch {
   OverrunDecision decision_;
 };
 
-// Ends where a recording says that it ended; without a clock.
+// Ends the activation at the recorded node; needs no clock.
 class RecordedBoundary {
  public:
   explicit RecordedBoundary(const OverrunDecision& decision) noexcept

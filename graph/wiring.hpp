@@ -1,5 +1,5 @@
-// From the nodes' signatures to who writes what, in which order the nodes run, and on which level.
-// All of it happens at compile time.
+// Wiring of a graph at compile time from its nodes' signatures: writer of each token, topological
+// order of the nodes, and levels.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace glint::graph {
 
-// One parameter of one listed node. Tokens and nodes are positions in their lists.
+// One parameter of one listed node. Tokens and nodes are indices in their lists.
 struct PortRow {
   int unit = 0;
   PortKind kind = PortKind::wrong;
@@ -20,9 +20,9 @@ struct PortRow {
 // A topological order of n nodes; ties go to the node that is listed first.
 template <int n>
 struct Order {
-  std::array<int, n> units{};  // in the order they run
+  std::array<int, n> units{};  // in execution order
   std::array<int, n> level{};  // of each listed node: 1 + the highest level it reads from
-  int placed = 0;              // fewer than n: the rest waits on a cycle
+  int placed = 0;              // less than n: the others wait on a cycle
   int levels = 0;
   int cycle_unit = -1;  // a node on that cycle, and the token that it waits for
   int cycle_token = -1;
@@ -57,7 +57,7 @@ template <int n, std::size_t ports_size, std::size_t tokens_size>
     done[next] = true;
   }
   if (order.placed < n) {
-    // A node that waits may only be downstream of the cycle; n steps upstream are surely on it.
+    // A waiting node may be only downstream of the cycle; n steps upstream always reach it.
     int unit = 0;
     while (done[unit]) ++unit;
     for (int step = 0; step < n; ++step) unit = writer[waits_for(unit)];
@@ -109,7 +109,7 @@ struct Wiring {
     return rows;
   }();
 
-  // The node that writes each token; -1 for an input and for a token that nobody writes.
+  // Writer of each token; -1 for an input and for a token without a writer.
   static constexpr std::array<int, token_count> writer = [] {
     std::array<int, token_count> units{};
     units.fill(-1);
@@ -123,7 +123,7 @@ struct Wiring {
 
   static constexpr std::array<int, unit_count> copies = {Unit<Nodes>::count...};
 
-  // Number of the first copy of each listed node, in the order they run.
+  // Number of the first copy of each listed node, in execution order.
   static constexpr std::array<int, unit_count> first_node = [] {
     std::array<int, unit_count> first{};
     int number = 0;
@@ -134,7 +134,7 @@ struct Wiring {
     return first;
   }();
 
-  // How many parameters in all nodes use the token in this way.
+  // Number of parameters of all nodes that use the token with this kind.
   template <class Token>
   [[nodiscard]] static consteval int count_of(PortKind kind) {
     int count = 0;

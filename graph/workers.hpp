@@ -1,10 +1,10 @@
-// The parallel executor: W workers run one graph together and give the same bytes as Serial.
+// Barrier executor: W workers run one graph in parallel and produce the same bytes as Serial.
 //
-// Copy i of a split runs on worker i % W, every other node on worker 0: a rule, not a guess, so
-// that a plan can be made of it. Workers meet at a barrier before and after each level that has a
-// split. The host provides the threads, releases them and provides their rest (rest.hpp). Worst
-// input: a part that comes late. Its reader goes on waiting, as no other node writes the data, and
-// counts one overrun.
+// Copy i of a split runs on worker i % W, every other node on worker 0: a fixed rule that a
+// schedule can reproduce (plan_by_rule). Workers meet at a barrier before and after each level that
+// has a split. The host provides the threads, releases them and implements Rest (rest.hpp). Worst
+// input: a delayed part. Its reader keeps waiting, as no other node writes the data, and counts one
+// overrun.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ namespace glint::graph {
 
 namespace detail {
 
-// Whether a level has a split, so that workers beyond the first have something to do on it.
+// True if a level has a split, so that workers beyond the first have nodes to run.
 template <class G, int level>
 inline constexpr bool wide = [] {
   for (int unit = 0; unit < G::unit_count; ++unit) {
@@ -31,7 +31,7 @@ inline constexpr bool wide = [] {
 
 }  // namespace detail
 
-// Trace sees the nodes of all workers, each node from one of them.
+// Trace receives the nodes of all workers, each node from one of them.
 template <int W, Rest R, Trace T = NoTrace>
 class Workers {
   static_assert(W >= 1, "someone has to do the work");
@@ -39,16 +39,17 @@ class Workers {
  public:
   static constexpr int count = W;
 
-  // `rest` outlives this.
+  // `rest` must outlive this object.
   explicit Workers(R& rest, T trace = {}) noexcept : rest_(&rest), trace_(trace) {}
 
-  // Worker 0, before it releases the others for an activation.
+  // Call on worker 0, before it releases the others for an activation.
   template <class G>
   void begin(G& graph) noexcept {
     graph.begin_activation();
   }
 
-  // Each worker once an activation, 0 <= worker < W. When worker 0 returns, all nodes have run.
+  // Call on each worker once per activation, 0 <= worker < W. When worker 0 returns, all nodes have
+  // run.
   template <class G>
   void run(G& graph, int worker) noexcept {
     for_each_index<G::level_count>([&]<int level>() {
@@ -62,7 +63,7 @@ class Workers {
     if constexpr (detail::wide<G, G::level_count - 1>) meet(worker);
   }
 
-  // Waits that were longer than rest.hpp allows, of all workers since the start.
+  // Number of waits longer than rest.hpp allows, over all workers since the start.
   [[nodiscard]] std::uint64_t overruns() const noexcept {
     std::uint64_t sum = 0;
     for (const Own& own : own_) sum += own.overruns.load(std::memory_order_relaxed);
@@ -77,8 +78,8 @@ class Workers {
     });
   }
 
-  // All workers have done what stands before this call when it returns. `arrived_` only ever grows,
-  // so no worker can mistake one meeting for the next.
+  // Barrier: returns when all workers have called it. `arrived_` only increases, so that a worker
+  // cannot confuse two barriers.
   void meet(int worker) noexcept {
     Own& own = own_[static_cast<std::size_t>(worker)];
     const std::uint64_t all = ++own.meetings * W;
