@@ -15,7 +15,7 @@ void AnchorHead::operator()(const FrameVerdict& verdict, const HeadPose& head,
   if (verdict.resynchronised) anchor.state.restart_clock();
   const bool declared = reference >= 0 && reference < tools_within(tools.value(), limits);
   const std::uint32_t body_now = declared ? tools.value().items[reference].identity : 0;
-  if (anchor.body != body_now) anchor.state = HeadAnchor{};  // another body lies elsewhere
+  if (anchor.body != body_now) anchor.state = HeadAnchor{};  // another body has another pose
   anchor.body = body_now;
   UncertainPose body;
   const UncertainPose* seen = nullptr;

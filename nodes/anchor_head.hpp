@@ -1,7 +1,8 @@
-// Corrects the head's pose by the reference body, where one is declared and in view, so that every
-// tool of the frame is given relative to it; without one it says how sure the headset itself is.
-// Cost:   one update of kernels/motion/head_anchor.hpp, dearer with the body in view.
-// Worst:  the body in view after a gap.
+// Corrects the drift of the head pose by a static reference body, where one is declared and
+// visible. All tools of the frame are then relative to that body. Without it, returns the headset's
+// own localisation covariance.
+// Cost:   one update of kernels/motion/head_anchor.hpp, more expensive with the body visible.
+// Worst:  the body is visible again after a gap.
 #pragma once
 
 #include <array>
@@ -26,7 +27,7 @@ struct AnchorHead {
 
   HeadNoise noise;
   Limits limits;
-  int reference = -1;  // number of the tool that does not move; -1: there is none
+  int reference = -1;  // index of the static reference tool; -1: none
   void operator()(const FrameVerdict& verdict, const HeadPose& head,
                   const graph::Latest<ToolSet>& tools,
                   const graph::Parts<FittedTools, k_tool_slices>& fitted,

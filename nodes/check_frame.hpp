@@ -1,8 +1,8 @@
-// Admits each frame once and in order. A late, doubled or unusable frame is counted and passed on
-// as refused, so that no later node takes it for a measurement.
+// Validates camera frames: admits each frame once and in order. A late, doubled or invalid frame is
+// counted and passed on as rejected, so that no later node uses it as a measurement.
 //
-// Should the sensor's clock restart, every new frame would be late for ever: after
-// k_resync_frames refused frames whose own stamps advance, their clock is believed instead.
+// If the sensor's clock restarts, every new frame would be late. After k_resync_frames rejected
+// frames with increasing time stamps, CheckFrame accepts the new clock.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace glint {
 
 inline constexpr int k_resync_frames = 8;  // 0.2 s at 45 Hz: below lost_after, above any reordering
 
-// Takes the stamp off a frame and checks its size against the camera's.
+// Copies the metadata of a frame and checks its size against the camera's.
 struct StampFrame {
   static constexpr std::array<std::string_view, 1> k_loops = {"call"};
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits&) noexcept { return {{1}}; }
@@ -51,9 +51,9 @@ struct CheckFrame {
   void operator()(const FrameStamp& stamp, FrameVerdict& verdict) noexcept GLINT_NONBLOCKING;
 
  private:
-  Time newest_;  // of the frames accepted
+  Time newest_;  // of the accepted frames
   std::uint64_t sequence_ = 0;
-  Time refused_newest_;  // of the frames refused in a row
+  Time refused_newest_;  // of the consecutive rejected frames
   int refused_in_row_ = 0;
   FrameVerdict counts_;
 };

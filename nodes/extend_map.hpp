@@ -1,4 +1,4 @@
-// The map of the place, extended by one slice of work at each activation.
+// Incremental map of the scene: extends it by one slice of bounded work per activation.
 #pragma once
 
 #include <array>
@@ -16,17 +16,17 @@
 
 namespace glint {
 
-// The depth picture that the background group looks at. What it borrows must stay until the
-// group's progress says that it is done with it.
+// Depth image for the background group. Its spans are borrowed: they must remain valid until the
+// group's progress reports `free`.
 struct ShownDepth {
-  // Pixels of the same picture, few enough to find a robot in (k_scene_pixels_max).
+  // A downsampled copy of the same image for robot registration, at most k_scene_pixels_max pixels.
   struct Scene {
     Pinhole camera;
-    std::span<const float> depth_m;  // along the axis; none: no robot is looked for
+    std::span<const float> depth_m;  // along the optical axis; empty: no robot registration
   };
 
-  // Where the robot's links were: other poses have another number. Without poses a robot is looked
-  // for only by those of the last number.
+  // Poses of the robot's links. A new number means new poses. If `poses` is null, only the poses of
+  // the last number are used.
   struct Links {
     const LinkPoses* poses = nullptr;
     std::uint64_t number = 0;
@@ -36,11 +36,11 @@ struct ShownDepth {
   Scene scene;
   Links links;
   Time time;
-  std::uint64_t number = 0;  // another number is another picture; 0: there is none
+  std::uint64_t number = 0;  // a new number means a new image; 0: none
 };
 
 struct MapProgress {
-  bool free = true;  // nothing is borrowed, and another picture may be shown
+  bool free = true;  // nothing is borrowed; another image may be passed
   int steps = 0;     // of this slice
   MapTotals totals;
 };
@@ -48,7 +48,7 @@ struct MapProgress {
 struct ExtendMap {
   MapSettings settings;
   int pictures_a_map = 10;
-  std::span<std::byte> memory;  // MapSlices::bytes(settings); none: no map is made
+  std::span<std::byte> memory;  // of MapSlices::bytes(settings) bytes; empty: no map is made
   Limits limits;
 
   [[nodiscard]] Reason prepare() noexcept {
@@ -62,11 +62,11 @@ struct ExtendMap {
     progress = {map_.idle(), steps_, map_.totals()};
   }
 
-  // Between activations: begins a map of all there is, if that is more than the one that is out.
+  // Call between activations. Starts a map of all voxels if images were added since the last map.
   void make_map() noexcept { map_.make_map(); }
   [[nodiscard]] const MapSlices& map() const noexcept { return map_; }
 
-  // A step is about a distance between two points: kernels/slice_size.hpp.
+  // One step is about one point-to-point distance: kernels/slice_size.hpp.
   static constexpr std::array<std::string_view, 2> k_loops = {"call", "steps"};
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
     return {{1, limits.background_steps + k_map_item_steps_max}};

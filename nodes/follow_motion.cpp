@@ -46,7 +46,7 @@ bool is_sure(const MotionCovariance& covariance, const SureLimits& sure) {
 
 }  // namespace
 
-// Leaves the reason, which says why there is no pose.
+// Updates the filter by one or two markers; leaves `reason`, which states why there is no pose.
 void FollowMotion::follow_few(const FewMarkers& few, const Tool& shape,
                               const AnchoredHead& anchored, Time time, int place,
                               FollowedTool& tool) noexcept {
@@ -92,7 +92,7 @@ void FollowMotion::operator()(
       tool.motion.forget();
       tool.identity = set.items[t].identity;
     }
-    if (!verdict.usable()) continue;  // a refused frame changes nothing that is known of a tool
+    if (!verdict.usable()) continue;  // a rejected frame leaves the track unchanged
     if (verdict.resynchronised) tool.motion.forget();
     const AnchoredHead& anchored = anchor.now;
     if (tool.base == ReferenceFrame::world) {
@@ -124,7 +124,7 @@ void FollowMotion::operator()(
     tool.filtered = !within(found.covariance.bottomRightCorner<3, 3>(), sure.rotation_rad);
     tool.stands = !tool.ambiguous && is_sure(tool.estimate.covariance, sure);
   }
-  // To clear what is clear would cost more than to follow a tool.
+  // Clear used entries only: clearing all would cost more than tracking a tool.
   for (; place < k_tools_per_slice; ++place) {
     if (followed.items[place].in_use) followed.items[place] = {};
   }

@@ -1,19 +1,17 @@
-// Follows each tool's motion from frame to frame: the filter and the rest window of
-// kernels/motion/motion_track.hpp, in the frame that the pose is kept in (the world where the
-// headset knew its own pose, else the camera's).
+// Motion filter of each tool: Kalman filter and static detector of kernels/motion/motion_track.hpp,
+// in the frame of the pose: the world if the head pose was valid, else the camera.
 //
-// A frame that gives no pose but one or two markers (NameFew) moves the filter on by these, from
-// what it knew. Whether that stands as a measurement is a matter of how sure the tool is then,
-// whichever markers said so, and so it is of three and more: a pose whose every axis is within
-// SureLimits is one, and is called measured; beyond, what is known goes on, predicted and in the
-// end lost, however long the markers are in view.
+// If a frame gives no pose but one or two markers (NameFew), these update the filter. The result
+// counts as measured only if every axis of the pose is within SureLimits. The same limit holds for
+// poses of three and more markers. Beyond it the track continues as predicted and is finally lost,
+// however long markers are visible.
 //
-// The filters travel as a token, so that a frame which is abandoned leaves no trace; the rest
-// windows' sums stay here, for a frame only ever writes entries that the one before does not need.
-// A tool whose slot holds another one than before begins anew.
-// Cost:   an update of filter and rest window for each tool found, by up to k_rest_levels tests;
-//         one by two markers costs less than one by a pose with its tests.
-// Worst:  all tools found, all at rest for as long as the window reaches.
+// The filters are passed as a token, so that an abandoned frame leaves no trace. The sums of the
+// static detector stay in the node: a frame writes only entries that the previous frame's state
+// does not read. A filter restarts if its slot holds a different tool.
+// Cost:   one update of filter and static detector per detected tool, by up to k_rest_levels tests;
+//         an update by two markers costs less than one by a pose with its tests.
+// Worst:  all tools detected, all static over the whole window length.
 #pragma once
 
 #include <array>
@@ -28,7 +26,7 @@
 
 namespace glint {
 
-// What experiments call gross, 20 mm or 15 degrees beside the truth, lies four sigma off.
+// Four sigma are then 20 mm or 15 degrees, the experiments' limit of a gross error.
 struct SureLimits {
   double position_m = 0.005;
   double rotation_rad = 0.065;

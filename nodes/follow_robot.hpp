@@ -1,6 +1,6 @@
-// Where the robot stands, followed by one slice of work at each activation: slow drift of the
-// headset's world is followed, a jump is refused and told. A picture in which its links were
-// elsewhere than before poses its model first, in slices as well.
+// Robot pose tracking in depth images, one slice of bounded work per activation. Follows slow drift
+// of the headset's world; rejects and reports jumps. If an image comes with new link poses, the
+// robot model is posed first, also in slices.
 #pragma once
 
 #include <array>
@@ -20,21 +20,21 @@ namespace glint {
 struct RobotProgress {
   bool free = true;  // nothing is borrowed
   int steps = 0;     // of this slice
-  // Of the pictures so far: followed, refused as jumps, and with too little to tell by.
+  // Numbers of images so far: pose followed, rejected as a jump, inconclusive.
   std::int64_t followed = 0, jumps = 0, unsure = 0;
   FollowOutcome last = FollowOutcome::no_reference;
   double shift_m = 0, turn_rad = 0;  // of the last jump
-  Time time;                         // of the last picture that was followed
-  RobotFrame frame;                  // where it is taken to be, once it was followed
+  Time time;                         // of the last image whose pose was followed
+  RobotFrame frame;                  // the current robot pose, once an image was followed
 };
 
 struct FollowRobot {
   FollowSettings settings;
-  LinkCloud model;          // none: nothing is followed
-  ShownDepth::Links links;  // that prepare() poses it by
+  LinkCloud model;          // empty: no robot is tracked
+  ShownDepth::Links links;  // link poses used by prepare()
   Pose T_world_robot;
-  Matrix6 covariance = Matrix6::Zero();  // of T_world_robot, as ReferenceFollower has it
-  int pixels_max = 0;                    // of a picture's shown part
+  Matrix6 covariance = Matrix6::Zero();  // of T_world_robot, as in ReferenceFollower
+  int pixels_max = 0;                    // of the scene part of an image
   Limits limits;
 
   [[nodiscard]] Reason prepare() {
@@ -48,7 +48,7 @@ struct FollowRobot {
     posed_by_ = links.number;
     follower_.settings = settings;
     reason = follower_.prepare(pixels_max, static_cast<int>(count));
-    // A picture at the clock's zero is newer than what is given.
+    // Time -1: an image at time 0 is then newer than the initial pose.
     if (reason == Reason::none) follower_.begin(T_world_robot, covariance, Time{-1});
     return reason;
   }
@@ -62,8 +62,8 @@ struct FollowRobot {
     progress = known_;
   }
 
-  // A step is about a distance between two points: kernels/slice_size.hpp. The last item may be a
-  // point that is posed, or one of the follower's, which are larger.
+  // One step is about one point-to-point distance: kernels/slice_size.hpp. The last item of a slice
+  // is a posed model point or an item of the follower, which is larger.
   static_assert(k_posed_item_steps_max <= k_follow_item_steps_max);
   static constexpr std::array<std::string_view, 2> k_loops = {"call", "steps"};
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
@@ -91,14 +91,14 @@ struct FollowRobot {
     }
     posed_by_.reset();
     posing_by_ = shown.links.number;
-    (void)run_.start(model, *shown.links.poses, points_, normals_);  // it fitted in prepare()
+    (void)run_.start(model, *shown.links.poses, points_, normals_);  // fits: see prepare()
   }
   void pose() noexcept {
     StepBudget budget(limits.reference_steps);
     posing_ = run_.step(budget);
     steps_ = limits.reference_steps - budget.left();
     if (posing_) return;
-    if (run_.reason() != Reason::none) {  // a link without a pose: nothing can be told
+    if (run_.reason() != Reason::none) {  // a link has no pose: inconclusive
       ++known_.unsure;
       return;
     }
@@ -130,7 +130,7 @@ struct FollowRobot {
   }
 
   std::vector<Vector3f> points_, normals_;  // the model's, in the robot's base
-  std::optional<std::uint64_t> posed_by_;   // the poses' number; none: they are posed in part
+  std::optional<std::uint64_t> posed_by_;   // number of the link poses; none: posed only in part
   PoseCloudRun run_;
   std::uint64_t posing_by_ = 0;
   bool posing_ = false;

@@ -1,4 +1,4 @@
-// The nodes that touch pixels: bright runs by bands of rows, blobs, candidate markers.
+// Image-processing nodes: thresholding by bands of rows, connected components, marker candidates.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace glint {
 
-// One band of rows; the graph has k_row_bands of them.
+// One of the graph's k_row_bands bands of rows.
 struct RoiThreshold {
   std::uint16_t threshold = 0;
   Limits limits;
@@ -36,7 +36,7 @@ struct RoiThreshold {
 };
 static_assert(graph::Budgeted<RoiThreshold, Limits>);
 
-// Joins the bands' runs in band order.
+// Connected components of the bands' runs, joined in band order.
 struct FindBlobs {
   BlobSettings settings;
   Limits limits;
@@ -67,13 +67,13 @@ struct FindBlobs {
 };
 static_assert(graph::Budgeted<FindBlobs, Limits>);
 
-// Each blob's ray and range. Blobs without depth are kept: they are reported, never labelled.
+// Ray and range of each blob. Blobs without depth are kept: they are reported but never labelled.
 struct BackProject {
   CameraModel camera;
   DepthSettings depth;
   NominalMarker nominal;
   Limits limits;
-  // What the lens does to a sphere's image: after the camera was set.
+  // Computes the lens's effect on a sphere's image. Call after `camera` is set.
   [[nodiscard]] Reason prepare() noexcept {
     shift_ = sphere_shift(camera);
     return Reason::none;

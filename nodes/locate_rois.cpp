@@ -18,8 +18,8 @@ Roi unite(const Roi& a, const Roi& b) {
   return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
 }
 
-// Adds `box`, first merged with every one that it meets, so that the rest stay disjoint. Returns
-// the number of comparisons.
+// Adds `box`, merged with every ROI that it overlaps, so that all ROIs stay disjoint. Returns the
+// number of comparisons.
 int add_disjoint(Roi box, Rois& rois) {
   int comparisons = 0;
   for (int i = 0; i < rois.count;) {
@@ -30,13 +30,13 @@ int add_disjoint(Roi box, Rois& rois) {
     }
     box = unite(box, rois.items[i]);
     rois.items[i] = rois.items[--rois.count];
-    i = 0;  // the grown box may meet one passed before; each merge removes one, so this ends
+    i = 0;  // recheck: the larger box may overlap an earlier one; each merge removes one ROI
   }
   rois.items[rois.count++] = box;
   return comparisons;
 }
 
-// The part of the frame that holds the tool; false where there is none.
+// Bounding box of the tool in the frame; returns false if the tool is outside.
 bool box_of(const CameraModel& camera, const Prediction& prediction, Roi& box) {
   const Vector2 &low = prediction.low_px, &high = prediction.high_px;
   box = {clamp_to_int(std::floor(low.x()), 0, camera.width),
@@ -46,9 +46,9 @@ bool box_of(const CameraModel& camera, const Prediction& prediction, Roi& box) {
   return prediction.in_view && box.x0 < box.x1 && box.y0 < box.y1;
 }
 
-// A part of the frame, another each turn: half or a quarter of its columns; every fourth turn a
-// quarter of its rows, too. Its middle moves over the whole frame by the golden ratio's multiples,
-// which leave no gap for long.
+// Part of the frame to search, different in each frame: half or a quarter of the columns; in every
+// fourth frame also a quarter of the rows. Multiples of the golden ratio move its centre over the
+// whole frame and leave no large gap for long (low-discrepancy sequence).
 Roi part_of_frame(const CameraModel& camera, std::uint32_t turn) {
   constexpr std::uint32_t golden = 0x9E3779B9;  // 2^32 / phi
   const auto share = [](std::uint32_t position, int room) {
@@ -65,7 +65,7 @@ Roi part_of_frame(const CameraModel& camera, std::uint32_t turn) {
 
 }  // namespace
 
-// Of the searched part and as many tools' boxes as there are ROIs: first those of tracked tools.
+// Searches one part of the frame and at most limits.tools - 1 boxes of tools, tracked tools first.
 void LocateRois::search_part(const ToolSet& set, int count, const Predictions& predictions,
                              Rois& rois) noexcept {
   rois.items[0] = part_of_frame(camera, predictions.turn);

@@ -1,12 +1,13 @@
-// Where in the image to look for the tools.
+// Regions of interest (ROIs) in the image, in which the tools are searched.
 //
-// A tool seen in the last frame is searched for around its prediction; as soon as one is not (never
-// found, missed, gone), the whole frame is searched, which the budget covers anyway. Where the
-// whole frame had more runs than that, a part of it is, another each frame, and the boxes.
+// A tool detected in the last frame is searched around its prediction. If any tool was not (never
+// found, missed, out of view), the whole frame is searched; the budget covers this. If the whole
+// frame had more runs than the budget, one part of it and the boxes are searched, a different part
+// each frame.
 // Cost: (tools - 1)^2 comparisons of boxes.
-// Worst input: the last tool's box meets the others one after the other, each only once the one
-// before has been merged.
-// Source: the seed, section III: a region of interest about the prediction.
+// Worst input: the last tool's box overlaps the others one after the other, each only after the
+// merge with the one before.
+// Source: Puljiz et al., section III: region of interest about the prediction.
 #pragma once
 
 #include <array>
@@ -22,11 +23,11 @@
 
 namespace glint {
 
-// The rectangles to search: around the priors, or the whole frame; none for a refused frame.
+// ROIs around the predictions, or the whole frame; none for a rejected frame.
 struct LocateRois {
   static constexpr std::array<std::string_view, 3> k_loops = {"call", "tools", "comparisons"};
-  // Of n boxes the first n - 1 can stay apart, (n - 1)(n - 2) / 2 comparisons, and the last can
-  // then be merged with each at the last of those that are left, n (n - 1) / 2 more.
+  // Of n boxes the first n - 1 can be disjoint: (n - 1)(n - 2) / 2 comparisons. The last box can
+  // then merge with each as the last of those left: n (n - 1) / 2 more.
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
     const std::int64_t others = limits.tools - 1;
     return {{1, limits.tools, others * others}};

@@ -1,5 +1,5 @@
-// The background group: from depth pictures to a map and to where the robot stands, a slice of
-// bounded work of each at each activation.
+// Background group: map and robot pose from depth images, one slice of bounded work of each per
+// activation.
 //
 //   ShownDepth ─► ExtendMap ─► MapProgress
 //              ─► FollowRobot ─► RobotProgress

@@ -1,6 +1,6 @@
-// The one or two markers of a tool that no labeling found, where they can be no other's: what a
-// hand leaves in view holds the tool until it lets go. Nothing is done in a frame in which every
-// predicted tool has a labeling.
+// Labels the one or two visible markers of a tool without a labeling, where they can belong to no
+// other tool (partial visibility). They keep the track alive while a hand occludes the others. Does
+// nothing in a frame in which every predicted tool has a labeling.
 // Cost and worst input: kernels/pose/few_markers.hpp.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What a cell's limits mean to a node.
+// Loop limits of the nodes, derived from the cell's limits.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +10,12 @@
 
 namespace glint {
 
-// Slice i takes the tools whose number leaves i when divided by the slices' count: the first slice
-// has the most.
+// Partition i takes the tools with index modulo n = i, n partitions. The first one has the most.
 [[nodiscard]] constexpr int tools_of(const Limits& limits, graph::Slice slice) {
   return std::max(0, (limits.tools - slice.index + slice.count - 1) / slice.count);
 }
 
-// A tool set may be exchanged at run time; what is beyond the limits is left alone.
+// A tool set may be replaced at run time; tools and markers beyond the limits are ignored.
 [[nodiscard]] inline int tools_within(const ToolSet& set, const Limits& limits) {
   return std::min(set.count, limits.tools);
 }

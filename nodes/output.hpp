@@ -1,4 +1,4 @@
-// The tick group: from what is known of every tool to what leaves, at a steady rate.
+// Tick group: predicted tool poses and CAN frames from the newest estimates, at a fixed rate.
 //
 //   Now, Latest<Estimates>, Latest<RobotFrame>, Latest<PenButtons> ─► PredictTools ─► PoseSamples
 //   ─► PackCan ─► CanFrames

@@ -7,7 +7,7 @@ namespace {
 
 using graph::OverrunPolicy;
 
-// A sample without a pose: what is known of the tick, the buttons and the robot stays.
+// A sample without a pose; tick, buttons and robot registration are kept.
 PoseSample without_pose(const PoseSample& sample, TrackState state) {
   PoseSample bare;
   bare.tick = sample.tick;
@@ -23,7 +23,7 @@ PoseSample without_pose(const PoseSample& sample, TrackState state) {
   return bare;
 }
 
-// Neither the search of the next frame nor the tick group moves it on.
+// Zeroes all derivatives: neither the next frame's prediction nor the tick group moves the tool.
 void stand_still(Track& track) {
   track.has_previous = false;
   track.motion.velocity_m_s = track.motion.acceleration_m_s2 = Vector3::Zero();

@@ -1,11 +1,13 @@
-// What leaves in place of an activation that was not in time, by the chain's declared policy.
+// Substitute output for an activation that missed its deadline, by the chain's declared overrun
+// policy.
 //
-// Nothing here asks for the time: frame, tick and what was in time before decide alone, so that a
-// replay of the recorded decision gives the same bytes. All rests on what was in time, never on an
-// earlier substitute: overruns in a row do not drift.
+// Reads no clock: the result depends only on the frame or tick and the last timely output. A replay
+// of the recorded decision therefore gives the same bytes. Substitutes are never derived from
+// earlier substitutes, so consecutive overruns do not drift.
 // Cost:     one pass over k_tools_max tools, each at most one extrapolation.
 // Worst:    predict, all tools alive.
-// Accuracy: predict is a constant velocity (kernels/motion/interpolate.hpp), hold_last none.
+// Accuracy: predict assumes constant velocity (kernels/motion/interpolate.hpp), hold_last no
+// motion.
 #pragma once
 
 #include "graph/overrun.hpp"
@@ -19,33 +21,33 @@ namespace glint {
                              static_cast<std::uint8_t>(policy));
 }
 
-// The frame that the estimates were not ready for, and the pose of the head then.
+// The frame whose estimates missed the deadline, and its head pose.
 struct OverrunFrame {
   FrameStamp stamp;
   HeadPose head;
   Duration lost_after;
 };
 
-// The tick that was not in time, and which buttons were held as it was released.
+// The tick that missed its deadline, and the buttons held at its release.
 struct OverrunTick {
   Now now;
   Duration lost_after;
   PenButtons buttons;
 };
 
-// Frame group. False: nothing is published and the tick group goes on from older estimates.
-//   hold_last  each tool stands still where it was last, no longer called measured
-//   predict    each tool goes on at its last velocity, no longer called measured
-//   stop_safe  each tool is lost until a frame is in time again
+// Frame group. Returns false if nothing is published; the tick group then uses older estimates.
+//   hold_last  each tool stays at its last pose, no longer `measured`
+//   predict    each tool continues at its last velocity, no longer `measured`
+//   stop_safe  each tool is lost until a frame meets its deadline again
 [[nodiscard]] bool substitute(graph::OverrunPolicy policy, const OverrunFrame& frame,
                               const Estimates& in_time, Estimates& out) noexcept;
 
-// Tick group. False: nothing leaves at this tick.
-//   hold_last  the samples of the last tick that was in time, older by now and predicted
-//   predict    the same, moved on to this tick by their velocities
+// Tick group. Returns false if nothing is published at this tick.
+//   hold_last  the samples of the last timely tick, with their present age, as `predicted`
+//   predict    the same, extrapolated to this tick by their velocities
 //   stop_safe  each tool is lost at this tick
-// Whatever leaves says the buttons of this tick, also without a pose: they were known in time, and
-// a button that was let go must not stay held because a pose was late.
+// All samples carry the buttons of this tick, also without a pose: these were received in time. A
+// released button must not stay held because a pose was late.
 [[nodiscard]] bool substitute(graph::OverrunPolicy policy, const OverrunTick& tick,
                               const PoseSamples& in_time, PoseSamples& out) noexcept;
 

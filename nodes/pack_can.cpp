@@ -4,7 +4,7 @@
 
 namespace glint {
 
-// True once a period; a tick that skipped several makes up for none of them.
+// True once per period; periods missed by a skipped tick are not made up.
 bool PackCan::due(Time tick, Duration period, Time& next) const noexcept {
   if (tick < next) return false;
   next = tick + period;

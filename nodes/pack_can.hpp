@@ -1,9 +1,10 @@
-// The tick's CAN frames: every tool's pose, then the node's heartbeat, emergencies and time.
+// CAN frames of one tick: the pose of every tool, then the node's heartbeat, emergencies and time.
 //
-// The poses come first, since a controller waits for them. Heartbeat every 100 ms: the first one is
-// the boot-up message, later ones are operational while the frame group publishes estimates; an
-// emergency frame when a tool is lost and when it is found again, CanTSyn once a second. Time in
-// SYNC and follow-up is the tick's nominal release: the bus sees it as late as the tick itself is.
+// Poses come first, because a controller waits for them. Heartbeat every 100 ms: the first one is
+// the boot-up message, later ones are operational while the frame group publishes estimates. An
+// emergency frame is sent when a tool is lost and when it is found again, CanTSyn once a second.
+// The time in SYNC and follow-up is the tick's nominal release; it lags on the bus as much as the
+// tick.
 #pragma once
 
 #include <array>
@@ -24,12 +25,12 @@ struct PackCanSettings {
   unsigned node = 32;
   Duration heartbeat_period = milliseconds(100);
   Duration time_sync_period = milliseconds(1000);
-  // Without a newer frame for longer than this the node is pre-operational: no camera, or a frame
-  // thread that hangs. Two periods of 5 Hz, the slowest camera, and a half.
+  // Longest time without a new frame before the node is pre-operational (no camera, or a blocked
+  // frame thread): 2.5 periods of 5 Hz, the slowest camera.
   Duration frames_lost_after = milliseconds(500);
 };
 
-// Worst input: every tool is found again, with a pose, in the tick in which heartbeat and time are
+// Worst input: every tool is found again with a pose, in a tick in which heartbeat and time are
 // due.
 struct PackCan {
   static constexpr std::array<std::string_view, 4> k_loops = {"call", "poses", "emergencies",

@@ -13,8 +13,8 @@ std::span<T> first(std::array<T, k_tools_max>& all, int count) {
   return {all.data(), static_cast<std::size_t>(count)};
 }
 
-// Why a tool that was not found may lie where nothing was searched; none: it was searched for
-// everywhere. Near a prediction blobs are kept in any case, runs are not.
+// Reason why the search may have missed a tool: the budget left a part of the frame unsearched.
+// none: the whole frame was searched. Near a prediction blobs are always kept, runs are not.
 Reason left_unsearched(const Markers& markers, const Predictions& predictions,
                        const Prediction& prediction, const Labelings& labelings) {
   const bool missed =
@@ -43,8 +43,8 @@ void Correspond::operator()(const FrameVerdict& verdict, const Markers& markers,
   CorrespondSettings gated = settings;
   gated.markers_max = limits.blobs;
   gated.search_steps_max = 0;
-  // Never narrower gates than the declared noise's: residuals do not show how far a marker may be
-  // off that strays or a hand half hide.
+  // Gates are never narrower than for the declared noise: residuals do not show the error of a
+  // marker that is partially occluded or merged with a stray reflection.
   const double noisier =
       predictions.noise.known ? predictions.noise.range_sigma_m / settings.range_sigma_m : 1;
   if (noisier > 1) {
@@ -111,7 +111,7 @@ void AssignMarkers::operator()(const FrameVerdict& verdict, const graph::Latest<
         rival_of(per_tool_[i], chosen_[i], t, owners_, tools.value().items[i].tip_m, tests);
     if (rival < 0) continue;
     assignment.rival[i] = per_tool_[i].items[static_cast<std::size_t>(rival)];
-    own(assignment.rival[i], t, owners_);  // RefinePose may prefer it
+    own(assignment.rival[i], t, owners_);  // RefinePose may select it
   }
   counts_ = {{1, count, work.rounds, tests}};
 }

@@ -1,5 +1,5 @@
-// The nodes from candidate markers to which are whose. By tool: slice i of n takes the tools whose
-// number leaves i when divided by n, so that the split is a constant of the graph.
+// Nodes for marker correspondence and assignment to tools. Partition i of n takes the tools with
+// index modulo n = i, so that the split is a constant of the graph.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@
 
 namespace glint {
 
-// The labelings that each tool of this slice could have. What a tool leaves of its steps the next
-// ones of the slice may use.
+// Candidate labelings of each tool of this partition. Search steps that a tool does not use are
+// available to the next tools of the partition.
 struct Correspond {
   static constexpr std::array<std::string_view, 8> k_loops = {
       "call",       "tools",         "markers", "pairs",
@@ -51,10 +51,10 @@ struct Correspond {
 
 static_assert(graph::Budgeted<Correspond, Limits>);
 
-// Gives each marker to at most one tool, in one fixed order.
+// Assigns each marker to at most one tool, in a fixed order.
 struct AssignMarkers {
   static constexpr std::array<std::string_view, 4> k_loops = {"call", "tools", "rounds", "tests"};
-  // Each round gives one tool its markers (assign.hpp counts the tests).
+  // Each round assigns the markers of one tool (assign.hpp counts the tests).
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {
     return {{1, limits.tools, limits.tools, assign_tests_worst(limits.tools)}};
   }
@@ -66,7 +66,7 @@ struct AssignMarkers {
                   Assignment& assignment) noexcept GLINT_NONBLOCKING;
 
  private:
-  std::array<Labelings, k_tools_max> per_tool_;  // the slices' answers, by tool
+  std::array<Labelings, k_tools_max> per_tool_;  // the partitions' results, by tool
   std::array<int, k_tools_max> chosen_{};
   MarkerOwners owners_{};
   graph::LoopCounts counts_;

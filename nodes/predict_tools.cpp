@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-// Moves a pose, its speeds and its covariances from base to the frame that `T_frame_base` leads to.
+// Transforms a pose, its velocities and its covariances from `base` to `frame`.
 void express(const Pose& T_frame_base, MovingPose& moving, Matrix6& covariance,
              Matrix6& systematic) {
   moving.pose = T_frame_base * moving.pose;

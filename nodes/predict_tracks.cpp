@@ -10,23 +10,24 @@
 namespace glint {
 namespace {
 
-// Widens the box of what is predicted by one marker with the tool's reach about it.
+// Extends the predicted bounding box by one marker, dilated by the tool's reach.
 void include(const CameraModel& camera, const Tool& tool, const Vector3& point,
              const Vector2& pixel, Prediction& prediction) {
   const double radius_px =
       camera.fx * (prediction.reach_m + 2 * tool.marker_radius_m) / std::max(point.z(), 0.05);
-  // Eigen's cwiseMin hands its packet's function on by a pointer, whose effects nobody can see.
+  // Not Eigen's cwiseMin: it passes a function pointer, whose effects the compiler cannot check.
   for (int axis = 0; axis < 2; ++axis) {
     prediction.low_px[axis] = std::min(prediction.low_px[axis], pixel[axis] - radius_px);
     prediction.high_px[axis] = std::max(prediction.high_px[axis], pixel[axis] + radius_px);
   }
 }
 
-// While parts of the frame are searched, every so many frames the whole of it is: what had too many
-// runs may be gone.
+// While only parts of the frame are searched, the whole frame is tried every k_whole_again frames:
+// the cause of the excess runs may be gone.
 constexpr std::uint32_t k_whole_again = 16;
 
-// Of its variance, what a walk that returns with this correlation moves by.
+// Variance of the change of a first-order Gauss-Markov process within a time, relative to its
+// stationary variance.
 double moved_share(double seconds, double correlation_s) {
   return correlation_s > 0 ? 2 * (1 - exponential(-seconds / correlation_s)) : 2.0;
 }
@@ -40,7 +41,7 @@ bool speed_is_known(const MotionState& motion, double sigma_m_s) {
 
 }  // namespace
 
-// T_camera_world: null without a head pose.
+// T_camera_world is null without a head pose.
 PredictTracks::Foretold PredictTracks::foretell(const Track& track, const Tool& tool, Time time,
                                                 const HeadAnchor& anchor,
                                                 const Pose* T_camera_world,
@@ -50,7 +51,7 @@ PredictTracks::Foretold PredictTracks::foretell(const Track& track, const Tool& 
   prediction.missed_last = !track.seen_now;
   prediction.follows_motion = !in_world || T_camera_world != nullptr;
   if (!prediction.follows_motion) {
-    prediction.T_camera_tool = track.T_camera_tool;  // held where the camera saw it
+    prediction.T_camera_tool = track.T_camera_tool;  // kept at its last pose in the camera frame
     return {};
   }
   ++counts_[2];
@@ -75,7 +76,7 @@ PredictTracks::Foretold PredictTracks::foretell(const Track& track, const Tool& 
   return foretold;
 }
 
-// As far as a hand moves in the world, and the world before the headset.
+// Bounded by the motion of a hand in the world and of the world relative to the headset.
 double PredictTracks::reach_of(const Prediction& prediction, const Tool& tool, int markers,
                                double seconds, const Foretold& foretold) const noexcept {
   const double half_jerk = 0.5 * settings.acceleration_max_m_s2;
@@ -98,7 +99,7 @@ void PredictTracks::operator()(const FrameVerdict& verdict, const HeadPose& head
                                const graph::Previous<Anchor>& anchor,
                                const graph::Previous<Estimates>& last,
                                Predictions& predictions) noexcept {
-  // As the frame before corrected it: this one's correction rests on what is yet to be found.
+  // Uses the previous frame's drift correction: this frame's depends on tools not yet detected.
   const Pose T_camera_world = anchor.value().state.corrected(head.T_world_camera).inverse();
   predictions.marker_count = 0;
   predictions.turn = verdict.accepted;

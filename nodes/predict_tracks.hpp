@@ -1,16 +1,15 @@
-// Predicts each tool into this frame, and how far it may be from there.
+// Predicts each tool's pose into this frame, with a search radius (reach).
 //
-// What:   the motion that the filter followed goes on to this frame's mid-exposure, mean and
-//         covariance in closed form (kernels/motion/predict_motion.hpp), and from the world into
-//         the camera, with what the headset's own error may have changed by since. The reach is
-//         k_reach_sigmas of the marker that is least sure, more after a measurement that was less
-//         like the foretold one than its covariance said; between what a hand at rest may set off
-//         by unforeseen and what any hand can do.
-// Cost:   a prediction for each tool; for each of its markers a covariance and a projection
-//         (through a lens table: up to lens_steps look-ups).
-// Worst:  all tools tracked, with the head's pose known. How sure a track is makes no difference.
-// Source: an Ornstein and Uhlenbeck walk moves by a variance of 2 (1 - exp(-t / tau)) of its own
-//         in the time t (1930); no eigenvalue is larger than the largest row sum (Gershgorin 1931).
+// What:   extrapolates the filtered motion to this frame's mid-exposure, mean and covariance in
+//         closed form (kernels/motion/predict_motion.hpp). Transforms it from the world to the
+//         camera and adds the change of the headset's error since then. The reach is k_reach_sigmas
+//         of the most uncertain marker, larger after a measurement with a large NIS. Its lower
+//         bound is the start of motion of a static hand, its upper bound the fastest hand motion.
+// Cost:   one prediction per tool; one covariance and one projection per marker (through a lens
+//         table: up to lens_steps look-ups).
+// Worst:  all tools tracked, with a valid head pose; independent of the covariances.
+// Source: an Ornstein-Uhlenbeck process changes by a variance of 2 (1 - exp(-t / tau)) of its own
+// in the time t (1930); no eigenvalue exceeds the largest row sum (Gershgorin 1931).
 #pragma once
 
 #include <array>
@@ -27,26 +26,28 @@
 
 namespace glint {
 
-// The gate only limits cost, the residual decides: wide enough that noise never reaches it.
+// The gate only limits cost; the residual test decides. It is so wide that noise never reaches it.
 inline constexpr double k_reach_sigmas = 8;
 
 struct ReachSettings {
   Duration lost_after = milliseconds(250);
-  // Beyond it speeds and accelerations say less than the last place: the tool is held there.
+  // Prediction horizon: beyond it the last position is better than extrapolation; the tool stays
+  // there.
   Duration horizon = milliseconds(60);
-  MotionSettings motion;            // as those that the tracks were followed with
-  double head_correlation_s = 0.4;  // of the headset's own error while it moves
-  // Three sigma of a marker's range, by which what is seen of it may lie beside it.
+  MotionSettings motion;            // as used by the motion filter
+  double head_correlation_s = 0.4;  // of the headset's localisation error while it moves
+  // Three sigma of a marker's range error.
   double floor_m = 0.0045;
-  // A hand that rests, and is known to, may set off: half its greatest acceleration times the gap
-  // squared. 30 m/s^2 is a brisk jerk of the wrist (TUM-VI room1 peaks below it). Not longer than
-  // start_max: one that has moved on for longer is seen to move.
+  // A static hand may start to move: half of this acceleration times the gap squared. 30 m/s^2 is a
+  // brisk wrist movement (TUM-VI room1 peaks below it). The time is bounded by start_max: a longer
+  // motion is visible to the filter.
   double acceleration_max_m_s2 = 30.0;
   Duration start_max = milliseconds(60);
-  // A speed this sure was seen; before that a hand's is taken to be twice as unsure. A tool found
-  // once may go faster than any hand: it is looked for everywhere until it is found again.
+  // Largest standard deviation of an estimated speed; the initial one is twice as large. A tool
+  // detected once may be faster than any hand: it is searched in the whole frame until it is
+  // detected again.
   double known_speed_m_s = 0.25;
-  // However unsure a track is, a hand is no faster and no further than this.
+  // Upper bound of the reach, whatever the covariance: no hand is faster or farther than this.
   double margin_m = 0.015;
   double speed_max_m_s = 1.0;
 };
@@ -70,8 +71,8 @@ struct PredictTracks {
 
  private:
   struct Foretold {
-    double held_back_m = 0;   // from where its motion would lead the tool
-    double head_sigma_m = 0;  // of the tool's place by the headset's error, an axis
+    double held_back_m = 0;   // distance from the extrapolated to the held position
+    double head_sigma_m = 0;  // of the tool's position by the headset's error, an axis
   };
   Foretold foretell(const Track& track, const Tool& tool, Time time, const HeadAnchor& anchor,
                     const Pose* T_camera_world, Prediction& prediction) noexcept GLINT_NONBLOCKING;

@@ -14,13 +14,13 @@
 namespace glint {
 namespace {
 
-// The labelled markers, weighed, and which of the tool's each is.
+// The labelled markers with their weights, and the index of each in the tool.
 struct SeenMarkers {
   std::array<WeightedMarker, k_markers_per_tool_max> items;
   std::array<MarkerVariance, k_markers_per_tool_max> variances;
   std::array<LocalRays, k_markers_per_tool_max> rays;
   std::array<int, k_markers_per_tool_max> of_tool{};
-  std::array<bool, k_markers_per_tool_max> whole{};  // neither merged nor partly hidden
+  std::array<bool, k_markers_per_tool_max> whole{};  // neither merged nor partially occluded
   std::size_t count = 0;
   bool have_images = true;
   Reason reason = Reason::none;
@@ -79,33 +79,34 @@ SeenMarkers weigh(const Tool& tool, int marker_count, const Markers& markers,
   return out;
 }
 
-// Markers that strays or a hand half hide are off by more than their noise, several at once, and
-// no fit without one of them helps. As long as four times the declared sigmas would do, the pose
-// counts with its covariance grown to what the residuals show (Birge 1932, The calculation of
-// errors by the method of least squares); a wrong name is off by far more.
+// Markers that are partially occluded or merged with stray reflections exceed their noise, often
+// several at once; removing one of them does not help. Up to four times the declared sigmas, the
+// pose is kept and its covariance scaled by the reduced chi-square (Birge 1932, The calculation of
+// errors by the method of least squares). A wrong labeling has far larger residuals.
 constexpr double k_noise_stretch_most = 16;
 
-// What three markers agree on, or what had to be forgiven to agree, may be strays: it counts only
-// where the followed motion explains it, too, and the less it was expected, the less it counts
-// (Birge again): strays that agree time after time would else lead the motion away with them.
+// Three markers, an inflated fit or a fit with a removed marker may agree by chance on stray
+// reflections. Such a pose counts only if it is consistent with the tracked motion; its covariance
+// grows with its squared Mahalanobis distance (Birge again). Otherwise stray reflections that agree
+// in successive frames would pull the track away.
 constexpr std::size_t k_agree_by_chance_most = 3;
 constexpr double k_surprise_usual = 6;
 constexpr double k_surprise_most = chi_square_limit(6);
 
-// Of chi-square, above the minima.
+// Chi-square barrier between the two minima of a flat tool, above which they are separate.
 constexpr double k_wall_least = 16;
 
-// Added to the chi-square of a reading that needs one marker left out.
+// Penalty on the chi-square of a pose hypothesis with one removed marker.
 constexpr double k_left_out_cost = chi_square_limit(3);
 
-// A labeling, its markers weighed, and its pose.
+// A labeling with its weighted markers and its pose.
 struct FittedLabeling {
   SeenMarkers seen;
   RefinedPose pose;
 };
 
-// Both minima, the better one first, with chi-square by the largest noise that there may be.
-// Returns how many there are.
+// Adds both minima as pose hypotheses, the better one first. Chi-square is divided by `doubt`, the
+// largest possible variance factor. Returns the number of hypotheses.
 std::size_t add_readings(const RefinedPose& pose, int labeling, double doubt,
                          std::span<PoseReading> out) {
   const double cost = pose.left_out >= 0 ? k_left_out_cost : 0;
@@ -172,7 +173,7 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
   const bool followed = prediction.follows_motion && !chosen.turned && !chosen.unexpected;
   const SeenMarkers kept = without(best.seen, pose.left_out);
   const std::span<const WeightedMarker> items = {kept.items.data(), kept.count};
-  // Where the noise bridges the wall between the two minima, the linear equations of the pose
+  // If the barrier between the two minima is within the noise, the linear equations at the pose
   // between them hold for both.
   Pose facing;
   NearPose between;
@@ -182,7 +183,8 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
     between = near_pose(items, facing, tool.tip_m);
     shallow = between.reason == Reason::none && between.chi_square - chi_square < k_wall_least;
   }
-  // Few markers may tell little of a turn, and their likeliest pose too much: agreed_pose.hpp.
+  // A rotation may be poorly observable; the fitted minimum then underestimates the covariance:
+  // agreed_pose.hpp.
   AgreedPose agreed;
   if (followed && shallow) {
     const NearPose of_middle = near_pose(items, facing, expected.reference_m);
@@ -205,7 +207,7 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
     counts_[4] += k_residual_steps * static_cast<int>(kept.count);
   }
   const Pose shown = shallow ? between.T_camera_tool : reading.T_camera_tool;
-  // A point without an image is another tracker's: of the camera's errors it has none.
+  // A point without an image comes from another tracker: camera errors do not apply.
   const Result<SystematicCovariance> systematic =
       systematic_covariance(items, {kept.rays.data(), kept.count}, shown, tool.middle_m(),
                             kept.have_images ? uncertainty : k_exact_camera, tool.marker_sigma_m);
@@ -214,16 +216,16 @@ void RefinePose::fit(const Tool& tool, const Markers& markers, const Labeling& l
   out.systematic = systematic.value;
   out.reason = systematic.reason;
   if (out.reason != Reason::none) return;
-  // By the chosen minimum, not the likelier of both.
+  // Tests the chosen minimum, not the likelier one of both.
   const bool explained = chi_square <= chi_square_limit(pose.degrees_of_freedom);
   const bool stretched = !explained && chi_square <= k_noise_stretch_most * pose.degrees_of_freedom;
   out.reason = explained || stretched ? Reason::none : Reason::bad_fit;
   if (out.reason != Reason::none) return;
   double growth = stretched ? chi_square / pose.degrees_of_freedom : 1.0;
   const bool weak = stretched || pose.left_out >= 0 || kept.whole_count() <= k_agree_by_chance_most;
-  // Markers and motion may each pass their own test and fail together. Four markers, of which some
-  // are half hidden, agree by chance as well: one frame of them does not end a motion whose odds
-  // are settled.
+  // Markers and motion may each pass their own test and fail the joint test. Four markers, some of
+  // them partially occluded, may also agree by chance: one such frame does not end a motion whose
+  // odds are settled.
   const bool contradicts =
       out.tells_near && !shallow &&
       agreed.chi_square > growth * chi_square_limit(3 * static_cast<int>(kept.count));

@@ -1,5 +1,5 @@
-// The weighted fit over the markers that each tool was given: its most likely pose, and how sure
-// that is. By tool, as Correspond: slice i of n takes the tools whose number leaves i.
+// Weighted pose fit of each tool's labelled markers: maximum-likelihood pose and its covariance.
+// Split by tool as Correspond: partition i of n takes the tools with index modulo n = i.
 #pragma once
 
 #include <array>
@@ -18,16 +18,17 @@
 
 namespace glint {
 
-// Of markers that lie where they were predicted three are enough.
+// Markers at their predicted positions: three are enough.
 inline constexpr int k_predicted_left_least = 3;
 
-// A pose that the noise does not explain, with any one marker left out or with all, is given with a
-// covariance grown to what its residuals show, and where four times the noise would not do either
-// it is none: its reason is bad_fit. So it is where three markers, or what was forgiven, put the
-// tool where its followed motion cannot have brought it. The mask names the markers that count.
+// If the fit fails the chi-square test with all markers and with any single marker removed, its
+// covariance is scaled by the reduced chi-square (Birge 1932), at most by 16. Above that the result
+// is `bad_fit`. `bad_fit` is also the result if a pose of three markers, or one with inflated
+// covariance or a removed marker, contradicts the tracked motion. The mask holds the markers used.
 // For three isolated markers or fewer the filter receives a measurement linearised at its
-// prediction; for a flat tool nearly face-on, one linearised face-on. The rival labeling is fitted,
-// too: choose_reading.hpp selects a reading and returns its odds against the others.
+// prediction; for a flat tool nearly face-on, one linearised face-on. The alternative labeling is
+// fitted, too: choose_reading.hpp selects a pose hypothesis and returns its odds against the
+// others.
 struct RefinePose {
   static constexpr std::array<std::string_view, 5> k_loops = {"call", "tools", "fits", "steps",
                                                               "marker_steps"};
@@ -42,10 +43,10 @@ struct RefinePose {
   }
   [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
 
-  RefineSettings settings;  // at most the default's steps are taken: worst() counts on these
-  MarkerNoise noise;        // declared: until residuals show it
+  RefineSettings settings;  // at most the default's steps are taken: worst() assumes these
+  MarkerNoise noise;        // declared noise, until residuals estimate it
   bool estimate_noise = true;
-  BiasCorrection correction;  // of every tool, where it holds; none unless a cell names one
+  BiasCorrection correction;  // of every tool, within its range; none unless a cell names one
   CameraUncertainty uncertainty;
   Limits limits;
   void operator()(const FrameVerdict& verdict, const Markers& markers,
@@ -54,17 +55,17 @@ struct RefinePose {
                   FittedTools& fitted) noexcept GLINT_NONBLOCKING;
 
  private:
-  // What the residuals of a pose cost, in steps of a fit, what two poses face-on do, and what the
-  // systematic covariance does.
+  // Cost in steps of a fit: of the residuals of a pose, of two face-on linearisations and of the
+  // systematic covariance.
   static constexpr int k_residual_steps = 5;
   static constexpr int k_systematic_steps = 5;
-  // What the markers tell a filter may be read a second time, near where the tool is expected; of
-  // the pose that stands the residuals are taken.
+  // The markers may be fitted once more near the prediction, for the filter. Residuals are computed
+  // for the chosen pose.
   [[nodiscard]] static constexpr RefineWork work_max(int markers) noexcept {
     constexpr RefineSettings k_most = {.markers_left_least = k_predicted_left_least};
     RefineWork work = refine_work_max(markers, k_most);
     work += {1, k_most.steps_max, k_most.steps_max * markers};
-    work += refine_work_max(markers, {.left_out_max = 0});  // the rival labeling's
+    work += refine_work_max(markers, {.left_out_max = 0});  // the alternative labeling's fit
     constexpr int k_more = k_residual_steps + k_systematic_steps;
     work += {0, k_more, k_more * markers};
     return work;

@@ -7,12 +7,12 @@
 namespace glint {
 namespace {
 
-// More than the filter foretold of the newest measurement, of so many numbers.
+// NIS of the newest measurement over its dimension, at least 1.
 double surprise_of(const FollowedTool& followed, double numbers) {
   return std::max(1.0, followed.motion.last_correction().chi_square / numbers);
 }
 
-// Of the tool's own frame.
+// Pose of the tool's own frame from that of its marker centroid.
 Pose pose_of(const MotionState& middle, const Tool& tool) {
   return {middle.pose.rotation, middle.pose * (-tool.middle_m())};
 }
@@ -50,7 +50,7 @@ void accept(const FittedTool& found, const FollowedTool& followed, const Tool& t
   track.correlated_covariance = followed.correlated_covariance;
 }
 
-// It is followed, so that time may make it sure, but not given out.
+// The tool is tracked, so that later frames may resolve it, but not published.
 void doubt(const FittedTool& found, const FollowedTool& followed, const Tool& tool,
            const FrameStamp& stamp, const AnchoredHead& anchored, Duration velocity_gap_max,
            Reason why, Track& track) {
@@ -60,7 +60,7 @@ void doubt(const FittedTool& found, const FollowedTool& followed, const Tool& to
   track.reason = why;
 }
 
-// What is known goes on, but is no measurement.
+// Updates the motion; the newest measured pose is kept.
 void move_on(const FollowedTool& followed, double numbers, Track& track) {
   track.motion = followed.estimate;
   track.noise = followed.noise;
@@ -68,7 +68,7 @@ void move_on(const FollowedTool& followed, double numbers, Track& track) {
   track.surprise = surprise_of(followed, numbers);
 }
 
-// One or two markers moved it on. The pose that stands is the filter's, for they give none.
+// Update by one or two markers. These give no pose of their own: the filter's is stored.
 void accept_few(const FollowedTool& followed, const Tool& tool, const FrameStamp& stamp,
                 const AnchoredHead& anchored, Track& track) {
   move_on(followed, 3, track);
@@ -86,7 +86,7 @@ void accept_few(const FollowedTool& followed, const Tool& tool, const FrameStamp
   if (head.valid) track.head_covariance = anchored.lasting_at(track.motion.pose.translation);
 }
 
-// The world turned out to lie elsewhere: what is known of the tool moves along.
+// The world frame was corrected after a gap: moves the track along.
 void move(const AnchoredHead& anchored, Track& track) {
   track.newest.pose = anchored.moved * track.newest.pose;
   track.previous.pose = anchored.moved * track.previous.pose;
@@ -98,7 +98,7 @@ void restart(const Tool& tool, Track& track) {
   track.identity = tool.identity;
 }
 
-// Of a slot that was empty from the start nothing has changed.
+// A slot that was empty from the start has not changed.
 void exchange(const Tool& tool, Track& track) {
   const bool first = track.identity == 0 && track.reason == Reason::no_frame_yet;
   restart(tool, track);
@@ -115,8 +115,8 @@ void TrackTools::operator()(const FrameVerdict& verdict, const Anchor& anchor,
   const ToolSet& set = tools.value();
   const int count = tools_within(set, limits);
   counts_ = {{1, count}};
-  // Beyond those that this token held before all is clear; to clear it again would cost more than
-  // to track a tool.
+  // Tracks beyond this token's last tool_count are clear; clearing them again would cost more than
+  // tracking a tool.
   for (int t = count; t < std::min(estimates.tool_count, k_tools_max); ++t) {
     estimates.tracks[t] = Track{};
     estimates.tips[t] = {};
@@ -133,14 +133,14 @@ void TrackTools::operator()(const FrameVerdict& verdict, const Anchor& anchor,
     track = last.value().tracks[t];
     if (track.identity != shape.identity) exchange(shape, track);
     if (!shape.present()) continue;
-    if (!verdict.usable()) continue;  // a refused frame changes nothing that is known of a tool
+    if (!verdict.usable()) continue;  // a rejected frame leaves the track unchanged
     if (verdict.resynchronised) restart(shape, track);
     if (anchor.now.moved_along && track.base == ReferenceFrame::world) move(anchor.now, track);
 
     const FollowedTool& tool = followed[t % k_tool_slices].items[t / k_tool_slices];
     const FittedTool& found = fitted[t % k_tool_slices].tools[t];
     if (tool.reason == Reason::none) track.odds = found.odds;
-    // Of an imprecise pose, too: too large an estimate would else keep every pose imprecise.
+    // Imprecise poses count, too: otherwise a too large estimate would keep every pose imprecise.
     if (tool.reason == Reason::none && estimate_noise) add(found.residuals, noise, estimates.noise);
     if (tool.reason == Reason::none && tool.stands) {
       ++counts_[2];

@@ -1,7 +1,7 @@
-// Keeps what is known of each tool between frames: its newest pose, the one before, and until when
-// either may be used. The poses are kept in the world where the headset knew its own pose, because
-// there the head's motion does not disturb the pen's; otherwise in the camera's frame.
-// Cost: one pass over the tools. Worst input: all found, and the head's pose known.
+// Track management: keeps each tool's newest pose, the previous one and their validity between
+// frames. Poses are stored in the world if the head pose was valid, because the head's motion does
+// not disturb the pen's there; otherwise in the camera frame.
+// Cost: one pass over the tools. Worst input: all found, with a valid head pose.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace glint {
 
 struct TrackSettings {
   Duration lost_after = milliseconds(250);
-  // Two poses further apart than this give no velocity worth extrapolating.
+  // Two poses with a longer gap give no velocity for extrapolation.
   Duration velocity_gap_max = milliseconds(120);
 };
 
@@ -29,7 +29,7 @@ struct TrackTools {
   [[nodiscard]] graph::LoopCounts counts() const noexcept { return counts_; }
 
   TrackSettings settings;
-  MarkerNoise noise;  // declared: where the estimate begins
+  MarkerNoise noise;  // declared: initial value of the estimate
   bool estimate_noise = true;
   Limits limits;
   void operator()(const FrameVerdict& verdict, const Anchor& anchor,
@@ -45,8 +45,8 @@ struct TrackTools {
 
 static_assert(graph::Budgeted<TrackTools, Limits>);
 
-// Of the pose that a frame gave, the fit's or the filter's, systematic part included: of the tip,
-// about the camera's axes.
+// Covariance of a frame's published pose (the fit's or the filter's), systematic part included: of
+// the tip, about the camera's axes.
 [[nodiscard]] Matrix6 tip_covariance(const Track& track, const FittedTool& found,
                                      const TipPlace& tip) noexcept;
 

@@ -1,4 +1,4 @@
-// The frame group: from a camera frame to what is known of every tool.
+// The frame group: tool poses from camera frames.
 //
 //   Frame ─► StampFrame ─► CheckFrame ─► PredictTracks ─► LocateRois ─► RoiThreshold x4 ─►
 //   FindBlobs
@@ -6,7 +6,7 @@
 //   AnchorHead ─► FollowMotion x4 ─► TrackTools ─► Estimates
 //                           ▲ PredictTracks and TrackTools read Previous<Estimates>
 //
-// MarkerTracker is the same from BackProject's output on: recordings without images feed it.
+// MarkerTracker is the same graph from BackProject's output on, for recordings without images.
 #pragma once
 
 #include "graph/graph.hpp"
