@@ -7,7 +7,7 @@
 // Cost:     one pass over k_tools_max tools, each at most one extrapolation.
 // Worst:    predict, all tools alive.
 // Accuracy: predict assumes constant velocity (kernels/motion/interpolate.hpp), hold_last no
-// motion.
+//           motion.
 #pragma once
 
 #include "graph/overrun.hpp"

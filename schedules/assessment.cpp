@@ -14,7 +14,7 @@ std::string in_us(std::int64_t ns) {
   return text;
 }
 
-// Where one of several is late, or has no bound at all.
+// Adds a line if a bound is missing or exceeds its deadline.
 void judge(std::vector<std::string>& fails, const std::string& name,
            const std::optional<std::int64_t>& found, std::int64_t deadline) {
   if (found && *found <= deadline) return;
@@ -39,7 +39,7 @@ bool bounded(const std::vector<GroupResponse>& groups) {
                      [](const GroupResponse& group) { return group.response_ns.has_value(); });
 }
 
-// The slowest of our frames on the bus, from when it is queued; the shortest it could be.
+// Adds the slowest own pose frame: worst-case time from queueing to last bit, and its minimum.
 void add_bus(const Question& question, const Assessment& found, std::int64_t jitter_ns,
              ChainParts& parts) {
   for (std::size_t f = 0; f < question.frames.size(); ++f) {

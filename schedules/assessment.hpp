@@ -1,9 +1,9 @@
-// All of a plan at once: groups, bus, chains, and whether everything is in time.
+// Schedulability analysis of a whole schedule: groups, CAN bus, end-to-end chains, all deadlines.
 //
-// What:     the analyses of this folder in the order in which they need each other: responses of
-//           the groups, which are the jitter of what they send, which gives the bus, which ends the
-//           chains. Each response is computed with and without the operating system's share, so
-//           that bounds and estimates stay apart.
+// What:     runs the analyses of this folder in the order of their dependencies. A group's response
+//           is the release jitter of its CAN frames; the bus responses complete the chains. Each
+//           group response is computed with and without the operating system's share, so that
+//           bounds and estimates stay apart.
 // Cost:     two analyses of the groups, one of the bus.
 #pragma once
 
@@ -18,23 +18,23 @@
 
 namespace glint {
 
-inline constexpr int k_own_can_node = 0;  // CanMessage::node of what Glint sends itself
+inline constexpr int k_own_can_node = 0;  // CanMessage::node of Glint's own frames
 
 struct Question {
-  TaskModel model;  // groups: frame, tick, and what else there may be
+  TaskModel model;  // groups: frame, tick, then any others
   Plan plan;
   SensorTimes sensor;
-  std::vector<CanMessage> frames;  // own ones with their tick's gap; jitter is filled in
+  std::vector<CanMessage> frames;  // own frames have the tick's gap; assess() adds their jitter
   CanBitRates rates;
   std::int64_t frame_to_can_deadline_ns = 0;
   std::int64_t age_deadline_ns = 0;
 };
 
 struct Assessment {
-  std::vector<GroupResponse> groups;  // with the system's share
+  std::vector<GroupResponse> groups;  // with the operating system's share
   std::vector<CanResponse> can;       // in the order of Question::frames
   std::vector<Chain> chains;
-  std::vector<std::string> fails;  // one line each, with the figures
+  std::vector<std::string> fails;  // one line per missed deadline, with the values
   [[nodiscard]] bool holds() const { return fails.empty(); }
 };
 

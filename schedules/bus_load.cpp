@@ -10,7 +10,7 @@ constexpr double k_heartbeat_hz = 10;
 constexpr double k_time_pair_hz = 1;
 constexpr int k_classic_pose_frames = 5;
 
-// Five equal bits are followed by a stuff bit, which may begin the next five: 1 + (n - 1) / 4.
+// Five equal bits are followed by a stuff bit, which may start the next five: 1 + (n - 1) / 4.
 constexpr int stuff_bits(int bits) { return (bits - 1) / 4; }
 
 // Fields of a classic frame.

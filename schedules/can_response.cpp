@@ -45,7 +45,7 @@ class Bus {
   }
 
  private:
-  // Nobody has a bound on a bus on which one has none: its wait is jitter to the others.
+  // If one response is unbounded, all are: its queueing delay is jitter to the others.
   std::vector<CanResponse> unbounded() {
     for (CanResponse& result : results_) result.response_ns.reset();
     return results_;
@@ -55,12 +55,12 @@ class Bus {
     return messages_[a].fifo && messages_[b].fifo && messages_[a].node == messages_[b].node;
   }
 
-  // Frames that win against `level`; `but_not` and its queue are left out.
+  // Frames of a priority of at least `level`, without `but_not` and the frames of its queue.
   [[nodiscard]] std::vector<Interference> urgent_than(std::uint64_t level, std::size_t but_not,
                                                       std::int64_t early_ns) const {
     std::vector<Interference> urgent;
     for (std::size_t k = 0; k < messages_.size(); ++k) {
-      // An identifier that two nodes use, though it should not be, may win on either side.
+      // Two nodes may use the same identifier, against the rules; either may win.
       if (k == but_not || urgency_[k] < level || same_queue(k, but_not)) continue;
       urgent.push_back({results_[k].frame_ns, messages_[k].period_ns,
                         messages_[k].jitter_ns + results_[k].queued_ns + early_ns});
@@ -82,13 +82,13 @@ class Bus {
     CanResponse& result = results_[m];
     const std::int64_t frame = result.frame_ns;
     const std::int64_t block = blocking(urgency_[m], m);
-    // Eq. (10), the level-m busy period.
+    // Eq. (10): level-m busy period.
     std::vector<Interference> all = urgent_than(urgency_[m], m, 0);
     all.push_back({frame, own.period_ns, own.jitter_ns});
     const auto busy = busy_window(block, all, k_busy_period_max_ns, frame, steps_left_);
     if (!busy) return result.response_ns.reset();
     const std::int64_t last = detail::ceil_of_quotient(*busy + own.jitter_ns, own.period_ns);
-    // Eq. (11): a frame that is queued up to one bit after the bus went idle still takes part.
+    // Eq. (11): a frame queued up to one bit time after the bus became idle still takes part.
     const std::vector<Interference> urgent = urgent_than(urgency_[m], m, bit_ns_);
     std::int64_t window = 0, worst = 0;
     for (std::int64_t q = 0; q < last; ++q) {
@@ -136,8 +136,7 @@ class Bus {
     result.queued_ns = std::max(result.queued_ns, waited);
   }
 
-  // The moments in a busy period at which the queue may grow: between them a later frame only waits
-  // for less.
+  // Times in a busy period at which the queue may grow; between them a later frame waits less.
   [[nodiscard]] std::set<std::int64_t> arrivals(const std::vector<std::size_t>& queue,
                                                 std::int64_t busy) const {
     std::set<std::int64_t> moments{0};
@@ -179,7 +178,7 @@ double load_of(const std::vector<CanMessage>& messages, const CanBitRates& rates
 
 std::vector<CanResponse> can_responses(const std::vector<CanMessage>& messages,
                                        const CanBitRates& rates) {
-  // Above full load every fixed point runs to its limit, and there is nothing to be found there.
+  // Above full load no fixed point converges.
   if (load_of(messages, rates) > 1) {
     std::vector<CanResponse> none(messages.size());
     for (std::size_t m = 0; m < none.size(); ++m)

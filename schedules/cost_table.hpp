@@ -1,10 +1,11 @@
-// What a loop costs on a board, and so what a node may need there at worst.
+// Cost table of a board: cost per loop iteration, and the worst-case execution time (WCET) bound of
+// a node.
 //
 // What:     bound = sum over the node's loops of count_max x cost (Li and Malik 1995, eq. (1), with
 //           the counts' maxima in place of flow facts).
 // Cost:     k_loops_max products a node; constexpr.
-// Accuracy: rounded up to whole nanoseconds. It is as good as the table: whoever made the table
-//           says how in the board file, and the bound names the table by its hash.
+// Accuracy: rounded up to whole nanoseconds. As good as the table: the board file states how it was
+//           made, and the bound identifies the table by its hash.
 #pragma once
 
 #include <array>
@@ -16,18 +17,17 @@
 
 namespace glint {
 
-// One kernel's costs, loop by loop in the order of its node's k_loops, in picoseconds a count.
+// Costs of one kernel, in the order of its node's k_loops, in picoseconds per iteration.
 struct KernelCost {
   std::string_view kernel;  // its node's name: "FindBlobs"
   std::array<std::string_view, graph::k_loops_max> loops{};
   std::array<std::int64_t, graph::k_loops_max> cost_ps{};
 };
 
-// A board's costs. A table made at compile time by the generator, or views into a board file read
-// at run time.
+// Costs of a board: generated at compile time, or views into a board file read at run time.
 struct CostTable {
   std::string_view board;
-  std::string_view build;   // compiler, its version and the flags that the costs hold for
+  std::string_view build;   // compiler, version and flags for which the costs hold
   std::string_view sha256;  // of the board file
   std::span<const KernelCost> kernels;
 

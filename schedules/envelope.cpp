@@ -12,7 +12,7 @@ constexpr double k_tolerance = 1e-9;  // of quantities scaled to about 1
 using Row = std::array<double, k_rows>;
 
 // The dual: maximise y . l  subject to  sum_i n_i l_i <= w,  l >= 0. Its columns are the calls and
-// one slack a loop; its multipliers are the costs that we want, feasible once no column improves.
+// one slack variable per loop. Its multipliers are the costs, feasible once no column improves.
 class DualSimplexTable {
  public:
   explicit DualSimplexTable(const EnvelopeProblem& problem) : problem_(problem) {
@@ -45,7 +45,7 @@ class DualSimplexTable {
       if (entering < 0) return EnvelopeFault::none;
       const Row direction = times_inverse(column(entering));
       const int leaving = row_that_blocks(direction);
-      // A call whose counts are all zero but that costs something: no cost a count can cover it.
+      // A call with cost but without any count: no cost per count can cover it.
       if (leaving < 0) return EnvelopeFault::cost_without_counts;
       const auto row = static_cast<std::size_t>(leaving);
       stalls = value_[row] / direction[row] > k_tolerance ? 0 : stalls + 1;
@@ -122,7 +122,7 @@ class DualSimplexTable {
     }
     return result;
   }
-  // The ratio test; of rows that tie, the one of the smallest column number (Bland).
+  // Ratio test; ties are broken by the smallest column index (Bland).
   [[nodiscard]] int row_that_blocks(const Row& direction) const {
     int best = -1;
     double least = 0;

@@ -1,12 +1,13 @@
-// Costs a count that no observed call exceeds, and that make the bound as small as that allows.
+// Upper envelope of observed execution costs: costs per loop iteration that no observed call
+// exceeds, with the smallest bound (linear programming).
 //
 // What:     minimise w . c  subject to  n_i . c >= y_i for every observed call i,  c >= 0
-//           where n_i are the loop counts of call i, y_i what it cost, and w the counts whose bound
-//           matters. Then every cost is widened by a declared margin.
+//           with n_i the loop counts of call i, y_i its cost, and w the counts whose bound is to be
+//           small. Then a declared margin is added to every cost.
 // Cost:     the dual has one row a loop: at most k_pivots_max pivots, each one pass over the calls
-//           and k_loops_max^2 products. Made on a desktop, never on the run path.
-// Worst:    calls that tie, so that pivots gain nothing: after k_stalls_max of them Bland's rule.
-// Accuracy: every constraint holds in the result to its last bit: what rounding leaves is lifted.
+//           and k_loops_max^2 products. Runs on a desktop, never on the run path.
+// Worst:    degenerate pivots without progress: after k_stalls_max of them Bland's rule.
+// Accuracy: every constraint holds exactly: rounding errors are removed by scaling the costs up.
 // Source:   Dantzig, Orden, Wolfe 1955 (revised simplex, explicit inverse); Bland 1977, rule I.
 #pragma once
 
@@ -29,15 +30,15 @@ struct ObservedCall {
 
 using LoopWeights = std::array<double, graph::k_loops_max>;
 
-// A size of problem: what its loops do at most, and the dearest call seen of it.
+// A problem size: its maximum loop counts, and its most expensive observed call.
 struct ProblemSize {
   graph::LoopCounts maximum;
   double dearest = 0;
 };
 
-// Weights that ask for a small ratio of bound to dearest call at each size, so that a small problem
-// counts as much as a large one, and, as strongly as at one of them, at the calls on average:
-// without the latter all cost would go to the loop that always runs.
+// Weights that minimise the ratio of the bound to the most expensive call, equally at each size, so
+// that a small problem counts as much as a large one. The average call has the weight of one size:
+// without it the loop that always runs would receive all cost.
 [[nodiscard]] LoopWeights balanced_weights(std::span<const ObservedCall> calls,
                                            std::span<const ProblemSize> sizes);
 
@@ -45,7 +46,7 @@ struct EnvelopeProblem {
   std::span<const ObservedCall> calls;
   LoopWeights weight{};  // w: counts whose bound is minimised
   int loops = 1;         // at most k_loops_max
-  double margin = 0.05;  // 0.05: every cost 5 % up
+  double margin = 0.05;  // 0.05: every cost is increased by 5 %
 };
 
 enum class EnvelopeFault : std::uint8_t { none, no_calls, cost_without_counts, pivots_exhausted };
@@ -62,11 +63,11 @@ struct Envelope {
 
 [[nodiscard]] double cost_of(const Envelope& envelope, const graph::LoopCounts& counts);
 
-// How an envelope does on calls: how many cost more than it says, and the largest excess.
+// Validation of an envelope: number of calls above it, and the largest excess.
 struct EnvelopeJudgement {
   std::int64_t calls = 0;
   std::int64_t above = 0;
-  double worst_excess_percent = 0;  // of what the envelope says; 0: none is above
+  double worst_excess_percent = 0;  // relative to the envelope; 0: no call is above
 };
 [[nodiscard]] EnvelopeJudgement judge(const Envelope& envelope,
                                       std::span<const ObservedCall> calls);

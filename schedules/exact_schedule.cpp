@@ -45,15 +45,15 @@ class Search {
   ExactSchedule run() {
     best_.least_possible_ns = least();
     if (best_.makespan_ns > best_.least_possible_ns) extend(0, 0, 0);
-    // Within the limit every sequence was tried or shown to be no better.
+    // Below the limit every sequence was searched or pruned.
     best_.optimal = best_.searched < nodes_max_ || best_.makespan_ns == best_.least_possible_ns;
     if (best_.optimal) best_.least_possible_ns = best_.makespan_ns;
     return best_;
   }
 
  private:
-  // Copies that take the same, read the same and are read by the same nodes: only the order in
-  // which they stand is tried. twin_[n] is the one that has to be placed before n.
+  // Interchangeable copies (equal bound, predecessors and readers): only one order is searched.
+  // twin_[n] must be placed before n.
   void find_twins() {
     const std::size_t count = group_.nodes.size();
     const auto readers = [&](std::size_t n) {
@@ -95,7 +95,7 @@ class Search {
     return start;
   }
 
-  // No completion of the sequence so far ends before this.
+  // Lower bound on the makespan of any completion of the partial sequence.
   std::int64_t completion_bound(std::int64_t last_start, std::int64_t longest_end) {
     std::int64_t bound = longest_end, busy = work_left_;
     const std::int64_t first_free =
@@ -142,7 +142,7 @@ class Search {
           untouched_tried = true;
         }
         const std::int64_t start = start_on(n, core);
-        if (start < last_start) continue;  // another sequence has this schedule
+        if (start < last_start) continue;  // another sequence yields this schedule
         place(n, core, start, placed, longest_end);
       }
     }

@@ -1,4 +1,4 @@
-// Whether chains meet their deadlines on a board, asked of the compiler.
+// Compile-time schedulability test: do all chains meet their deadlines on a board?
 //
 //   struct FrameChain {                      // the chain's name in the message
 //     using Graph = Tracker;
@@ -7,13 +7,13 @@
 //   };
 //   static_assert(fits<board::k_table, Limits{}, TickChain, FrameChain>);
 //
-// What:     chains of one core, the most urgent first; each runs its nodes in the graph's order, at
-//           their bounds, and is preempted by those before it. A chain that is late is a compile
-//           error that names it, the node in which its deadline passes, and by how many nanoseconds
-//           its end is late: ChainMissesDeadline<FrameChain, FindBlobs, 12345, false>.
+// What:     chains on one core, in order of decreasing priority. Each runs its nodes in the graph's
+//           order, at their bounds, and is preempted by the chains before it. A missed deadline is
+//           a compile error that names the chain, the node in which the deadline passes, and the
+//           overshoot in nanoseconds: ChainMissesDeadline<FrameChain, FindBlobs, 12345, false>.
 // Cost:     none at run time.
-// Accuracy: that of response_time.hpp. The system's share is not in it (it is an estimate), nor
-//           are other cores; `glint budget check` adds them.
+// Accuracy: as response_time.hpp. Excludes the operating system's share (an estimate) and other
+//           cores; `glint budget check` adds them.
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ struct NodeWithoutCost {
 
 namespace detail {
 
-// The listed node that a number in the order of execution belongs to.
+// Index of the listed node that contains this node of the execution order.
 template <class Wires>
 [[nodiscard]] consteval int unit_of(int node) {
   for (int unit = 0; unit < Wires::unit_count; ++unit) {
@@ -53,7 +53,7 @@ template <class Wires, int node>
 using NodeAt = typename graph::Unit<graph::At<unit_of<Wires>(node), typename Wires::Listed>>::Node;
 
 struct ChainEnd {
-  int late_node = -1;  // the first one whose end may be after the deadline
+  int late_node = -1;  // the first node that may end after the deadline
   std::int64_t overshoot_ns = 0;
 };
 
@@ -92,7 +92,7 @@ template <const CostTable& table, Limits limits, class G>
   return sum;
 }
 
-// One chain beneath those that come before it in the list.
+// One chain, preempted by all chains before it in the list.
 template <const CostTable& table, Limits limits, class Chain, class... Urgent>
 [[nodiscard]] consteval bool check_chain(graph::TypeList<Urgent...> /*urgent*/) {
   using G = typename Chain::Graph;

@@ -16,7 +16,7 @@ std::int64_t writes_ns(const TaskModel& model, const TaskGroup& group) {
   return group.can_writes * model.system.can_write_ns;
 }
 
-// How long one activation may hold a core that it uses.
+// Longest time that one activation occupies a core that it uses.
 std::int64_t held_ns(const TaskModel& model, const TaskGroup& group, const GroupResponse& of) {
   if (of.times.cores_used > 1) return *of.response_ns - of.jitter_ns;
   return of.times.makespan_ns + writes_ns(model, group);
@@ -73,7 +73,7 @@ std::vector<GroupResponse> group_responses(const TaskModel& model, const Plan& p
       own.blocking_ns += slice;
     }
     if (starved) continue;
-    // The first worker wakes at the release and wakes the others.
+    // The first worker wakes up at the release and then wakes the others.
     const int wake_ups = own.times.cores_used > 1 ? 2 : 1;
     const std::int64_t cost = own.times.makespan_ns + writes_ns(model, model.groups[g]) +
                               wake_ups * model.system.wake_up_ns;

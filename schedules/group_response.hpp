@@ -1,17 +1,17 @@
-// How late each group of a plan may be done: its makespan, and what may be put before it.
+// Worst-case response time of each group of a schedule: makespan, blocking and preemption.
 //
-// What:     R = J + w, w = makespan + B + wake-ups + sum over more urgent groups and timer
+// What:     R = J + w, w = makespan + B + wake-ups + sum over higher-priority groups and timer
 //           interrupts, for each core that the group uses, of ceil((w + J_h) / T_h) C_h,core.
-// Why that is safe on several cores: a group's nodes keep fixed orders, so its end is a longest
-//           path through nodes (static_order.hpp). A preemption of length d on one core delays the
-//           one node that runs there by d and so any path by at most d; a preemption of a core that
-//           waits delays nothing. All preemptions of all used cores together therefore delay the
-//           end by at most their sum. A more urgent group that spans several cores holds each of
-//           them, waiting included, for no longer than its own response.
+// Proof:    holds on several cores: a group's nodes have fixed orders, so its end is a longest path
+//           through nodes (static_order.hpp). A preemption of length d delays only the node that
+//           runs on that core, so it delays any path by at most d. A preemption of an idle core
+//           delays nothing. All preemptions of all used cores together delay the end by at most
+//           their sum. A higher-priority group on several cores occupies each of them, waiting
+//           included, for at most its own response.
 // Accuracy: exact on one core for independent releases; an upper bound on several. B counts one
-//           slice of a less urgent group a core as if nothing could interrupt it: more than happens
-//           where a core preempts it at once.
-// Worst:    all more urgent releases together with the group's own.
+//           slice of a lower-priority group per core as non-preemptive: pessimistic where a core
+//           preempts it at once.
+// Worst:    all higher-priority releases coincide with the group's own.
 // Source:   response_time.hpp for the recurrence; the argument above is Glint's own.
 #pragma once
 
@@ -29,7 +29,7 @@ namespace glint {
 struct GroupResponse {
   std::string name;
   int priority = 0;
-  OrderTimes times;                         // undisturbed, every node at its bound
+  OrderTimes times;                         // without preemption, every node at its bound
   std::optional<std::int64_t> response_ns;  // from the nominal release; nothing: no bound exists
   std::int64_t blocking_ns = 0;
   std::int64_t jitter_ns = 0;
@@ -38,8 +38,8 @@ struct GroupResponse {
   [[nodiscard]] bool in_time() const { return response_ns && *response_ns <= deadline_ns; }
 };
 
-// In the order of the model's groups. Orders and priorities are the plan's, bounds and the system's
-// share the model's. The plan must have passed check_plan() but for its times.
+// In the order of the model's groups. Uses the plan's orders and priorities, the model's bounds and
+// system share. Requires a plan that passed check_plan(), except for its times.
 [[nodiscard]] std::vector<GroupResponse> group_responses(const TaskModel& model, const Plan& plan);
 
 }  // namespace glint

@@ -1,6 +1,6 @@
-// The kernels of some graphs and their loops, as a cost table has to name them.
+// Compile-time list of the kernels of some graphs and their loops, as a cost table must name them.
 //
-// What:  each node type once, in the order of execution, whatever the number of its copies.
+// What:  each node type once, in the order of execution, independent of its number of copies.
 // Cost:  none at run time; a node without a budget is a compile error that names it.
 #pragma once
 
@@ -40,7 +40,7 @@ template <class... Listed>
 
 }  // namespace detail
 
-// In the order in which the graphs list them; a node of two graphs stands there once for each.
+// In the order in which the graphs list them; a node of two graphs occurs once for each.
 template <class... G>
 inline constexpr auto kernels_of =
     detail::listed_loops(graph::Join<typename G::Wires::Listed...>{});

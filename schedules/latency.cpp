@@ -9,7 +9,7 @@ void add(Chain& chain, const char* name, StageKind kind, std::int64_t ns) {
   if (kind == StageKind::estimate) chain.estimate_ns += ns;
 }
 
-// A row of its own where there is anything: without a resumable group nothing blocks.
+// No stage of zero blocking: only a resumable group blocks.
 void add_blocking(Chain& chain, const char* name, const SharedResponse& response) {
   if (response.blocking_ns > 0) add(chain, name, StageKind::bound, response.blocking_ns);
 }

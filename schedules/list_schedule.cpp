@@ -6,7 +6,7 @@ namespace glint {
 
 std::vector<std::int64_t> levels_of(const TaskGroup& group) {
   std::vector<std::int64_t> level(group.nodes.size(), 0);
-  // Nodes stand in an order that respects `after`, so all readers come behind.
+  // Nodes are in topological order: all readers of a node follow it.
   for (std::size_t n = group.nodes.size(); n-- > 0;) {
     level[n] += group.nodes[n].bound_ns;
     for (const int before : group.nodes[n].after) {

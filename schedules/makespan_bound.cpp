@@ -7,7 +7,7 @@ namespace glint {
 Reach reach_of(const TaskGroup& group) {
   const std::size_t count = group.nodes.size();
   Reach reach(count, std::vector<bool>(count, false));
-  // Nodes stand in an order that respects `after`.
+  // Nodes are in topological order.
   for (std::size_t v = 0; v < count; ++v) {
     for (const int before : group.nodes[v].after) {
       const auto b = static_cast<std::size_t>(before);
@@ -44,7 +44,7 @@ std::vector<std::int64_t> tails_of(const TaskGroup& group, const Reach& reach, i
       after = std::max(after, least_between(between, cores, handover_ns) + tail[v]);
       work_after += group.nodes[v].bound_ns;
     }
-    // All that depends on u comes after it, and at the end nothing is handed back.
+    // All successors of u run after it, and no data is sent back at the end.
     after = std::max(after, (work_after + cores - 1) / cores);
     tail[u] = group.nodes[u].bound_ns + after;
   }

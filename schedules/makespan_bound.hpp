@@ -1,4 +1,4 @@
-// From below: how much time must pass from a node's start to the end of its group, on any schedule.
+// Lower bounds on the time from a node's start to the end of its group, for any schedule.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,15 @@
 
 namespace glint {
 
-// reach[u][v]: v needs, directly or not, what u makes.
+// reach[u][v]: v depends, directly or not, on the output of u.
 using Reach = std::vector<std::vector<bool>>;
 [[nodiscard]] Reach reach_of(const TaskGroup& group);
 
-// The least time between u's end and v's start that the work between them allows: `work_ns` on up
-// to `cores` cores, all but one of which pay two hand-overs.
+// Minimum time between u's end and v's start for the work between them: `work_ns` on up to `cores`
+// cores, all but one of which lose two inter-core delays.
 [[nodiscard]] std::int64_t least_between(std::int64_t work_ns, int cores, std::int64_t handover_ns);
 
-// By node, itself included. At least the plain longest path.
+// Per node, itself included. At least the longest path.
 [[nodiscard]] std::vector<std::int64_t> tails_of(const TaskGroup& group, const Reach& reach,
                                                  int cores, std::int64_t handover_ns);
 

@@ -1,9 +1,9 @@
-// What each node of a graph may need at worst on a board, under given limits.
+// Worst-case execution time bound of each node of a graph on a board, under given limits.
 //
 // What:     bound_ns of the node's declared loop maxima, for every copy of every node.
-// Cost:     k_loops_max products a node; constexpr, so that a build can be refused by it.
-// Accuracy: that of the table. A node that the table does not know has no bound: it is named by
-//           missing_cost, and asking for its bound all the same gives k_no_bound.
+// Cost:     k_loops_max products a node; constexpr, so that a build can fail on it.
+// Accuracy: as the table. A node without costs in the table has no bound: missing_cost names it,
+//           and its bound is k_no_bound.
 // Source:   Li and Malik 1995, eq. (1), as in cost_table.hpp.
 #pragma once
 
@@ -19,8 +19,8 @@ namespace glint {
 
 inline constexpr std::int64_t k_no_bound = -1;
 
-// Whether the costs are of these loops, in this order, and of no other that costs anything: a table
-// of an older kernel is not.
+// True if the costs are for exactly these loops, in this order. False for a table of an older
+// kernel.
 [[nodiscard]] constexpr bool costs_of(const KernelCost& cost, const KernelLoops& kernel) {
   for (std::size_t loop = 0; loop < graph::k_loops_max; ++loop) {
     if (loop >= kernel.loops.size()) {
@@ -32,7 +32,7 @@ inline constexpr std::int64_t k_no_bound = -1;
   return true;
 }
 
-// The first node whose loops the table does not price; empty: it prices all.
+// Name of the first node without costs in the table; empty if there is none.
 template <class... G>
 [[nodiscard]] constexpr std::string_view missing_cost(const CostTable& table) {
   for (const KernelLoops& kernel : kernels_of<G...>) {
@@ -42,7 +42,8 @@ template <class... G>
   return {};
 }
 
-// What one copy of a node does at most. A node whose copies differ says so by worst(limits, slice).
+// Maximum loop counts of one copy of a node. Nodes with different copies define worst(limits,
+// slice).
 template <class Node>
 [[nodiscard]] constexpr graph::LoopCounts worst_of(const Limits& limits, graph::Slice slice) {
   if constexpr (requires { Node::worst(limits, slice); }) {
@@ -52,7 +53,7 @@ template <class Node>
   }
 }
 
-// One node, or one copy of a split one, in nanoseconds.
+// WCET bound of one node, or of one copy of a split node, in nanoseconds.
 template <class Node>
 [[nodiscard]] constexpr std::int64_t node_bound(const CostTable& table, const Limits& limits,
                                                 graph::Slice slice = {}) {
@@ -62,7 +63,7 @@ template <class Node>
   return bound_ns(*cost, worst_of<Node>(limits, slice));
 }
 
-// By node number: the order of execution, each copy of a split by itself, as in
+// By node index in the order of execution, each copy of a split node separately, as in
 // graph::Description<G>::nodes.
 template <class G>
 [[nodiscard]] constexpr std::array<std::int64_t, static_cast<std::size_t>(G::node_count)>

@@ -15,7 +15,7 @@ std::vector<std::vector<int>> core_orders(const Plan& plan, int group) {
   for (const PlannedNode& node : plan.nodes) {
     if (node.group == group) nodes.push_back(node);
   }
-  // Nodes that start together, because one of them takes no time, keep the order they stand in.
+  // Nodes with equal start (one takes no time) keep their order in the plan.
   std::stable_sort(nodes.begin(), nodes.end(), [](const PlannedNode& a, const PlannedNode& b) {
     return a.start_ns < b.start_ns;
   });

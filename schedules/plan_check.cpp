@@ -64,7 +64,7 @@ class Checker {
     }
   }
 
-  // Every node once, on a core that there is, with the time that it may need.
+  // Every node occurs once, on an existing core, with at least its bound as time.
   bool check_places(std::size_t g) {
     place_.assign(model_.groups[g].nodes.size(), nullptr);
     const std::size_t faults_before = faults_.size();
@@ -131,7 +131,7 @@ class Checker {
     }
   }
 
-  // Where an activation may outlast the gap to the next one, edges would need a second buffer.
+  // An activation must end before the next release: each edge has one buffer only.
   void check_capacity() {
     for (int core = 0; core < plan_.cores; ++core) {
       double load = 0;

@@ -1,12 +1,12 @@
-// Judges a plan again from scratch, trusting nothing of what made it.
+// Independent verification of a schedule.
 //
-// What:     every node once and on a core that there is; what a core runs never overlaps; no node
-//           starts before the data it reads is there (and handed over, from another core); no node
-//           is given less time than its bound; at most one activation of a group is under way, so
-//           that one buffer for each edge and one for each group's input suffice; the bus can carry
-//           what is to be sent.
+// What:     every node occurs once, on an existing core; nodes on a core do not overlap; no node
+//           starts before its input data is available (after the inter-core delay, from another
+//           core); no node has less time than its bound; at most one activation of a group is
+//           active, so that one buffer per edge and one per group input suffice; the bus can carry
+//           the traffic.
 // Cost:     a few passes over nodes and edges.
-// Source:   the model's own definition; it shares no code with the synthesis.
+// Source:   the model's own definition; shares no code with the synthesis.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@
 
 namespace glint {
 
-// One line for each fault, naming group and node, what was found and what would fit. Empty: valid.
+// One line per fault: group and node, the value found and the value expected. Empty: valid.
 [[nodiscard]] std::vector<std::string> check_plan(const Plan& plan, const TaskModel& model);
 
 }  // namespace glint

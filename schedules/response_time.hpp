@@ -1,13 +1,13 @@
-// How long work of one priority may take when more urgent work takes the processor away from it.
+// Worst-case response time under preemptive fixed-priority scheduling (response-time analysis).
 //
-// What:     preemptive fixed priorities, any phasing, release jitter, blocking, and deadlines that
-//           may exceed the gap between releases. The q-th activation of a busy period ends at
-//             w_q = B + (q + 1) C + sum over more urgent j of ceil((w_q + J_j) / T_j) C_j
-//           after the busy period's begin, and R = max over q of J + w_q - q T.
-// Cost:     every step of the fixed point raises w by at least one more urgent activation; at most
-//           k_response_steps_max steps in all, then the answer is "unbounded". constexpr.
+// What:     any phasing, release jitter, blocking, and deadlines that may exceed the gap between
+//           releases. The q-th activation of a busy period ends at
+//             w_q = B + (q + 1) C + sum over higher-priority j of ceil((w_q + J_j) / T_j) C_j
+//           after the start of the busy period, and R = max over q of J + w_q - q T.
+// Cost:     every step of the fixed point raises w by at least one higher-priority activation; at
+//           most k_response_steps_max steps in all, then the result is "unbounded". constexpr.
 // Worst:    a load close to one.
-// Accuracy: exact for independent sporadic work on one core where all are released together.
+// Accuracy: exact for independent sporadic work on one core with simultaneous releases.
 // Source:   Joseph and Pandya 1986 and Audsley, Burns, Richardson, Tindell, Wellings 1993, eq. (1)
 //           (the recurrence); Tindell, Burns, Wellings 1994, eqs. (2) and (3) (busy period,
 //           jitter).
@@ -19,7 +19,7 @@
 
 namespace glint {
 
-// Work that preempts: `cost_ns` at each release, releases at least `gap_ns` apart, give or take
+// Preempting work: `cost_ns` per release, releases at least `gap_ns` apart, plus or minus
 // `jitter_ns`.
 struct Interference {
   std::int64_t cost_ns = 0;
@@ -27,7 +27,7 @@ struct Interference {
   std::int64_t jitter_ns = 0;
 };
 
-// Steps of all fixed points of one analysis, and the longest busy period that is looked at.
+// Maximum steps of all fixed points of one analysis, and the longest busy period analysed.
 inline constexpr int k_response_steps_max = 100'000;
 inline constexpr std::int64_t k_busy_period_max_ns = 100'000'000'000;  // 100 s
 
@@ -35,13 +35,13 @@ struct WorkUnderAnalysis {
   std::int64_t cost_ns = 0;
   std::int64_t gap_ns = 0;
   std::int64_t jitter_ns = 0;
-  std::int64_t blocking_ns = 0;  // the longest run of less urgent work that cannot be preempted
+  std::int64_t blocking_ns = 0;  // longest non-preemptive run of lower-priority work
 };
 
 struct ResponseTime {
   std::int64_t response_ns = 0;   // from the nominal release, jitter included
-  std::int64_t preempted_ns = 0;  // of it, taken by more urgent work
-  int activations = 0;            // of the busy period that was looked at
+  std::int64_t preempted_ns = 0;  // part of it: preemption by higher-priority work
+  int activations = 0;            // in the analysed busy period
 };
 
 namespace detail {
@@ -55,7 +55,7 @@ namespace detail {
   std::int64_t sum = 0;
   for (const Interference& i : urgent) {
     if (i.cost_ns <= 0) continue;
-    // A gap that nobody declared means: as often as can be. It never hides its cost.
+    // A gap that was not declared counts as 1 ns, so that the cost is never hidden.
     const std::int64_t gap = i.gap_ns > 0 ? i.gap_ns : 1;
     sum += ceil_of_quotient(window_ns + i.jitter_ns, gap) * i.cost_ns;
   }
@@ -64,8 +64,8 @@ namespace detail {
 
 }  // namespace detail
 
-// The least window that holds `base_ns` and all that preempts within it. `from_ns` is a lower bound
-// to start at. Nothing where it is longer than `limit_ns` or the steps are used up.
+// Smallest window that holds `base_ns` and all preemptions within it. The search starts at
+// `from_ns`, a lower bound. Returns nothing beyond `limit_ns` or if the steps are used up.
 [[nodiscard]] constexpr std::optional<std::int64_t> busy_window(
     std::int64_t base_ns, std::span<const Interference> urgent, std::int64_t limit_ns,
     std::int64_t from_ns, int& steps_left) {
@@ -79,7 +79,7 @@ namespace detail {
   return std::nullopt;
 }
 
-// Nothing where no bound was found: the load is too high, or the maxima above were reached.
+// Returns nothing if no bound was found: the load is too high, or a maximum above was reached.
 [[nodiscard]] constexpr std::optional<ResponseTime> response_time(
     const WorkUnderAnalysis& work, std::span<const Interference> urgent) {
   int steps_left = k_response_steps_max;
@@ -96,7 +96,7 @@ namespace detail {
       worst.response_ns = response;
       worst.preempted_ns = window - base;
     }
-    // The next activation comes after this one has ended: the busy period is over.
+    // The next release comes after the end of this activation: the busy period is over.
     if (work.gap_ns <= 0 || window + work.jitter_ns <= (q + 1) * work.gap_ns) return worst;
   }
   return std::nullopt;

@@ -21,7 +21,7 @@ TaskModel scaled(const TaskModel& model, double factor, const Grows& grows, bool
       group.nodes[n].bound_ns = grown(group.nodes[n].bound_ns, factor);
       ++changed;
     }
-    // A slice is made of these nodes: it grows with any of them, and shrinks only with all.
+    // A slice consists of these nodes: it grows with any of them, and shrinks only with all.
     if (factor > 1 ? changed > 0 : changed == group.nodes.size()) {
       group.longest_slice_ns = grown(group.longest_slice_ns, factor);
     }
@@ -41,7 +41,7 @@ std::optional<double> largest_factor(const std::function<bool(double)>& holds) {
   if (!holds(0)) return std::nullopt;
   double good = 0, bad = k_factor_max;
   for (int step = 0; step < k_bisection_steps && bad - good > 1e-4 * (good + 1e-3); ++step) {
-    // Most answers lie near 1: by the geometric middle once a good factor is known.
+    // Most factors are near 1: bisect by the geometric mean once a good factor is known.
     const double middle = good > 0 ? std::sqrt(good * bad) : bad > 1 ? 1 : bad / 2;
     (holds(middle) ? good : bad) = middle;
   }

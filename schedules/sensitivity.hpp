@@ -1,12 +1,13 @@
-// How much slower something may become before a deadline is missed.
+// Sensitivity analysis: largest growth of execution times without a missed deadline.
 //
-// What:     the largest factor on some of the nodes' bounds under which an assessment still holds,
-//           by bisection: bounds only ever grow with the factor, so what holds below it holds.
+// What:     the largest factor on the bounds of selected nodes under which the assessment still
+//           holds, by bisection. Responses are monotonic in the factor, so all smaller factors
+//           hold, too.
 // Cost:     at most k_bisection_steps assessments a question.
-// Accuracy: a ten-thousandth of the factor; the factor given is one that was seen to hold.
-// Worst:    nothing is ever missed: then k_factor_max is given.
+// Accuracy: a ten-thousandth of the factor; the returned factor was itself assessed.
+// Worst:    no deadline is ever missed: returns k_factor_max.
 // Source:   slack as in MAST 1.5 (Gonzalez Harbour et al. 2001): the percentage by which all
-//           execution times of a set may grow; for a set that misses a deadline it is negative.
+//           execution times of a set may grow; negative for a set that misses a deadline.
 #pragma once
 
 #include <functional>
@@ -19,21 +20,21 @@ namespace glint {
 inline constexpr int k_bisection_steps = 48;
 inline constexpr double k_factor_max = 1000;
 
-// Which nodes grow: by group and node index.
+// Predicate that selects the scaled nodes, by group and node index.
 using Grows = std::function<bool(std::size_t group, std::size_t node)>;
 
-// Every bound rounded up, the longest slice of a group that grows too. `system_too`: the operating
-// system's share grows alike, as by a slower clock.
+// Scales the bounds, rounded up, and the longest slice of a scaled group. `system_too`: also scales
+// the operating system's share, as for a slower clock.
 [[nodiscard]] TaskModel scaled(const TaskModel& model, double factor, const Grows& grows,
                                bool system_too = false);
 
-// Nothing where not even work that takes no time would be in time.
+// Returns nothing if the deadlines are missed even with a factor of 0.
 [[nodiscard]] std::optional<double> largest_factor(const std::function<bool(double)>& holds);
 
 [[nodiscard]] std::optional<double> largest_factor(const Question& question, const Grows& grows,
                                                    bool system_too = false);
 
-// 38.0: may grow by 38 %.
+// 38.0: execution times may grow by 38 %.
 [[nodiscard]] inline double slack_percent(double factor) { return 100 * (factor - 1); }
 
 }  // namespace glint

@@ -1,12 +1,12 @@
-// When each node of a group runs, given which core runs which nodes in which order.
+// Start and end times of the nodes of a group under a static order per core.
 //
-// What:     start = the latest of: the core's node before it has ended; each node whose data it
-//           reads has ended, a hand-over later where that was on another core. Longest path.
-// Cost:     O(nodes + edges), times the number of nodes where the orders are tangled.
-// Accuracy: exact for nodes that take their bound. Nodes that take less never end later: the
-//           length of a longest path never falls when one of its weights grows.
-// Source:   Graham 1969 shows why a *greedy* executor could end later with shorter nodes; fixed
-//           orders cannot, which is why the runtime keeps to them.
+// What:     start = the latest of: end of the previous node on the core; end of each predecessor,
+//           plus the inter-core delay if it ran on another core. Longest path.
+// Cost:     O(nodes + edges), times the number of nodes if the orders interleave.
+// Accuracy: exact for nodes that take their bound. Shorter nodes never end later: the length of a
+//           longest path never falls when a weight grows.
+// Source:   Graham 1969 shows that under a *greedy* executor shorter nodes may end later; under
+//           fixed orders they cannot, so the runtime uses fixed orders.
 #pragma once
 
 #include <cstdint>
@@ -19,13 +19,13 @@
 namespace glint {
 
 struct OrderTimes {
-  std::vector<std::int64_t> start_ns, end_ns;  // by the group's node index, from the release
+  std::vector<std::int64_t> start_ns, end_ns;  // by node index of the group, from the release
   std::vector<int> core;                       // -1: in no order
   std::int64_t makespan_ns = 0;
   int cores_used = 0;
 };
 
-// Nothing where the orders and the data wait for each other.
+// Returns nothing if the orders and the data dependencies form a cycle.
 [[nodiscard]] std::optional<OrderTimes> times_of(const TaskGroup& group,
                                                  const std::vector<std::vector<int>>& orders,
                                                  std::int64_t handover_ns);

@@ -13,7 +13,7 @@ namespace {
 
 using Placement = std::vector<CoreOrders>;  // by group
 
-// The group's first node on core 0: the worker that is released runs there.
+// Moves the group's first node to core 0, where the released worker runs.
 CoreOrders first_node_first(CoreOrders orders) {
   for (CoreOrders::iterator core = orders.begin(); core != orders.end(); ++core) {
     if (std::find(core->begin(), core->end(), 0) != core->end()) {
@@ -55,7 +55,7 @@ void assign_priorities(const TaskModel& model, Plan& plan) {
     if (first.resumable != second.resumable) return second.resumable;
     return first.deadline_ns < second.deadline_ns;
   });
-  // Until a level is given away, deadline monotonic.
+  // Groups without a final priority are deadline monotonic.
   const auto number = [&] {
     for (std::size_t rank = 0; rank < open.size(); ++rank) {
       plan.groups[open[rank]].priority =
@@ -83,7 +83,7 @@ void assign_priorities(const TaskModel& model, Plan& plan) {
   }
 }
 
-// Every group's response over its deadline, the largest first; what no bound exists for is worst.
+// Response over deadline of every group, in decreasing order; a missing bound is the maximum.
 std::vector<double> tightness(const TaskModel& model, const Plan& plan) {
   std::vector<double> shares;
   for (const GroupResponse& group : group_responses(model, plan)) {
@@ -102,7 +102,7 @@ Plan synthesize(const TaskModel& model, std::int64_t search_nodes_max) {
   std::vector<ExactSchedule> found;
   std::vector<std::size_t> movable;
   for (std::size_t g = 0; g < model.groups.size(); ++g) {
-    // What runs in slices has one thread.
+    // A resumable group has one thread.
     const int cores = model.groups[g].resumable ? 1 : model.cores;
     found.push_back(
         exact_schedule(model.groups[g], cores, model.system.core_handover_ns, search_nodes_max));
@@ -121,7 +121,7 @@ Plan synthesize(const TaskModel& model, std::int64_t search_nodes_max) {
     Placement placement = shortest;
     std::size_t rest = choice;
     for (const std::size_t g : movable) {
-      // The last core first: it is tried as the best while nothing is better.
+      // The last core first: it is kept if no other core is better.
       const std::size_t core =
           static_cast<std::size_t>(model.cores) - 1 - rest % static_cast<std::size_t>(model.cores);
       std::swap(placement[g][0], placement[g][core]);

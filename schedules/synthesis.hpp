@@ -1,13 +1,14 @@
-// A plan for all groups: who runs where, in which order, at which priority.
+// Schedule synthesis for all groups: allocation of nodes to cores, static orders and priorities.
 //
-// What:     each group alone gets the shortest makespan on the cores (exact_schedule.hpp); groups
-//           that use one core are then tried on every core, and the placement is kept whose
-//           tightest response is the best against its deadline, then the second tightest, and so
-//           on: a slice goes where it blocks least. Priorities after Audsley: from the least urgent
-//           up, each goes to the group with the longest deadline that still meets it below all
-//           others; where none does, to the longest deadline (deadline monotonic). A resumable
-//           group is given the lowest priority whatever its deadline.
-// Cost:     one search a group; (cores to the number of one-core groups) analyses, at most 64.
+// What:     each group alone gets the shortest makespan on the cores (exact_schedule.hpp). Groups
+//           on one core are then tried on every core. The best allocation minimises the largest
+//           ratio of response to deadline, then the second largest, and so on: a slice goes where
+//           it blocks least. Priorities after Audsley: from the lowest up, each goes to the group
+//           with the longest deadline that still meets it below all others. If none does, it goes
+//           to the longest deadline (deadline monotonic). A resumable group gets the lowest
+//           priority whatever its deadline.
+// Cost:     one search per group; (cores to the power of the number of one-core groups) analyses,
+//           at most 64.
 // Source:   Audsley 1991 (optimal priorities); Leung and Whitehead 1982 (deadline monotonic).
 #pragma once
 
@@ -17,16 +18,16 @@
 
 namespace glint {
 
-// SCHED_FIFO's scale, below the kernel's interrupt threads (50). The next group is three lower.
+// SCHED_FIFO scale, below the kernel's interrupt threads (50). Ranks are k_priority_step apart.
 inline constexpr int k_most_urgent_priority = 48;
 inline constexpr int k_priority_step = 3;
 inline constexpr int k_plan_cores_max = 4;
 
-// For model.cores cores, at most k_plan_cores_max. Signature, board and bus are left to the caller.
+// For model.cores cores, at most k_plan_cores_max. The caller sets signature, board and bus.
 [[nodiscard]] Plan synthesize(const TaskModel& model,
                               std::int64_t search_nodes_max = k_search_nodes_max);
 
-// The same plan with starts, ends and makespans of the model's bounds. Its orders must be possible.
+// The same plan with starts, ends and makespans from the model's bounds. Requires feasible orders.
 [[nodiscard]] Plan retimed(const Plan& plan, const TaskModel& model);
 
 }  // namespace glint
