@@ -9,7 +9,7 @@ namespace glint {
 
 std::optional<CanFrame> frame_of_socketcan(std::span<const std::uint8_t> bytes) {
   if (bytes.size() != CAN_MTU && bytes.size() != CANFD_MTU) return {};
-  canfd_frame raw{};  // a classic one has the same fields at the same places
+  canfd_frame raw{};  // a classic frame has the same fields at the same offsets
   std::memcpy(&raw, bytes.data(), bytes.size());
   if ((raw.can_id & (CAN_RTR_FLAG | CAN_ERR_FLAG)) != 0) return {};
   CanFrame frame;

@@ -1,10 +1,10 @@
-// The pen's buttons as a CAN frame says them: which are held, again and again or at each change.
+// Decoder of the pen's button frame on CAN: the buttons held, sent periodically or at each change.
 //
-//   identifier as the cell has it, 11 bits, classic or FD, one byte of data at least
+//   identifier as set in the cell, 11 bits, classic or FD, at least one byte of data
 //   byte 0    bit 0 draw | bit 1 delete_last | bit 2 undo | bit 3 finish; 1: held
-// What follows is not looked at, so that any digital input module serves that sends its inputs so:
-// CANopen's (CiA 401) do, inputs 1 to 8 in the first byte of 0x180 + node. Such modules add neither
-// counter nor checksum: none is asked for, and the bus' own checksum is what guards the frame.
+// Further bytes are ignored, so that any digital input module with this layout works. CANopen
+// modules (CiA 401) send inputs 1 to 8 in the first byte of 0x180 + node. Such modules add neither
+// counter nor checksum, so none is required: the bus' own checksum protects the frame.
 #pragma once
 
 #include <array>
@@ -20,14 +20,14 @@
 
 namespace glint {
 
-// A data frame as Linux hands it over (struct can_frame or canfd_frame). Nothing for another size,
-// a remote request, an error message, or a length that its kind of frame cannot have.
+// Decodes a data frame of Linux (struct can_frame or canfd_frame). Returns nothing for another
+// size, a remote request, an error message, or a length that is invalid for its kind of frame.
 [[nodiscard]] std::optional<CanFrame> frame_of_socketcan(std::span<const std::uint8_t> bytes);
 
 struct ButtonFrameCounts {
-  std::uint64_t heard = 0;     // frames that said which buttons are held
-  std::uint64_t refused = 0;   // frames that did not
-  std::uint64_t released = 0;  // buttons whose sender fell silent
+  std::uint64_t heard = 0;     // valid button frames
+  std::uint64_t refused = 0;   // all other frames
+  std::uint64_t released = 0;  // buttons released because their sender timed out
   [[nodiscard]] bool any() const { return heard + refused > 0; }
 };
 
@@ -35,15 +35,15 @@ class ButtonFrames {
  public:
   using OnButton = std::function<void(const ButtonEvent&)>;
 
-  // `on_button` may be empty; before the first frame no button is held.
+  // `on_button` may be empty; initially no button is held.
   ButtonFrames(std::uint32_t identifier, OnButton on_button, Duration timeout = k_button_timeout);
 
-  // From one thread: calls `on_button` for each button that this frame, arrived at that time, says
-  // to be otherwise than the last did. A frame that is none or no buttons' is refused.
+  // From one thread: calls `on_button` for each button whose state differs from the last frame's. A
+  // frame that is invalid, or not a button frame, is counted as refused.
   void hear(const std::optional<CanFrame>& frame, Time arrived);
 
-  // From the same thread: releases what is held if the last frame of buttons is older than the
-  // timeout, with an event at `now` for each.
+  // From the same thread: if the last button frame is older than the timeout, releases the held
+  // buttons, with one event at `now` for each.
   void release_if_silent(Time now);
 
   // From any thread.

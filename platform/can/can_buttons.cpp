@@ -19,7 +19,7 @@ namespace glint {
 namespace {
 
 constexpr Duration k_look_again = milliseconds(20);
-constexpr int k_takes_max = 256;                       // a wake-up
+constexpr int k_takes_max = 256;                       // per wake-up
 constexpr Duration k_wait_max = milliseconds(10'000);  // of a frame in the socket's queue
 constexpr std::string_view k_socketcan = "socketcan:";
 
@@ -33,7 +33,7 @@ Time unix_time() {
   return time_of(time);
 }
 
-// When the kernel received the message, by the Unix clock; `otherwise` if it has no stamp.
+// Time of reception by the kernel, Unix clock; `otherwise` if the message has no time stamp.
 Time unix_stamp(msghdr& message, Time otherwise) {
   for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr;
        part = CMSG_NXTHDR(&message, part)) {
@@ -84,13 +84,13 @@ int CanButtons::read(Duration limit) {
   while (ready && taken < k_takes_max && take()) ++taken;
   frames_.release_if_silent(board_now());
   if (!ready) return 0;
-  // An interface that went away is always ready, with nothing to take.
+  // The socket of a removed interface is always readable, without data.
   if (taken == 0) std::this_thread::sleep_for(std::chrono::nanoseconds(limit.nanoseconds));
   return taken;
 }
 
 bool CanButtons::take() {
-  std::array<std::uint8_t, CANFD_MTU + 1> bytes{};  // one more, so that what is longer shows
+  std::array<std::uint8_t, CANFD_MTU + 1> bytes{};  // one byte more, to detect longer frames
   alignas(cmsghdr) std::array<std::uint8_t, 256> control{};
   iovec part{bytes.data(), bytes.size()};
   msghdr message{};

@@ -1,4 +1,4 @@
-// Buttons that come over CAN, read by a thread of their own beside the run.
+// Receiver of button frames over CAN, in a thread of its own.
 #pragma once
 
 #include <atomic>
@@ -13,17 +13,18 @@
 
 namespace glint {
 
-// When a message arrived, on the board's clock: the kernel's stamp lies before `unix_now` by as
-// much as the arrival lies before `board_now`, both read together. If that is not between 0 and
-// 10 s, the Unix clock was set meanwhile and the arrival is now.
+// Arrival time of a message on the companion computer's clock: `board_now` minus the age of the
+// kernel's time stamp at `unix_now`, both read together. If the age is not between 0 and 10 s, the
+// Unix clock was set in between, and the result is `board_now`.
 [[nodiscard]] Time board_arrival(Time unix_stamp, Time unix_now, Time board_now) noexcept;
 
 class CanButtons {
  public:
-  // `socket` gives one frame a read, as a CAN socket does. Events are in the board's time:
-  // when the kernel received the frame, by its stamp, else when it was read. The Unix clock is
-  // read once, here: a later step of it moves no event. `on_button` is called from the reading
-  // thread, also with the release of a button whose sender has been silent for `timeout`.
+  // `socket` returns one frame per read, as a CAN socket does. Events carry the companion
+  // computer's time: of reception by the kernel if the frame has a time stamp, else of the read.
+  // The Unix clock is read only here: a later step of it shifts no event. `on_button` is called
+  // from the reading thread, also for the release of a button whose sender was silent for
+  // `timeout`.
   CanButtons(Descriptor socket, std::uint32_t identifier, Duration unix_minus_board,
              ButtonFrames::OnButton on_button, Duration timeout = k_button_timeout);
   ~CanButtons();  // stop()
@@ -32,8 +33,8 @@ class CanButtons {
 
   void start();
   void stop();
-  // Without a thread: waits for a frame, at most `limit`, and takes what is there, but never more
-  // than 256. Gives how many it took.
+  // Without a thread: waits for a frame, at most `limit`, and reads the pending frames, at most
+  // 256. Returns their number.
   int read(Duration limit);
 
   // From any thread.
@@ -50,7 +51,7 @@ class CanButtons {
   std::thread thread_;
 };
 
-// Of "socketcan:IF", started; null for a log, which nothing comes from. Throws as open_can_sink.
+// Opens and starts "socketcan:IF"; null for a log, which is write-only. Throws as open_can_sink.
 [[nodiscard]] std::unique_ptr<CanButtons> open_can_buttons(const std::string& specification,
                                                            std::uint32_t identifier,
                                                            Duration unix_minus_board,

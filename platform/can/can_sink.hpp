@@ -1,4 +1,4 @@
-// Where CAN frames go: a real bus or a log file, behind one call that neither blocks nor allocates.
+// Output of CAN frames to a bus or a log file; `send` neither blocks nor allocates.
 #pragma once
 
 #include <cstdint>
@@ -13,27 +13,27 @@
 namespace glint {
 
 struct CanSinkCounts {
-  std::uint64_t sent = 0;     // taken by the kernel, or written to the log
+  std::uint64_t sent = 0;     // accepted by the kernel, or written to the log
   std::uint64_t dropped = 0;  // the queue was full: the bus or the disk is too slow
-  std::uint64_t failed = 0;   // refused by the bus or the disk (down, disk full, no CAN FD)
+  std::uint64_t failed = 0;   // rejected by the bus or the disk (down, disk full, no CAN FD)
   int error = 0;              // errno of the first that failed
   [[nodiscard]] bool all_sent() const { return dropped == 0 && failed == 0; }
   [[nodiscard]] std::uint64_t lost() const { return dropped + failed; }
 };
 
-// At most so many frames that send() accepted are not yet counted as sent or failed.
+// Maximum number of frames that send() accepted and that are not yet counted as sent or failed.
 inline constexpr std::size_t k_can_in_flight_max = 16384 + 256;
 
 class CanSink {
  public:
   virtual ~CanSink() = default;
 
-  // From one thread. `time` is when the frame is sent, by the board's monotonic clock; a log writes
-  // it down, a bus has its own. What goes wrong is counted. False: the frame is lost. Of the frames
-  // accepted the first counts().sent have left: a log that has failed once writes no more.
+  // From one thread. `time` is the send time on the companion computer's monotonic clock; a log
+  // stores it, a bus ignores it. Errors are counted. Returns false if the frame is lost. Of the
+  // accepted frames the first counts().sent were sent: a log stops writing after its first error.
   virtual bool send(const CanFrame& frame, Time time) noexcept = 0;
 
-  // Returns when everything sent so far has left this process. May block: not for the hot path.
+  // Returns after all frames sent so far have left this process. May block: not for the hot path.
   virtual void flush() noexcept = 0;
 
   // From any thread.
@@ -42,15 +42,15 @@ class CanSink {
 
 struct CanSinkOptions {
   std::filesystem::path directory;        // relative log files go here
-  std::int64_t unix_offset_ns = 0;        // Unix time - the board's monotonic time, for the log
-  std::string log_interface = "can0";     // the bus that the log names
+  std::int64_t unix_offset_ns = 0;        // Unix time - monotonic time, for the log
+  std::string log_interface = "can0";     // interface name in the log
   CanFormat format = CanFormat::classic;  // fd: the interface must carry 64-byte frames
   WhenFull when_full = WhenFull::drop;
 };
 
 // "socketcan:IF" or "log:FILE" (candump -L format). Throws InputError for another specification or
-// a file that cannot be made, MissingDevice naming the interface that is not there, not up, not a
-// CAN interface or without CAN FD.
+// a file that cannot be created. Throws MissingDevice, with its name, for an interface that does
+// not exist, is down, is not CAN or has no CAN FD.
 [[nodiscard]] std::unique_ptr<CanSink> open_can_sink(const std::string& specification,
                                                      const CanSinkOptions& options = {});
 

@@ -15,7 +15,7 @@ constexpr unsigned k_fd_flag = 4;               // CANFD_FDF: set by Linux since
 constexpr int k_extended_digits = 8;
 constexpr int k_standard_digits = 3;
 
-// The whole of `text` as a number.
+// Parses all of `text` as a number.
 template <class Number>
 bool read(std::string_view text, Number& number, int base) {
   const char* const end = text.data() + text.size();

@@ -1,7 +1,7 @@
-// One line of a `candump -L` log: "(1700000000.123456) can0 1A0#663507E65A364586".
-// CAN FD: "1A8##5..." where the digit after ## holds Linux' flags (1: bit rate switch, 4: it is an
-// FD frame, set by kernels since 6.1; both are read). 29-bit identifiers have 8 digits. can-utils,
-// tshark, SavvyCAN and PlotJuggler read it.
+// Reads and writes lines of a `candump -L` log: "(1700000000.123456) can0 1A0#663507E65A364586".
+// CAN FD: "1A8##5..." with Linux' flags in the digit after ## (1: bit rate switch, 4: FD frame, set
+// by kernels since 6.1; both are read). 29-bit identifiers have 8 digits. can-utils, tshark,
+// SavvyCAN and PlotJuggler read this format.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@ inline constexpr std::size_t k_candump_line_max =
 
 using CandumpLine = std::array<char, k_candump_line_max>;
 
-// Writes the line with its newline and returns its part of `buffer`. A longer interface name is
-// cut; times are cut to microseconds, as candump's are.
+// Writes the line with its newline and returns its part of `buffer`. Truncates longer interface
+// names, and times to microseconds, as candump does.
 [[nodiscard]] std::string_view format_candump(const CanFrame& frame, std::int64_t unix_ns,
                                               std::string_view interface,
                                               CandumpLine& buffer) noexcept;
@@ -32,7 +32,7 @@ struct CandumpRecord {
   CanFrame frame;
 };
 
-// Nothing for a line that is not a data frame's (remote requests among them).
+// Returns nothing for a line without a data frame (such as a remote request).
 [[nodiscard]] std::optional<CandumpRecord> parse_candump(std::string_view line);
 
 }  // namespace glint

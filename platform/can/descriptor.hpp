@@ -1,4 +1,4 @@
-// A file descriptor that is closed with its owner.
+// Owner of a file descriptor; closes it on destruction (RAII).
 #pragma once
 
 #include <unistd.h>

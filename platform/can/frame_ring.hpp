@@ -1,7 +1,8 @@
-// A bounded queue of stamped CAN frames from one thread to another, wait-free on both sides.
+// Bounded single-producer single-consumer queue of time-stamped CAN frames, wait-free on both
+// sides.
 //
-// One thread pushes, one pops. `head` counts what was pushed, `tail` what was popped; each is
-// written by one side only, and a slot belongs to the popper exactly while head - tail covers it.
+// `head` counts pushed frames, `tail` popped ones; each is written by one side only. A slot belongs
+// to the consumer exactly while it is between tail and head.
 #pragma once
 
 #include <array>
@@ -23,7 +24,7 @@ class FrameRing {
  public:
   static constexpr std::size_t k_capacity = 16384;  // 13 s of five frames at 250 Hz; power of two
 
-  // False: full.
+  // Returns false if full.
   [[nodiscard]] bool push(const StampedFrame& item) noexcept {
     const std::uint64_t head = head_.load(std::memory_order_relaxed);
     if (head - tail_.load(std::memory_order_acquire) == k_capacity) return false;
@@ -32,7 +33,7 @@ class FrameRing {
     return true;
   }
 
-  // Nothing: empty.
+  // Returns nothing if empty.
   [[nodiscard]] std::optional<StampedFrame> pop() noexcept {
     const std::uint64_t tail = tail_.load(std::memory_order_relaxed);
     if (tail == head_.load(std::memory_order_acquire)) return {};

@@ -53,7 +53,7 @@ void LineFile::write_out() noexcept {
   gathered_.clear();
 }
 
-// Part of the gathered lines may be on the disk: keep the whole ones.
+// Part of the buffered lines may be on the disk: keep the complete ones.
 void LineFile::give_up(std::string_view unwritten) noexcept {
   failed_ = true;
   error_ = errno;
@@ -64,7 +64,7 @@ void LineFile::give_up(std::string_view unwritten) noexcept {
   bytes_ += static_cast<std::int64_t>(kept);
   lines_lost_ += static_cast<std::uint64_t>(
       std::count(all.begin() + static_cast<std::ptrdiff_t>(kept), all.end(), '\n'));
-  // A disk that refuses this as well keeps the piece of a line; there is nothing left to try.
+  // If truncation fails, too, the partial line stays.
   if (written_as_ != file_ && ::ftruncate(descriptor_, bytes_) != 0) return;
 }
 

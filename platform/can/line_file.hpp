@@ -1,4 +1,4 @@
-// A text file that holds whole lines only, and appears under its own name when it is complete.
+// Text file of complete lines only, renamed to its final name when closed.
 #pragma once
 
 #include <cstdint>
@@ -8,24 +8,24 @@
 
 namespace glint {
 
-// Gathers lines in memory; write_out() writes them in one piece. What is no regular file (a device,
-// a pipe) is written directly, without the temporary.
+// Buffers lines in memory; write_out() writes them in one piece. A device or pipe is written
+// directly, without a temporary file.
 class LineFile {
  public:
-  // Throws InputError naming the file where it cannot be made.
+  // Throws InputError, with the file's name, if it cannot be created.
   explicit LineFile(std::filesystem::path file);
-  // Writes the rest and gives the file its name.
+  // Writes the remaining lines and renames the file.
   ~LineFile();
   LineFile(const LineFile&) = delete;
   LineFile& operator=(const LineFile&) = delete;
 
-  // One line with its newline. Once the disk has refused, lines are only counted.
+  // Adds one line with its newline. After a write error, lines are only counted.
   void add(std::string_view line) noexcept;
-  // Hands what was gathered to the system.
+  // Writes the buffered lines to the file.
   void write_out() noexcept;
   // Lines that did not reach the disk.
   [[nodiscard]] std::uint64_t lines_lost() const noexcept { return lines_lost_; }
-  // errno of the write that failed; 0: none did.
+  // errno of the failed write; 0: none failed.
   [[nodiscard]] int error() const noexcept { return error_; }
 
  private:
@@ -36,7 +36,7 @@ class LineFile {
   int descriptor_ = -1;
   bool failed_ = false;
   int error_ = 0;
-  std::int64_t bytes_ = 0;  // on disk, whole lines only
+  std::int64_t bytes_ = 0;  // on disk, complete lines only
   std::uint64_t lines_lost_ = 0;
   std::string gathered_;
 };

@@ -11,10 +11,9 @@
 namespace glint {
 namespace {
 
-// How long the writer sleeps when there is nothing to write. Waking it from `send` instead would
-// cost the sender a system call.
+// Sleep time of the writer when idle. A wake-up from `send` would cost the sender a system call.
 constexpr std::chrono::milliseconds k_nap{2};
-// Lines are flushed, and so counted as written or lost, after so many frames.
+// Lines are flushed, and then counted as written or lost, after this number of frames.
 constexpr std::uint64_t k_batch = 256;
 static_assert(FrameRing::k_capacity + k_batch <= k_can_in_flight_max);
 
@@ -80,7 +79,7 @@ class LogSink : public CanSink {
   CanSinkOptions options_;
   FrameRing ring_;
   LineFile file_;
-  std::uint64_t taken_ = 0;  // out of the ring; the writer's own
+  std::uint64_t taken_ = 0;  // frames popped; used by the writer only
   std::atomic<std::uint64_t> dropped_{0}, failed_{0}, sent_{0};
   std::atomic<int> error_{0};
   std::atomic<bool> stop_{false};

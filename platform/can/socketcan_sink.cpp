@@ -33,7 +33,7 @@ class SocketCanSink : public CanSink {
     return taken;
   }
 
-  void flush() noexcept override {}  // a write hands the frame to the kernel at once
+  void flush() noexcept override {}  // write() passes the frame to the kernel at once
 
   [[nodiscard]] CanSinkCounts counts() const noexcept override {
     return {sent_.load(), dropped_.load(), failed_.load(), error_.load()};

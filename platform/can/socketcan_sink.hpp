@@ -1,11 +1,11 @@
-// Linux' own CAN: frames to an interface that the kernel knows.
+// CAN sink for a Linux CAN interface (SocketCAN).
 #pragma once
 
 #include "platform/can/can_sink.hpp"
 
 namespace glint {
 
-// See open_can_sink. The bit rates are the interface's own and set with `ip link`.
+// See open_can_sink. The bit rates belong to the interface and are set with `ip link`.
 [[nodiscard]] std::unique_ptr<CanSink> open_socketcan_sink(const std::string& interface,
                                                            const CanSinkOptions& options);
 

@@ -45,7 +45,7 @@ Descriptor open_socketcan(const std::string& interface, CanFormat format,
     missing(interface, std::string("no CAN socket: ") + std::strerror(errno) +
                            "; expected a kernel with CAN (modprobe can_raw)");
   require(socket.get(), interface, format);
-  // Before it is bound, so that nothing else ever waits in the queue.
+  // Before bind(), so that no other frame is ever queued.
   const can_filter filter{heard.value_or(0), CAN_SFF_MASK | CAN_EFF_FLAG};
   ::setsockopt(socket.get(), SOL_CAN_RAW, CAN_RAW_FILTER, heard ? &filter : nullptr,
                heard ? sizeof filter : 0);

@@ -1,4 +1,4 @@
-// A socket on one of Linux' CAN interfaces, bound and checked: for what sends and for what hears.
+// Opens, binds and checks a raw socket on a Linux CAN interface, for sending and receiving.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace glint {
 
-// Of the bus only frames with the 11-bit identifier `heard` are received, remote requests among
-// them; without one nothing is, or the bus' traffic would fill the queue. Neither read nor write
-// blocks. Throws InputError for a name that Linux cannot have; MissingDevice naming the interface
-// that is not there, not up, not a CAN interface or, for `format` fd, without CAN FD.
+// Receives only frames with the 11-bit identifier `heard`, remote requests included; without one,
+// none, so that the bus traffic does not fill the queue. Reads and writes do not block. Throws
+// InputError for a name that is invalid on Linux. Throws MissingDevice, with its name, for an
+// interface that does not exist, is down, is not CAN or, for `format` fd, has no CAN FD.
 [[nodiscard]] Descriptor open_socketcan(const std::string& interface, CanFormat format,
                                         std::optional<std::uint32_t> heard = {});
 
