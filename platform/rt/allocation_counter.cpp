@@ -5,7 +5,7 @@
 namespace glint {
 namespace {
 
-// Constant-initialised: the C library allocates before any constructor has run.
+// Constant-initialised: the C library allocates before any constructor runs.
 constinit thread_local bool t_armed = false;
 constinit std::atomic<std::uint64_t> allocations{0};
 constinit std::atomic<bool> interposed{false};

@@ -1,8 +1,8 @@
-// Counts the heap allocations of threads that have declared themselves free of them.
+// Counts heap allocations of armed threads, which must not allocate.
 //
-// Works in executables that link the object library glint_allocation_counter, which puts its own
-// malloc family (and so operator new) in front of the C library's; not under sanitizers, which do
-// the same. An unarmed thread pays one test of a thread-local flag.
+// Works in executables that link the object library glint_allocation_counter. It replaces the C
+// library's malloc family (and so operator new); not under sanitizers, which do the same. An
+// unarmed thread pays one test of a thread-local flag.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@ namespace glint {
 
 class AllocationCounter {
  public:
-  // Whether allocations are seen in this executable; if not, count() stays 0 and means nothing.
+  // True if this executable counts allocations; otherwise count() stays 0 and is meaningless.
   [[nodiscard]] static bool available() noexcept;
 
-  // From now on, until disarm(), the calling thread's allocations count.
+  // The calling thread's allocations count from arm() to disarm().
   static void arm() noexcept;
   static void disarm() noexcept;
 

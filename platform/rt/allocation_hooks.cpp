@@ -1,5 +1,5 @@
-// The malloc family in front of the C library's own. Compiled to nothing under the sanitizers that
-// bring theirs. Source of the names behind: glibc's "Replacing malloc" and its export list.
+// Replacement of the C library's malloc family. Empty under sanitizers that replace it themselves.
+// Source of the __libc_ names: glibc's "Replacing malloc" and its export list.
 #include <cerrno>
 #include <cstddef>
 

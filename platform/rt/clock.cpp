@@ -8,7 +8,7 @@ namespace glint {
 namespace {
 
 constexpr std::int64_t k_second = 1'000'000'000;
-constexpr int k_clock_pairs = 8;  // one undisturbed pair among them is enough
+constexpr int k_clock_pairs = 8;  // one of them without preemption is enough
 
 std::int64_t read(clockid_t clock) noexcept {
   timespec now{};

@@ -43,7 +43,7 @@ std::optional<Time> ClockMap::map(Time stamp, Time arrival) noexcept {
   ++mapped_;
   const auto number = static_cast<std::int64_t>(std::floor(x / k_bin.seconds()));
   Bin& bin = bins_[static_cast<std::size_t>((number % k_bins + k_bins) % k_bins)];
-  const double expected = slope_ * (x - bin.x_s);  // by the drift, since the least of this bin
+  const double expected = slope_ * (x - bin.x_s);  // drift since the minimum of this bin
   if (bin.number != number || y < bin.y_s + expected) {
     bin = {number, x, y};
     fit();
@@ -69,7 +69,7 @@ void ClockMap::fit() noexcept {
     xx += (bin.x_s - middle_s_) * (bin.x_s - middle_s_);
     xy += (bin.x_s - middle_s_) * (bin.y_s - height_s_);
   }
-  // Over less than three seconds the delays' scatter would pass for drift.
+  // In less than three seconds the scatter of the delays would look like drift.
   slope_ = n > 3 ? std::clamp(xy / xx, -k_drift_max, k_drift_max) : 0;
   if (n < 2) return;
   double square = 0, least = 0;
@@ -79,7 +79,7 @@ void ClockMap::fit() noexcept {
     square += off * off;
     least = std::min(least, off);
   }
-  height_s_ += least;  // no delay is less than the earliest
+  height_s_ += least;  // no delay is shorter than the earliest
   scatter_s_ = std::sqrt(square / (n - 1));
 }
 

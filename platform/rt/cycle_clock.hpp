@@ -1,7 +1,7 @@
-// The CPU's own counter as a clock of nanoseconds: a look at it costs a third of a system clock's.
+// CPU cycle counter as a nanosecond clock: a read costs a third of a system clock read.
 //
-// For short times only, from an anchor that the system's clock gives: what it counts at is measured
-// once, to some 1e-4, so that a millisecond is right within 100 ns.
+// For short intervals from an anchor on the system's clock. The counter's rate is measured once, to
+// about 1e-4, so that a millisecond is exact within 100 ns.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ namespace glint {
 #endif
 }
 
-// Measured at the first call, for 5 ms: call it before anything is in a hurry.
+// Measured at the first call, for 5 ms: call it before time-critical work.
 [[nodiscard]] double ns_per_cycle() noexcept;
 
 }  // namespace glint

@@ -1,5 +1,4 @@
-// What the last pictures said of the robot that is followed, for whoever reports it from another
-// thread.
+// Results of robot pose tracking, published to reporting threads.
 #pragma once
 
 #include <atomic>
@@ -8,11 +7,11 @@
 namespace glint {
 
 struct FollowedRobotNotes {
-  std::atomic<std::int64_t> followed{0}, jumps{0}, unsure{0};  // pictures so far
+  std::atomic<std::int64_t> followed{0}, jumps{0}, unsure{0};  // images so far
   std::atomic<double> shift_m{0}, turn_rad{0};                 // of the last jump
-  std::atomic<bool> jumped{false};              // and none that was followed came after it
-  std::atomic<std::int64_t> without_joints{0};  // pictures passed over: what was heard is too old
-  std::atomic<bool> joints_lost{false};         // the last picture is one of them
+  std::atomic<bool> jumped{false};              // true until an image is followed after a jump
+  std::atomic<std::int64_t> without_joints{0};  // images skipped: the joint states are too old
+  std::atomic<bool> joints_lost{false};         // the last image was skipped
 };
 
 }  // namespace glint

@@ -1,5 +1,5 @@
-// A thread sleeps until a counter changes: futex(2). POSIX's timed wait follows the settable clock,
-// and the one of the C++ library does not promise which system calls it makes.
+// Sleep until a counter changes: futex(2). POSIX's timed wait uses the settable clock, and the one
+// of the C++ library does not guarantee which system calls it makes.
 #pragma once
 
 #include <linux/futex.h>
@@ -18,8 +18,8 @@ namespace glint {
 static_assert(sizeof(std::atomic<std::uint32_t>) == sizeof(std::uint32_t),
               "the kernel reads the counter's bits");
 
-// Sleeps while `counter` is `value`; may also return early. False: the deadline (monotonic; null:
-// none) has passed.
+// Sleeps while `counter` is `value`; may return early. Returns false if the deadline (monotonic;
+// null: none) has passed.
 [[nodiscard]] inline bool futex_sleep(std::atomic<std::uint32_t>& counter, std::uint32_t value,
                                       const Time* deadline) noexcept {
   constexpr std::int64_t k_nanoseconds = 1'000'000'000;

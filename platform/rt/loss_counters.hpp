@@ -1,4 +1,4 @@
-// What a run has lost so far, by kind, for whoever reports it from another thread.
+// Counters of lost output by kind, published to reporting threads.
 #pragma once
 
 #include <array>
@@ -9,12 +9,12 @@
 
 namespace glint {
 
-// The values stand in CAN emergency frames.
+// The values are used in CAN emergency frames.
 enum class LossKind : std::uint8_t {
-  can = 0,        // frames that the bus or the log did not take
-  dds = 1,        // messages that the ring or DDS did not take
-  recording = 2,  // messages that the recording lacks
-  files = 3,      // lines that the trajectory files lack
+  can = 0,        // frames not accepted by the bus or the log
+  dds = 1,        // messages not accepted by the ring or DDS
+  recording = 2,  // messages missing in the recording
+  files = 3,      // lines missing in the trajectory files
 };
 inline constexpr std::size_t k_loss_kinds = 4;
 

@@ -14,7 +14,7 @@ namespace {
 // Capabilities by their number in linux/capability.h.
 constexpr int k_cap_ipc_lock = 14;
 constexpr int k_cap_sys_nice = 23;
-// An idle state that takes longer to leave than a tick's node takes to run.
+// Longer than a tick's node takes to run.
 constexpr long k_idle_exit_us = 10;
 constexpr int k_cores_max = 1024;
 
@@ -107,7 +107,7 @@ class Check {
     }
   }
 
-  // The cores in question: the pinned ones, or all.
+  // The cores to check: the pinned ones, or all.
   [[nodiscard]] std::set<int> cores() const {
     if (!cores_.empty()) return cores_;
     return cores_of(line_of(root_ / "sys/devices/system/cpu/online").value_or("0"));

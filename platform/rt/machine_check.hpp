@@ -1,5 +1,5 @@
-// What this machine spoils of a latency bound, each with what to do about it. Looked at once, at
-// the start; nothing is changed and nothing is refused.
+// Checks the machine's real-time configuration: kernel, rights, cores, idle states, interrupts.
+// Reads it once at the start; changes nothing and rejects nothing.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@ namespace glint {
 
 struct MachineCheck {
   bool preempt_rt = false;
-  // One line each: what was found, what spoils, what to do. Empty: nothing that we know of.
+  // One line per defect: what was found, its effect on latency, the remedy. Empty: none found.
   std::vector<std::string> spoils;
 };
 
-// For threads pinned to `cores` (empty: to none). `root` is where /proc and /sys are.
+// For threads pinned to `cores` (empty: not pinned). `root` contains /proc and /sys.
 [[nodiscard]] MachineCheck check_machine(const std::vector<int>& cores,
                                          const std::string& root = "/");
 

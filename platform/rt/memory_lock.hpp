@@ -1,4 +1,4 @@
-// Keeps the process's memory from being paged out.
+// Locks the process's memory against paging.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@ namespace glint {
 
 struct MemoryLock {
   bool locked = false;
-  std::string refused;  // the reason where it is not
+  std::string refused;  // reason if not locked
 };
 
-// Locks all pages, present and future, where the process may lock without a limit. Under a limit it
-// leaves things as they are: once that is reached, every later allocation would fail.
+// Locks all present and future pages if the process may lock without a limit. Under a limit it does
+// nothing: once the limit is reached, every later allocation would fail.
 [[nodiscard]] MemoryLock lock_memory();
 
 }  // namespace glint

@@ -1,7 +1,7 @@
-// What tracing adds to a node: two looks at the CPU's counter and one entry in a ring.
+// Execution trace of a node: two reads of the CPU cycle counter and one entry in a ring.
 //
-// One object for each worker of a group, since each ring has one producer. A node's span is pushed
-// when the worker goes on, so that what was decided after the node can still be noted on it.
+// One object per worker of a group, because each ring has one producer. A node's span is pushed
+// when the worker continues, so that flags set after the node are still stored in it.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@
 
 namespace glint {
 
-// 8192 spans are 400 ticks and 9 frames of one worker: far more than its writer lets gather.
+// 8192 spans are 400 ticks and 9 frames of one worker, far more than gather between two writes.
 using SpanRing = graph::Ring<TraceSpan, 8192>;
 
 class NodeTrace {
  public:
-  // `bounds_ns` by node, or empty; it and the ring outlive this.
+  // `bounds_ns` per node, or empty; it and the ring must outlive this object.
   NodeTrace(SpanRing& ring, std::uint8_t group, std::uint8_t worker,
             std::span<const std::int64_t> bounds_ns = {}) noexcept
       : ring_(&ring), bounds_ns_(bounds_ns), ns_per_cycle_(ns_per_cycle()) {
@@ -26,7 +26,7 @@ class NodeTrace {
     span_.worker = worker;
   }
 
-  // `now_ns` by the session's clock, read when the CPU counted `cycles`.
+  // `now_ns` on the session's clock, read at cycle count `cycles`.
   void begin_activation(std::uint64_t activation, std::uint64_t frame_sequence, std::int64_t now_ns,
                         std::uint64_t cycles) noexcept {
     span_.activation = activation;
@@ -48,11 +48,11 @@ class NodeTrace {
     span_.bound_ns = i < bounds_ns_.size() ? bounds_ns_[i] : 0;
     waiting_ = true;
   }
-  // On the span of the node that ended last.
+  // Sets a flag on the span of the node that ended last.
   void note(TraceFlag flag) noexcept {
     span_.flags = static_cast<std::uint8_t>(span_.flags | flag);
   }
-  // Something that is no node: a release, or what was sent.
+  // Adds a span that is not a node: a release, or the CAN writes.
   void add(TraceFlag kind, std::int64_t begin_ns, std::int64_t end_ns) noexcept {
     flush();
     TraceSpan span = span_;

@@ -1,4 +1,4 @@
-// Overruns so far, for whoever reports them from another thread.
+// Counters of overruns, published to reporting threads.
 #pragma once
 
 #include <atomic>

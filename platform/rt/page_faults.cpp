@@ -7,7 +7,7 @@
 namespace glint {
 namespace {
 
-// More than any group's nodes need (tests/footprint), less than the 8 MB of a thread.
+// More than any group's nodes need (tests/footprint), less than a thread's 8 MB.
 constexpr std::size_t k_stack_bytes = 512 * 1024;
 constexpr std::size_t k_page_bytes = 4096;
 
@@ -31,7 +31,7 @@ std::uint64_t PageFaultCounter::count() noexcept { return faults.load(); }
 void prefault_stack() noexcept {
   unsigned char stack[k_stack_bytes];
   for (std::size_t i = 0; i < k_stack_bytes; i += k_page_bytes) stack[i] = 0;
-  __asm__ __volatile__("" : : "r"(stack) : "memory");  // the stores are meant
+  __asm__ __volatile__("" : : "r"(stack) : "memory");  // keeps the stores
 }
 
 }  // namespace glint

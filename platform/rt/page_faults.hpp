@@ -1,4 +1,4 @@
-// Counts the page faults of threads that have declared themselves free of them.
+// Counts page faults of armed threads, which must not have any.
 #pragma once
 
 #include <cstdint>
@@ -7,15 +7,15 @@ namespace glint {
 
 class PageFaultCounter {
  public:
-  // From here to disarm(), in the same thread, the thread's page faults count.
+  // The calling thread's page faults count from arm() to disarm().
   static void arm() noexcept;
   static void disarm() noexcept;
 
-  // Minor and major, of threads that have disarmed, since the start of the process.
+  // Minor and major faults of threads that have called disarm(), since the start of the process.
   [[nodiscard]] static std::uint64_t count() noexcept;
 };
 
-// Touches the stack below the caller, so that it is in memory before it is needed.
+// Touches the stack below the caller, so that its pages are resident.
 void prefault_stack() noexcept;
 
 }  // namespace glint

@@ -15,9 +15,9 @@ std::optional<Tick> PeriodicLoop::next() noexcept {
   }
   tick.number = next_number_++;
   tick.nominal = first_ + period_ * static_cast<std::int64_t>(tick.number);
-  (void)sleep_(tick.nominal);  // a refusal shows below
+  (void)sleep_(tick.nominal);  // a failure is detected below
   tick.woken = monotonic_now();
-  // Numbers only grow, so no more than one tick a period passes this.
+  // Tick numbers increase, so at most one tick per period passes this test.
   if (tick.woken < tick.nominal) return std::nullopt;
   if (tick.woken >= tick.nominal + period_) ++late_;
   return tick;

@@ -1,5 +1,5 @@
-// Ticks at a fixed rate: tick n is due at first + n * period, always. Ticks that are a little late
-// run at once, one after the other; a loop that is later than that skips ticks and counts them.
+// Periodic loop with a fixed time base: tick n is due at first + n * period. Slightly late ticks
+// run at once, one after the other; beyond catch_up_max, ticks are skipped and counted.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ namespace glint {
 struct Tick {
   std::uint64_t number = 0;
   Time nominal;               // first + number * period: the only time that the output reads
-  Time woken;                 // when it really began
-  std::uint64_t skipped = 0;  // ticks between this one and the one before that never ran
+  Time woken;                 // actual start
+  std::uint64_t skipped = 0;  // ticks that never ran since the previous one
 };
 
-// What a run says that stopped because of it.
+// Message of a run that stopped for this reason.
 inline constexpr const char* k_ran_away =
     "ticks: the system does not let the loop sleep until its next tick; the run stopped there, "
     "expected a clock that can be slept by";
@@ -26,16 +26,16 @@ class PeriodicLoop {
  public:
   using Sleep = bool (*)(Time wake) noexcept;
 
-  // period > 0. `catch_up_max` is how many ticks may be owed before they are skipped.
+  // period > 0. `catch_up_max`: number of due ticks beyond which they are skipped.
   PeriodicLoop(Time first, Duration period, std::uint64_t catch_up_max = 25,
                Sleep sleep = sleep_until) noexcept
       : first_(first), period_(period), catch_up_max_(catch_up_max), sleep_(sleep) {}
 
-  // Waits for the next tick, at most until its nominal time. Nothing: the loop would run faster
-  // than its period, because the system does not let it sleep; the caller has to stop.
+  // Waits for the nominal time of the next tick. Returns nothing if the system does not sleep, so
+  // that the loop would run faster than its period; the caller must stop.
   [[nodiscard]] std::optional<Tick> next() noexcept;
 
-  // Ticks that began after the next one was due, and ticks that never ran; since the start.
+  // Ticks that started after the next one was due, and ticks that never ran; since the start.
   [[nodiscard]] std::uint64_t late() const noexcept { return late_; }
   [[nodiscard]] std::uint64_t skipped() const noexcept { return skipped_; }
 

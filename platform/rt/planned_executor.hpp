@@ -1,4 +1,5 @@
-// The threads behind graph/planned.hpp: the caller is worker 0, a pool hosts the others.
+// Multi-threaded executor of a static schedule (graph/planned.hpp): the caller is worker 0, a pool
+// hosts the others.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +15,8 @@ namespace glint {
 template <class G>
 class PlannedExecutor {
  public:
-  // `others` has one entry for each worker of the plan beyond the first. A worker with a core and
-  // real-time rights spins `spins_max` times before it sleeps.
+  // `others` has one entry for each worker of the plan except the first. A worker with its own core
+  // and SCHED_FIFO spins `spins_max` times before it sleeps.
   PlannedExecutor(const graph::PlanTables<G>& plan, const std::vector<ThreadSettings>& others,
                   std::uint32_t spins_max)
       : pool_(checked(plan, others)), rest_(pool_.reports(), spins_max), planned_(plan, rest_) {}
@@ -23,7 +24,7 @@ class PlannedExecutor {
   PlannedExecutor(const PlannedExecutor&) = delete;
   PlannedExecutor& operator=(const PlannedExecutor&) = delete;
 
-  // One trace a worker. Gives the last node that ran; settle() has to follow.
+  // One trace per worker. Returns the last node that ran; call settle() next.
   template <graph::Trace T, graph::Boundary B>
   [[nodiscard]] int execute(G& graph, std::span<T> traces, B& boundary) noexcept {
     planned_.begin(graph);

@@ -1,4 +1,4 @@
-// What a measured time was measured on.
+// Name of the processor, for reports of measured times.
 #pragma once
 
 #include <fstream>
@@ -6,7 +6,7 @@
 
 namespace glint {
 
-// As the kernel names it; arm64's names none.
+// From /proc/cpuinfo; arm64 states no name there.
 [[nodiscard]] inline std::string processor_name() {
   std::ifstream lines("/proc/cpuinfo");
   for (std::string line; std::getline(lines, line);) {

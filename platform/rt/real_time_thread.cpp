@@ -52,7 +52,7 @@ RealTimeThread::RealTimeThread(const ThreadSettings& settings, std::function<voi
   Release reported;
   thread_ = std::thread([this, &settings, &reported, run = std::move(body)] {
     report_ = become(settings);
-    reported.post();  // from here on, what was borrowed is gone
+    reported.post();  // from here on the captured references are invalid
     run();
   });
   reported.wait();

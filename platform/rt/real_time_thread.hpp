@@ -1,5 +1,5 @@
-// Real-time rights as far as the system grants them. Nothing here fails: what was refused is
-// reported, and the work goes on without it.
+// Threads with core affinity and SCHED_FIFO, as far as the system grants them. Nothing fails: a
+// refused right is reported, and the thread runs without it.
 #pragma once
 
 #include <functional>
@@ -9,24 +9,24 @@
 namespace glint {
 
 struct ThreadSettings {
-  std::string name;             // the first 15 characters show in the system's tools
-  int core = -1;                // to run on this core alone; -1: on any
-  int priority = 0;             // SCHED_FIFO, 1 to 99; 0: the usual scheduling
-  bool idle_otherwise = false;  // where SCHED_FIFO is refused: SCHED_IDLE, beneath all others
+  std::string name;             // the first 15 characters are visible in system tools
+  int core = -1;                // run on this core only; -1: on any
+  int priority = 0;             // SCHED_FIFO, 1 to 99; 0: default scheduling
+  bool idle_otherwise = false;  // if SCHED_FIFO is refused: SCHED_IDLE, below all other threads
 };
 
 struct ThreadReport {
   std::string name;
-  bool pinned = false;     // on the core asked for
-  bool real_time = false;  // SCHED_FIFO at the priority asked for
-  std::string refused;     // what was asked for and not granted, with the system's reason
+  bool pinned = false;     // to the requested core
+  bool real_time = false;  // SCHED_FIFO at the requested priority
+  std::string refused;     // requested rights that were refused, with the system's reason
 };
 
-// Gives the calling thread what the settings ask for.
+// Applies the settings to the calling thread.
 ThreadReport become(const ThreadSettings& settings);
 
-// A thread that has become what its settings ask for before its body begins. Joined at the end of
-// its life; the body has to return by then.
+// A thread that applies its settings before its body starts. The destructor joins it; the body must
+// return by then.
 class RealTimeThread {
  public:
   RealTimeThread(const ThreadSettings& settings, std::function<void()> body);

@@ -1,5 +1,5 @@
-// What releases a waiting thread: counted, so that a release before the wait is not lost. The only
-// place where a frame group or a worker blocks.
+// Counting semaphore that releases a waiting thread; a release before the wait is not lost. Frame
+// groups and workers block here only.
 #pragma once
 
 #include <atomic>
@@ -15,11 +15,11 @@ class Release {
   Release(const Release&) = delete;
   Release& operator=(const Release&) = delete;
 
-  // From any thread: lets one wait() through. One atomic step and one system call, never blocks.
+  // From any thread: releases one wait(). One atomic operation and one system call, never blocks.
   void post() noexcept;
-  // Takes one release, waiting for it if need be.
+  // Consumes one release; waits for it if necessary.
   void wait() noexcept;
-  // The same, but gives up at `deadline` (monotonic): false.
+  // The same, with a timeout: returns false at `deadline` (monotonic).
   [[nodiscard]] bool wait_until(Time deadline) noexcept;
 
  private:

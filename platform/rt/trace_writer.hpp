@@ -1,5 +1,5 @@
-// Spans from their rings to a trace file, in a thread of its own. The file gets its name when it
-// is closed.
+// Writes trace spans from their rings to a file, in a thread of its own. The file is renamed to its
+// final name when it is closed.
 #pragma once
 
 #include <atomic>
@@ -16,17 +16,19 @@ namespace glint {
 
 class TraceWriter {
  public:
-  // `header` is the file's first line (trace_span.hpp). Throws InputError where it cannot be made.
+  // `header` is the file's first line (trace_span.hpp). Throws InputError if the file cannot be
+  // created.
   TraceWriter(const std::string& path, const std::string& header);
   ~TraceWriter() { (void)close(); }
   TraceWriter(const TraceWriter&) = delete;
   TraceWriter& operator=(const TraceWriter&) = delete;
 
-  // A ring for one producer. Before start().
+  // Adds a ring for one producer. Call before start().
   [[nodiscard]] SpanRing& add_ring();
   void start();
 
-  // After the last span: writes what waits and closes. The first line that says what went wrong.
+  // Call after the last span: writes pending spans and closes the file. Returns an error message,
+  // or "".
   std::string close();
   [[nodiscard]] std::uint64_t written() const noexcept { return written_; }
   [[nodiscard]] std::uint64_t dropped() const noexcept;

@@ -1,4 +1,4 @@
-// Threads that host the workers of a graph beyond the first, which is the caller.
+// Thread pool for the workers of a graph; worker 0 is the caller.
 #pragma once
 
 #include <atomic>
@@ -14,23 +14,23 @@
 
 namespace glint {
 
-// Threads that wait, released, call one function, and wait again. They are armed for the
-// AllocationCounter all the while.
+// Threads that wait for a release, call one function and wait again. They are always armed for the
+// AllocationCounter.
 class WorkerPool {
  public:
   using Job = void (*)(void* context, int worker) noexcept;
 
-  // One thread for each entry; they are workers 1, 2, ...
+  // One thread per entry: workers 1, 2, ...
   explicit WorkerPool(const std::vector<ThreadSettings>& settings);
   ~WorkerPool() { stop(); }
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
-  // Lets every thread call job(context, worker) once. Before the next release the caller makes sure
-  // that all of them have begun, for instance by meeting them in the job.
+  // Every thread calls job(context, worker) once. Before the next release all of them must have
+  // started it, for example by synchronising with the caller inside the job.
   void release(Job job, void* context) noexcept;
 
-  // Returns when no thread runs any more; nothing may be released after it.
+  // Returns after all threads have ended; no release() may follow.
   void stop() noexcept;
 
   [[nodiscard]] std::vector<ThreadReport> reports() const;
@@ -45,11 +45,11 @@ class WorkerPool {
   std::vector<std::unique_ptr<RealTimeThread>> threads_;
 };
 
-// Runs graphs by W workers: graph.activate(executor). The caller's thread is worker 0.
+// Runs graphs on W workers: graph.activate(executor). The caller's thread is worker 0.
 template <int W>
 class ParallelExecutor {
  public:
-  // `others` has W - 1 entries. A worker with a core and real-time rights spins `spins_max` times
+  // `others` has W - 1 entries. A worker with its own core and SCHED_FIFO spins `spins_max` times
   // before it sleeps.
   ParallelExecutor(const std::vector<ThreadSettings>& others, std::uint32_t spins_max)
       : pool_(checked(others)), rest_(pool_.reports(), spins_max), workers_(rest_) {}
@@ -60,7 +60,7 @@ class ParallelExecutor {
   template <class G>
   void execute(G& graph) noexcept {
     workers_.begin(graph);
-    // Only workers that meet worker 0 may be released: it is how the pool knows that they began.
+    // Release only workers that synchronise with worker 0: this shows that they have started.
     if constexpr (W > 1 && G::has_split) {
       graph_ = &graph;
       pool_.release(

@@ -1,6 +1,6 @@
-// How the workers of a graph wait for each other (graph/rest.hpp): each spins for a bounded number
-// of times, then it sleeps. With a core and real-time rights for each worker the spins last some
-// milliseconds; without them another thread may need the core, and a worker sleeps soon.
+// Wait policy of a graph's workers (graph/rest.hpp): bounded spin, then sleep. If each worker has
+// its own core and SCHED_FIFO, the spin lasts some milliseconds. Otherwise another thread may need
+// the core, and a worker sleeps soon.
 #pragma once
 
 #include <algorithm>
@@ -17,11 +17,11 @@ namespace glint {
 
 class WorkerRest {
  public:
-  // 20 to 40 us: what a sleep and its wake-up cost.
+  // 20 to 40 us: the cost of a sleep and its wake-up.
   static constexpr std::uint32_t k_shared_core_spins_max = 1000;
   static constexpr Duration k_sleep_max = microseconds(200);
 
-  // `reports` of the workers' threads: what the system granted them.
+  // `reports` of the workers' threads: the rights granted by the system.
   WorkerRest(const std::vector<ThreadReport>& reports, std::uint32_t spins_max) noexcept
       : spins_max_(spins_max) {
     for (const ThreadReport& report : reports) {
@@ -47,8 +47,8 @@ class WorkerRest {
     sleepers_.fetch_sub(1);
     return in_time;
   }
-  // A system call only where a worker sleeps. Both counters are sequentially consistent: either
-  // this sees the sleeper, or the sleeper sees the new count and does not sleep.
+  // Makes a system call only if a worker sleeps. Both counters are sequentially consistent: either
+  // this call reads the sleeper, or the sleeper reads the new count and does not sleep.
   void report_progress() noexcept {
     progress_.fetch_add(1);
     if (sleepers_.load() != 0) futex_wake(progress_, INT_MAX);
