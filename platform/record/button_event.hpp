@@ -1,4 +1,4 @@
-// A button of the pen went down or up: what a user says beside where the pen is.
+// Event of a pen button: pressed or released.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@ namespace glint {
 
 enum class Button : std::uint8_t {
   draw = 0,         // held: the tip draws; a click: a waypoint
-  delete_last = 1,  // pressed: the last waypoint or stroke goes
-  undo = 2,         // pressed: the last change is taken back
-  finish = 3,       // pressed: the path is done
+  delete_last = 1,  // pressed: deletes the last waypoint or stroke
+  undo = 2,         // pressed: undoes the last change
+  finish = 3,       // pressed: ends the path
 };
 inline constexpr int k_button_count = 4;
 

@@ -1,4 +1,4 @@
-// Little-endian numbers, strings and byte runs, appended to a buffer and read back with bounds.
+// Byte buffer: appends little-endian numbers, strings and byte runs; reads them with bounds checks.
 #pragma once
 
 #include <concepts>
@@ -35,7 +35,8 @@ inline void append(Bytes& to, std::string_view text) {
   append(to, bytes_of(text));
 }
 
-// Once something asked for lies beyond the end, failed() holds and everything read is 0 or empty.
+// Reader of such a buffer. After a read beyond the end, failed() is true and all reads return 0 or
+// empty.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -57,7 +58,7 @@ class ByteReader {
     const auto taken = take(number<std::uint32_t>());
     return {taken.begin(), taken.end()};
   }
-  // A reader of its own for the next `count` bytes.
+  // A separate reader for the next `count` bytes.
   ByteReader part(std::uint64_t count) { return ByteReader(take(count)); }
 
   [[nodiscard]] bool failed() const { return failed_; }

@@ -1,5 +1,5 @@
-// ROS 2's message bytes: XCDR1, little endian, each number aligned to its size after the 4 bytes
-// of encapsulation. The writer keeps its buffer, so that a message costs no allocation.
+// Serialisation of ROS 2 messages: XCDR1, little endian, each number aligned to its size after the
+// 4 bytes of encapsulation. The writer reuses its buffer, so that a message costs no allocation.
 #pragma once
 
 #include <bit>
@@ -42,7 +42,7 @@ class CdrWriter {
  public:
   CdrWriter() { begin(); }
 
-  // Forgets the last message.
+  // Starts a new message; discards the last one.
   void begin() { bytes_ = {0, 1, 0, 0}; }
 
   template <CdrNumber Number>
@@ -72,7 +72,7 @@ class CdrWriter {
   Bytes bytes_;
 };
 
-// Beyond the end everything reads as 0 or empty, and failed() holds.
+// Reads beyond the end return 0 or empty and set failed().
 class CdrReader {
  public:
   explicit CdrReader(std::span<const std::uint8_t> message) : reader_(message) {
@@ -90,7 +90,7 @@ class CdrReader {
     }
   }
   std::string get_text() { return std::string(get_text_view()); }
-  // Borrowed from the message.
+  // References the message's memory.
   std::string_view get_text_view() {
     const auto taken = reader_.take(get<std::uint32_t>());
     return {reinterpret_cast<const char*>(taken.data()), taken.empty() ? 0 : taken.size() - 1};

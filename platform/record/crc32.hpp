@@ -1,4 +1,4 @@
-// CRC-32 as MCAP uses it, by zlib.
+// CRC-32 of MCAP, computed by zlib.
 #pragma once
 
 #include <zlib.h>
@@ -8,10 +8,10 @@
 
 namespace glint {
 
-// A call continues where an earlier one ended: start with 0.
+// Continues from the result of an earlier call; start with 0.
 [[nodiscard]] inline std::uint32_t crc32(std::uint32_t crc,
                                          std::span<const std::uint8_t> bytes) noexcept {
-  if (bytes.empty()) return crc;  // zlib takes a null pointer for a start
+  if (bytes.empty()) return crc;  // zlib would return the initial value for a null pointer
   return static_cast<std::uint32_t>(::crc32_z(crc, bytes.data(), bytes.size()));
 }
 

@@ -1,5 +1,5 @@
-// Brings a growing file to the disk at a steady rate, in a thread of its own: a power failure costs
-// what was written since the last time.
+// Periodic fdatasync of a growing file in a thread of its own. A power failure loses only the data
+// since the last call.
 #pragma once
 
 #include <atomic>
@@ -13,7 +13,7 @@ namespace glint {
 
 class FileSync {
  public:
-  // The descriptor stays open until stop() has returned.
+  // The descriptor must stay open until stop() has returned.
   FileSync(int descriptor, Duration period);
   ~FileSync() { stop(); }
   FileSync(const FileSync&) = delete;

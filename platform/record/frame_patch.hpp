@@ -1,4 +1,4 @@
-// The pixels of a frame that are worth keeping: rectangles of it, or all of it as one.
+// Recorded part of a frame's pixels: several rectangles, or the whole frame as one.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace glint {
 
 inline constexpr int k_patch_rectangles_max = k_tools_max;
 
-// Everything of a frame but its pixels.
+// Metadata of a frame and its recorded rectangles.
 struct FrameLayout {
   Time mid_exposure;
   Duration stamp_sigma;
@@ -21,33 +21,33 @@ struct FrameLayout {
   std::uint64_t sequence = 0;
   std::uint16_t width = 0;
   std::uint16_t height = 0;
-  std::uint8_t reflectivity_bits = 0;  // 8 or 16; 0: the frame came without that plane
-  bool has_depth = false;              // a depth plane of the same size
+  std::uint8_t reflectivity_bits = 0;                    // 8 or 16; 0: the frame has no such plane
+  bool has_depth = false;                                // a depth plane of the same size
   std::array<Roi, k_patch_rectangles_max> rectangles{};  // inside the frame; they may overlap
   int rectangle_count = 0;
 };
 
-// `pixels` holds, rectangle by rectangle, its rows of reflectivity and then its rows of depth, in
-// the byte order of the machine (little endian wherever Glint runs).
+// `pixels` holds, per rectangle, the rows of reflectivity and then the rows of depth, in the byte
+// order of the machine (little endian wherever Glint runs).
 struct FramePatch {
   FrameLayout layout;
   std::span<const std::uint8_t> pixels;
 };
 
-// The bytes of pixels that a layout asks for; of one rectangle of it.
+// Number of pixel bytes of a layout, and of one of its rectangles.
 [[nodiscard]] std::size_t pixel_bytes(const FrameLayout& layout) noexcept;
 [[nodiscard]] std::size_t reflectivity_bytes(const FrameLayout& layout, const Roi& roi) noexcept;
 [[nodiscard]] std::size_t depth_bytes(const FrameLayout& layout, const Roi& roi) noexcept;
 
-// The whole frame as one rectangle; no rectangle where the frame has no pixels.
+// The whole frame as one rectangle; no rectangle if the frame has no pixels.
 [[nodiscard]] FrameLayout whole_frame_layout(const Frame& frame) noexcept;
 
-// The regions, each grown by margin_px and cut at the border. As soon as they hold as many pixels
-// as the frame, it is kept whole. A kernel that looks beyond its region (ring depth, centroid) must
-// find the same there in a replay: that is what the margin is for.
+// The regions, each enlarged by margin_px and clipped to the frame. If they cover as many pixels as
+// the frame, the whole frame is kept. Kernels that read beyond their region (depth annulus,
+// centroid) need equal pixels there in a replay: hence the margin.
 [[nodiscard]] FrameLayout roi_layout(const Frame& frame, const Rois& rois, int margin_px) noexcept;
 
-// Copies the layout's pixels out of the frame it was made of. pixels.size() == pixel_bytes(layout).
+// Copies the layout's pixels from its frame. Requires pixels.size() == pixel_bytes(layout).
 // Cost: one copy of that many bytes; no allocation.
 void copy_pixels(const Frame& frame, const FrameLayout& layout,
                  std::span<std::uint8_t> pixels) noexcept;

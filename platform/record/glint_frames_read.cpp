@@ -10,7 +10,7 @@
 namespace glint {
 namespace {
 
-// One rectangle's rows into the frame; false where their number of bytes is not the rectangle's.
+// Copies one rectangle's rows into the frame; returns false if their size does not match it.
 template <class Pixel>
 bool put_rows(std::span<const std::uint8_t> rows, const Roi& roi, int frame_width,
               std::vector<Pixel>& frame) {
@@ -24,7 +24,7 @@ bool put_rows(std::span<const std::uint8_t> rows, const Roi& roi, int frame_widt
   return true;
 }
 
-// As many as a camera may have: a short message asks for memory for all of them.
+// Largest camera image: bounds the memory that a short message can request.
 constexpr std::size_t k_pixels_max = std::size_t{k_width_max} * k_height_max;
 
 struct FrameShape {

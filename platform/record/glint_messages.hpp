@@ -1,7 +1,7 @@
-// Glint's own messages and their bytes (package glint_msgs, fields in schemas.cpp).
+// Serialisation of Glint's own messages (package glint_msgs, fields in schemas.cpp).
 //
-// Writing begins a message in the writer. Reading gives nothing where the bytes do not hold what
-// the type says: too short, a count beyond the maximum, a rectangle outside its frame.
+// write_message() starts a message in the writer. A read function returns nothing if the bytes do
+// not match the type: too short, a count beyond the maximum, a rectangle outside its frame.
 #pragma once
 
 #include <optional>
@@ -15,10 +15,10 @@ namespace glint {
 
 enum class PixelPlace : std::uint8_t {
   in_message,  // as rectangles
-  in_images,   // in the two sensor_msgs/Image before it: whole frames, for every viewer
+  in_images,   // in the two preceding sensor_msgs/Image: whole frames, for any viewer
 };
 
-// A choice's overrun in one byte: kind + k_overrun_kinds * policy. Version 1 wrote 0 there always,
+// A choice's overrun in one byte: kind + k_overrun_kinds * policy. Version 1 always wrote 0 there,
 // and no node at the message's end.
 inline constexpr unsigned k_overrun_kinds = 4;
 
@@ -41,7 +41,7 @@ struct ImageRows {
   Bytes rows;
 };
 
-// reflectivity and depth: the newest images, for messages whose pixels are there.
+// reflectivity and depth: the newest images, for messages with pixels in_images.
 [[nodiscard]] std::optional<FrameMessage> read_frame(MessageBytes bytes,
                                                      const ImageRows& reflectivity,
                                                      const ImageRows& depth);
@@ -51,11 +51,11 @@ struct ImageRows {
 [[nodiscard]] std::optional<ChoiceRecord> read_choice(MessageBytes bytes);
 [[nodiscard]] std::optional<OutputMessage> read_output(MessageBytes bytes);
 [[nodiscard]] std::optional<DroppedInput> read_dropped(MessageBytes bytes);
-// Nothing, too, for a state that is not in the list.
+// Returns nothing for an unknown state, too.
 [[nodiscard]] std::optional<RobotFrameRecord> read_robot_frame(MessageBytes bytes);
-// Nothing, too, for bits that no button has.
+// Returns nothing for bits of unknown buttons, too.
 [[nodiscard]] std::optional<PenButtonsRecord> read_pen_buttons(MessageBytes bytes);
-// Nothing, too, for a button that is not in the list.
+// Returns nothing for an unknown button, too.
 [[nodiscard]] std::optional<ButtonEvent> read_button(MessageBytes bytes);
 
 }  // namespace glint

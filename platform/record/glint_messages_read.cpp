@@ -42,7 +42,7 @@ std::optional<MarkerFrame> read_markers(MessageBytes bytes) {
     marker.range_sigma_m = from.get<float>();
   }
   if (from.failed()) return std::nullopt;
-  if (from.at_end()) return frame;  // so do those from before the rays' turns
+  if (from.at_end()) return frame;  // before the rays' derivatives (along_x, along_y) were recorded
   if (from.get<std::uint32_t>() != count) return std::nullopt;
   for (std::uint32_t i = 0; i < count; ++i) {
     Marker& marker = frame.markers.items[i];
@@ -50,7 +50,7 @@ std::optional<MarkerFrame> read_markers(MessageBytes bytes) {
     marker.along_y = get_vector(from);
   }
   if (from.failed()) return std::nullopt;
-  if (from.at_end()) return frame;  // and from before what a tool's own depth bias needs
+  if (from.at_end()) return frame;  // before the values for a tool's own depth bias
   if (from.get<std::uint32_t>() != count) return std::nullopt;
   for (std::uint32_t i = 0; i < count; ++i) {
     Marker& marker = frame.markers.items[i];
@@ -58,10 +58,10 @@ std::optional<MarkerFrame> read_markers(MessageBytes bytes) {
     marker.peak = from.get<std::uint16_t>();
   }
   if (from.failed()) return std::nullopt;
-  if (from.at_end()) return frame;  // and from before markers could be incomplete
+  if (from.at_end()) return frame;  // before the reason of incomplete markers
   frame.markers.incomplete = static_cast<Reason>(from.get<std::uint8_t>());
   if (from.failed() || frame.markers.incomplete > k_last_reason) return std::nullopt;
-  if (from.at_end()) return frame;  // and from before a stamp stated its sigma
+  if (from.at_end()) return frame;  // before the standard deviation of the time stamp
   frame.stamp_sigma.nanoseconds = from.get<std::int64_t>();
   if (from.failed()) return std::nullopt;
   return frame;

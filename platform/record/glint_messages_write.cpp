@@ -8,7 +8,7 @@ template <class Stamped>
 void put_stamps(CdrWriter& to, const Stamped& frame) {
   to.put(frame.mid_exposure.nanoseconds);
   to.put(frame.arrival.nanoseconds);
-  to.put(static_cast<std::uint32_t>(frame.sequence));  // the low 32 bits: extended_count()
+  to.put(static_cast<std::uint32_t>(frame.sequence));  // low 32 bits: see extended_count()
 }
 
 }  // namespace

@@ -16,8 +16,8 @@
 namespace glint {
 namespace {
 
-// A kernel without full preemption keeps the core until a write returns: copying a chunk of 4 MiB
-// at once let ticks wake up 2 to 3 ms late, once a second.
+// A kernel without full preemption keeps the core until write() returns: chunks of 4 MiB in one
+// call delayed ticks by 2 to 3 ms, once a second.
 constexpr std::size_t k_piece_bytes = std::size_t{64} << 10;
 
 }  // namespace
@@ -89,7 +89,7 @@ bool GrowingFile::append(std::initializer_list<std::span<const std::uint8_t>> pa
   return true;
 }
 
-// What a failed synchronisation should have kept may be lost, wherever in the file it is.
+// After a failed synchronisation any part of the file may be lost.
 bool GrowingFile::check_sync() {
   const int error = sync_ ? sync_->error() : 0;
   return error == 0 || fail("synchronise", error);

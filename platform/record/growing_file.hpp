@@ -1,4 +1,4 @@
-// A file that only grows, has room kept for its ending, and gets its name when it is whole.
+// Append-only file with space reserved for its ending, renamed to its final name when complete.
 #pragma once
 
 #include <cstdint>
@@ -14,23 +14,23 @@ namespace glint {
 
 class GrowingFile {
  public:
-  // Makes a new PATH.part (part_file.hpp). Throws InputError with the system's words.
+  // Creates a new PATH.part (part_file.hpp). Throws InputError with the system's message.
   explicit GrowingFile(std::string path);
-  ~GrowingFile();  // leaves part_path() behind unless name() succeeded
+  ~GrowingFile();  // keeps part_path() unless name() succeeded
   GrowingFile(const GrowingFile&) = delete;
   GrowingFile& operator=(const GrowingFile&) = delete;
 
-  // Takes room on the disk for that many bytes from the end on, without growing the file. False:
-  // there is none, and error() says so. A file system that cannot do this lets every call pass.
+  // Reserves disk space for that many bytes from the end, without growing the file. Returns false,
+  // with error(), if there is none. Always true on a file system without this function.
   [[nodiscard]] bool reserve(std::uint64_t bytes);
 
-  // From now on a thread of its own brings the file to the disk once a period (fdatasync).
+  // Starts a thread that synchronises the file to the disk once per period (fdatasync).
   void sync_every(Duration period) { sync_.emplace(descriptor_, period); }
 
-  // All parts or nothing: after a failure the file ends where it ended before.
+  // Appends all parts or none: after a failure the file is cut back to its previous end.
   [[nodiscard]] bool append(std::initializer_list<std::span<const std::uint8_t>> parts);
 
-  // Gives back room not used, waits until the disk has it all, gives the file its name.
+  // Releases unused space, waits for the disk, and renames the file.
   [[nodiscard]] bool name();
 
   [[nodiscard]] const std::string& part_path() const { return part_path_; }

@@ -1,4 +1,4 @@
-// A file to read from anywhere in it; whatever is wrong names the file and the byte.
+// File for random-access reads; errors state the file and the byte.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ class InputFile {
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
 
-  // Exactly `count` bytes from `offset`, which the caller knows to be inside; `bytes` is reused.
+  // Reads exactly `count` bytes from `offset`, which must be inside the file; reuses `bytes`.
   void read(std::uint64_t offset, std::uint64_t count, Bytes& bytes) const;
 
   // Throws InputError("path:byte N: found; expected ...").

@@ -1,5 +1,5 @@
-// The records of an MCAP file, version 0, as far as Glint writes and reads them: what they hold and
-// how they become bytes. All numbers little endian.
+// MCAP file format, version 0: the records that Glint writes and reads, and their serialisation.
+// All numbers are little endian.
 // Source: the MCAP specification, foxglove/mcap 95d0673.
 #pragma once
 
@@ -16,7 +16,8 @@ namespace glint {
 inline constexpr std::array<std::uint8_t, 8> k_mcap_magic{0x89, 'M', 'C',  'A',
                                                           'P',  '0', '\r', '\n'};
 inline constexpr std::uint64_t k_mcap_heading_bytes = 9;  // kind, then length of the content
-// Longer than any chunk or attachment of a real recording: a flipped bit cannot ask for all memory.
+// Longer than any chunk or attachment of a real recording; bounds the memory requested by a flipped
+// bit.
 inline constexpr std::uint64_t k_mcap_record_bytes_max = std::uint64_t{256} << 20;
 inline constexpr std::uint64_t k_mcap_footer_bytes = k_mcap_heading_bytes + 20;
 
@@ -95,7 +96,7 @@ struct McapStatistics {
   std::map<std::uint16_t, std::uint64_t> channel_messages;
 };
 
-// Each appends one whole record.
+// Each function appends one complete record.
 void append_header(Bytes& to, std::string_view profile, std::string_view library);
 void append_record(Bytes& to, const McapSchema& schema);
 void append_record(Bytes& to, const McapChannel& channel);
@@ -108,21 +109,21 @@ void append_record(Bytes& to, const McapStatistics& statistics);
 void append_metadata(Bytes& to, std::string_view name, const McapTexts& texts);
 void append_summary_offset(Bytes& to, McapKind kind, std::uint64_t start, std::uint64_t length);
 
-// Of one channel in one chunk: (log time, offset in the chunk's records) of each message.
+// For one channel in one chunk: (log time, offset in the chunk's records) of each message.
 using McapMessageTimes = std::vector<std::pair<std::uint64_t, std::uint64_t>>;
 void append_message_index(Bytes& to, std::uint16_t channel_id, const McapMessageTimes& times);
 
-// The part of a chunk, an attachment or a footer in front of its bulk or checksum.
+// The part of a chunk, an attachment or a footer before its data or checksum.
 void append_chunk_heading(Bytes& to, const McapChunkHeading& heading);
 void append_attachment_heading(Bytes& to, const McapAttachmentIndex& attachment);
 void append_footer_heading(Bytes& to, std::uint64_t summary_start, std::uint64_t offset_start);
 
-// Contents of records; reader.failed() says whether they were too short.
+// Contents of records; reader.failed() is true if they were too short.
 [[nodiscard]] McapSchema read_schema(ByteReader& reader);
 [[nodiscard]] McapChannel read_channel(ByteReader& reader);
 [[nodiscard]] McapMessageHeading read_message_heading(ByteReader& reader);
 [[nodiscard]] McapChunkHeading read_chunk_heading(ByteReader& reader);
-[[nodiscard]] McapChunkIndex read_chunk_index(ByteReader& reader);  // its offset and length alone
+[[nodiscard]] McapChunkIndex read_chunk_index(ByteReader& reader);  // its offset and length only
 [[nodiscard]] McapAttachmentIndex read_attachment_index(ByteReader& reader);
 [[nodiscard]] McapMetadataIndex read_metadata_index(ByteReader& reader);
 [[nodiscard]] McapStatistics read_statistics(ByteReader& reader);

@@ -9,7 +9,7 @@ McapTexts read_texts(ByteReader& reader) {
     std::string name = content.text();
     std::string text = content.text();
     if (content.failed()) {
-      reader.take(~std::uint64_t{0});  // what holds the map is as wrong as the map
+      reader.take(~std::uint64_t{0});  // fails the containing record, too
       return texts;
     }
     texts[std::move(name)] = std::move(text);

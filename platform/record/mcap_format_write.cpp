@@ -3,7 +3,7 @@
 namespace glint {
 namespace {
 
-// Writes kind and length in front of what is appended while it lives.
+// Writes kind and length before the content that is appended during its lifetime.
 class Record {
  public:
   Record(Bytes& to, McapKind kind) : to_(to) {

@@ -166,7 +166,7 @@ std::optional<McapMessage> McapReader::next_whole() {
         check_end(record_at_);
         break;
       case McapKind::message: {
-        // Among indexed chunks it is another record, whose kind is damaged.
+        // Among indexed chunks this is another record with a damaged kind.
         if (ending_ == McapEnding::optional && !known_records_.empty()) break;
         auto found = message(content);
         found->payload = std::span<const std::uint8_t>(record_).subspan(

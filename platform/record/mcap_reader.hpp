@@ -1,8 +1,7 @@
-// Reads an MCAP file from its first message to its last, checking every length and checksum.
+// Sequential reader of an MCAP file that checks every length and checksum.
 //
-// Memory: the largest record. A file without an ending (power failure, a copy that broke off) or
-// with a damaged record is refused, or on request read but for what is not whole; losses() counts
-// that.
+// Memory: the largest record. A file without an ending (power failure, incomplete copy) or with a
+// damaged record is rejected. On request, its intact part is read; losses() counts the rest.
 #pragma once
 
 #include <cstdint>
@@ -19,20 +18,21 @@
 namespace glint {
 
 enum class McapEnding : std::uint8_t {
-  required,  // index, statistics and end mark must be there and right
-  optional,  // what is not whole is left out and counted
+  required,  // index, statistics and end mark are required
+  optional,  // damaged or missing parts are skipped and counted
 };
 
-// Fills `to`, whose size is that of the decoded bytes; false: another compression, or damaged.
+// Decodes into `to`, which has the decoded size. Returns false for another compression or damaged
+// data.
 using ChunkDecoder = bool (*)(std::string_view compression, std::span<const std::uint8_t> from,
                               std::span<std::uint8_t> to);
 
-// What was left out so far; all of it once next() returned nothing.
+// Skipped data so far; final once next() returned nothing.
 struct McapLosses {
-  std::uint64_t chunks = 0;                       // damaged ones
-  std::uint64_t bytes = 0;                        // of them, and behind the last whole record
+  std::uint64_t chunks = 0;  // damaged chunks
+  std::uint64_t bytes = 0;   // of these chunks, and after the last complete record
   std::map<std::string, std::uint64_t> messages;  // by topic
-  bool at_least = false;  // more messages may be missing: no statistics tell how many there were
+  bool at_least = false;  // lower bound of the messages: no statistics give the total
   [[nodiscard]] bool any() const { return bytes > 0 || !messages.empty(); }
 };
 
@@ -42,17 +42,17 @@ struct McapMessage {
   const McapSchema* schema = nullptr;
   McapMessageHeading heading;
   std::span<const std::uint8_t> payload;
-  std::uint64_t file_offset = 0;  // of the record or chunk it stands in, for messages
+  std::uint64_t file_offset = 0;  // of the containing record or chunk, for error messages
 };
 
 class McapReader {
  public:
-  // Without a decoder compressed chunks are refused. Throws InputError: path, byte, what was found,
-  // what was expected.
+  // Without a decoder compressed chunks are rejected. Throws InputError: path, byte, value found,
+  // value expected.
   explicit McapReader(const std::string& path, McapEnding ending = McapEnding::required,
                       ChunkDecoder decoder = nullptr);
 
-  // In the order of the file; nothing at its end. Throws InputError.
+  // Next message in the order of the file; nothing at its end. Throws InputError.
   [[nodiscard]] std::optional<McapMessage> next();
 
   // Data of the attachment; `index` is one of attachments().
@@ -107,19 +107,19 @@ class McapReader {
   McapEnding ending_;
   ChunkDecoder decoder_;
   bool has_ending_ = false;
-  bool has_data_end_ = false;                             // all messages' records are there
+  bool has_data_end_ = false;                             // the records of all messages are present
   bool ended_ = false;                                    // next() returned nothing
-  bool compressed_ = false;                               // by another program, not by damage
-  std::map<std::uint64_t, KnownRecord> known_records_;    // of the index, by offset
+  bool compressed_ = false;                               // with a known compression: not damaged
+  std::map<std::uint64_t, KnownRecord> known_records_;    // from the index, by offset
   std::map<std::uint16_t, std::uint64_t> messages_read_;  // by channel
   McapLosses losses_;
-  std::uint64_t data_end_ = 0;   // of the records that next() reads
-  std::uint64_t at_ = 0;         // of the record that next() reads next
-  std::uint64_t record_at_ = 0;  // of the record that is open
+  std::uint64_t data_end_ = 0;   // end of the records that next() reads
+  std::uint64_t at_ = 0;         // offset of the next record
+  std::uint64_t record_at_ = 0;  // offset of the open record
   std::uint64_t messages_ = 0;
   std::uint32_t crc_ = 0;
-  Bytes record_;   // the record that is open, with its heading
-  Bytes decoded_;  // the records of a compressed chunk that is open
+  Bytes record_;   // the open record, with its heading
+  Bytes decoded_;  // decoded records of the open compressed chunk
   std::optional<ByteReader> chunk_;
 };
 

@@ -1,4 +1,4 @@
-// How a damaged or cut file is read on: which records are left out, and what stood in them.
+// Recovery of a damaged or truncated MCAP file: skips damaged records and counts their messages.
 #include <algorithm>
 
 #include "platform/input_error.hpp"
@@ -22,8 +22,8 @@ std::optional<McapMessage> McapReader::next() {
   return std::nullopt;
 }
 
-// The record that is open or that could not be opened. An index tells where the next one begins;
-// without one its own length must do.
+// Skips the record that is open or that could not be opened. The index gives the start of the next
+// record; without an index its own length is used.
 void McapReader::leave_out_record() {
   const bool opened = at_ > record_at_;
   const auto kind = opened ? static_cast<McapKind>(record_[0]) : McapKind{};
@@ -33,7 +33,7 @@ void McapReader::leave_out_record() {
                                                : known != known_records_.end() &&
                                                      known->second.kind == McapKind::chunk;
   chunk_.reset();
-  if (kind == McapKind::data_end) {  // its checksum holds what was left out, too
+  if (kind == McapKind::data_end) {  // its checksum includes the skipped records
     at_ = data_end_;
     return;
   }
@@ -52,7 +52,7 @@ void McapReader::leave_out_record() {
   losses_.bytes += known != known_records_.end() ? known->second.length : at_ - record_at_;
 }
 
-// What follows the last whole record of a file that was cut short.
+// Counts what follows the last complete record of a truncated file.
 void McapReader::leave_out_tail() {
   if (has_ending_ || has_data_end_) return;
   losses_.at_least = true;
@@ -64,7 +64,7 @@ void McapReader::leave_out_tail() {
   if (read_chunk_heading(content).compression.empty()) count_messages(content);
 }
 
-// Those that begin in a chunk's records, up to the first that is not one.
+// Counts the messages that start in a chunk's records, up to the first invalid one.
 void McapReader::count_messages(ByteReader records) {
   std::map<std::uint16_t, std::string> topics;
   for (const auto& [id, channel] : channels_) topics[id] = channel.topic;
@@ -84,7 +84,7 @@ void McapReader::count_messages(ByteReader records) {
   }
 }
 
-// A closed file's statistics tell exactly what is missing.
+// The statistics of a closed file give the exact number of missing messages.
 void McapReader::count_by_statistics() {
   if (!statistics_) return;
   losses_.messages.clear();

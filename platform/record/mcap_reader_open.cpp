@@ -1,4 +1,4 @@
-// How a file is opened: its ending if it has one, else a walk over what is whole.
+// Opening of an MCAP file: by its summary if it has one, else by a scan of its complete records.
 #include <algorithm>
 
 #include "platform/input_error.hpp"
@@ -35,7 +35,7 @@ void McapReader::read_header() {
   if (content.failed()) refuse_content(k_mcap_magic.size(), "header");
 }
 
-// False: there is none to use, and what it would have told is as if never read.
+// Returns false if there is no usable ending; discards everything read from it.
 bool McapReader::find_ending() {
   if (ending_ == McapEnding::required) return read_ending();
   try {
@@ -51,7 +51,7 @@ bool McapReader::find_ending() {
   }
 }
 
-// False: there is no footer. Throws where there is one and something about it is wrong.
+// Returns false if there is no footer. Throws if the footer or the summary is invalid.
 bool McapReader::read_ending() {
   const std::uint64_t ending_bytes = k_mcap_footer_bytes + k_mcap_magic.size();
   if (file_.size() < k_mcap_magic.size() + ending_bytes) return false;
@@ -64,7 +64,7 @@ bool McapReader::read_ending() {
   const auto kind = reader.number<std::uint8_t>();
   const auto length = reader.number<std::uint64_t>();
   const auto start = reader.number<std::uint64_t>();
-  (void)reader.number<std::uint64_t>();  // where the offsets of the summary's groups start
+  (void)reader.number<std::uint64_t>();  // start of the summary offsets
   const std::uint64_t checked = reader.position();
   const auto expected = reader.number<std::uint32_t>();
   if (static_cast<McapKind>(kind) != McapKind::footer ||
@@ -128,7 +128,7 @@ void McapReader::read_summary(std::uint64_t start, std::uint64_t end) {
   }
 }
 
-// Notes what the index would have told of a record.
+// Stores a record's metadata or attachment, which the missing index would have listed.
 void McapReader::note_record(const Heading& heading, std::uint64_t at) {
   const std::uint64_t whole = k_mcap_heading_bytes + heading.bytes;
   if (heading.kind == McapKind::metadata) read_metadata({at, whole, ""});
@@ -145,7 +145,7 @@ void McapReader::note_record(const Heading& heading, std::uint64_t at) {
   if (!content.failed()) attachments_.push_back(index);
 }
 
-// Walks over the records until one is cut.
+// Scans the records up to the first truncated one.
 void McapReader::find_what_is_whole() {
   data_end_ = k_mcap_magic.size();
   try {
@@ -156,12 +156,12 @@ void McapReader::find_what_is_whole() {
       try {
         note_record(heading, data_end_);
       } catch (const InputError&) {
-        // Damaged: what asks for it does not find it.
+        // Damaged: it is not listed.
       }
       data_end_ += k_mcap_heading_bytes + heading.bytes;
     }
   } catch (const InputError&) {
-    // This record is cut: what is whole ends here.
+    // Truncated record: the complete part of the file ends before it.
   }
 }
 

@@ -7,7 +7,7 @@
 namespace glint {
 namespace {
 
-// Statistics, summary offsets, footer and magic, without the count of each channel's messages.
+// Statistics, summary offsets, footer and magic, without the message counts per channel.
 constexpr std::uint64_t k_ending_fixed_bytes = 512;
 
 template <class Record>
@@ -28,7 +28,7 @@ McapWriter::McapWriter(const std::string& path, std::string_view profile, std::s
   append_with_room({bytes});
 }
 
-// An upper limit for what close() will append.
+// Upper bound of the bytes that close() appends.
 std::uint64_t McapWriter::ending_bytes() const {
   return k_ending_fixed_bytes + settings_.closing_bytes + index_bytes_ + 10 * channels_.size();
 }
@@ -162,7 +162,7 @@ McapWriter::Summary McapWriter::make_summary() const {
 
 bool McapWriter::close(const std::string& metadata_name, const McapTexts& metadata) {
   flush_chunk();
-  // From here on the room taken before the last chunk is used up.
+  // From here on uses the space reserved before the last chunk.
   Bytes ending;
   append_metadata(ending, metadata_name, metadata);
   metadata_indexes_.push_back({file_.size(), ending.size(), metadata_name});

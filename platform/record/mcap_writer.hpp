@@ -1,8 +1,8 @@
-// Writes an MCAP file: chunks without compression, every checksum, indexes and statistics.
+// Writer of an MCAP file: uncompressed chunks, all checksums, indexes and statistics.
 //
-// Memory: one chunk, and about 100 bytes and 10 for each channel of every chunk written, until the
-// end. Before a chunk is written, room for it and for the file's ending is taken on the disk; where
-// there is none the recording ends with the chunk before, whole and readable: see failed().
+// Memory: one chunk, and per chunk written about 100 bytes plus 10 per channel, until the end.
+// Before a chunk is written, disk space is reserved for it and for the file's ending. If there is
+// none, the recording ends with the previous chunk, complete and readable: see failed().
 #pragma once
 
 #include <cstdint>
@@ -20,31 +20,31 @@ namespace glint {
 struct McapSettings {
   std::size_t chunk_bytes = std::size_t{4} << 20;
   std::uint64_t chunk_span_ns = 1'000'000'000;
-  std::size_t closing_bytes = std::size_t{32} << 10;  // room for metadata written before close()
-  Duration sync_period = milliseconds(1000);          // how often the disk gets it all
+  std::size_t closing_bytes = std::size_t{32} << 10;  // space for metadata written before close()
+  Duration sync_period = milliseconds(1000);          // period of synchronisation to the disk
 };
 
 class McapWriter {
  public:
-  // Throws InputError where the file cannot be made.
+  // Throws InputError if the file cannot be created.
   McapWriter(const std::string& path, std::string_view profile, std::string_view library,
              McapSettings settings = {});
 
-  // Schemas are told apart by name. The number goes into McapMessageHeading::channel_id.
+  // Schemas are identified by name. Returns the number for McapMessageHeading::channel_id.
   std::uint16_t add_channel(const std::string& topic, const std::string& schema_name,
                             const std::string& schema_text, const McapTexts& metadata);
 
-  // After a failure all of these do nothing; heading.channel_id must be one of add_channel().
+  // After a failure these functions do nothing. Requires a heading.channel_id from add_channel().
   void write(const McapMessageHeading& heading, std::span<const std::uint8_t> payload);
   void attach(const std::string& name, const std::string& media_type, std::uint64_t time_ns,
               std::span<const std::uint8_t> data);
   void add_metadata(const std::string& name, const McapTexts& texts);
 
-  // Writes what is in memory, so that failed() is final for all messages so far.
+  // Writes the buffered chunk; failed() is then final for all messages so far.
   void flush_chunk();
 
-  // Metadata that fits into closing_bytes, indexes, statistics; then the file gets its name. False:
-  // part_path() remains, error() says why.
+  // Writes metadata of at most closing_bytes, indexes and statistics; then renames the file.
+  // Returns false on failure: part_path() remains, error() holds the reason.
   bool close(const std::string& metadata_name, const McapTexts& metadata);
 
   [[nodiscard]] bool failed() const { return failed_; }
@@ -72,7 +72,7 @@ class McapWriter {
   bool failed_ = false;
   std::vector<McapSchema> schemas_;
   std::vector<McapChannel> channels_;
-  std::vector<bool> announced_;  // the channel stands in a chunk of the file, or in this one
+  std::vector<bool> announced_;  // the channel is described in a chunk of the file or in this one
   Chunk chunk_;
   std::vector<McapChunkIndex> chunk_indexes_;
   std::vector<McapAttachmentIndex> attachment_indexes_;

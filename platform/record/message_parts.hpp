@@ -1,4 +1,4 @@
-// What several messages of a recording have in common, as they are read.
+// Deserialisation of the parts that several recorded messages share.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace glint {
 
-// A std_msgs/Header, for other programs: the run's own clock stands behind it where it counts.
+// Skips a std_msgs/Header, which is for other programs; Glint's own time fields follow it.
 inline void skip_header(CdrReader& from) {
   (void)from.get<std::int32_t>();
   (void)from.get<std::uint32_t>();

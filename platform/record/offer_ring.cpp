@@ -6,7 +6,7 @@ namespace glint {
 
 void OfferRing::reserve(std::size_t bytes) {
   blocks_ = (bytes + sizeof(Block) - 1) / sizeof(Block);
-  memory_ = std::make_unique<Block[]>(blocks_);  // zeroed, so every page is there
+  memory_ = std::make_unique<Block[]>(blocks_);  // zeroed, so that every page is resident
   pushed_.store(0, std::memory_order_relaxed);
   popped_.store(0, std::memory_order_relaxed);
 }

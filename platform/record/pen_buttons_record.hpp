@@ -1,4 +1,4 @@
-// A version of which buttons of the pen are held, as the tick group could read it.
+// Version of the pen's held buttons, as an input of the tick group.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 namespace glint {
 
 struct PenButtonsRecord {
-  std::uint64_t version = 0;  // as a tick's choice names it; 0 is no record: none was ever held
+  std::uint64_t version = 0;  // referenced by a tick's choice; 0 is not recorded: none held yet
   Time time;                  // of the event that changed them
   std::uint8_t held = 0;      // in the bits of PoseSample::buttons
 

@@ -50,7 +50,7 @@ constexpr Kind k_kind_of<RobotFrameRecord> = k_robot_frame_record;
 template <>
 constexpr Kind k_kind_of<PenButtonsRecord> = k_pen_buttons_record;
 
-// Short against the seconds that the rings hold, long against a wake-up's cost.
+// Short compared with the seconds that the rings hold, long compared with a wake-up's cost.
 constexpr auto k_look_again = std::chrono::microseconds(500);
 
 template <class Item>
@@ -71,8 +71,8 @@ OfferSlot RecorderLane::claim(std::uint32_t kind, std::size_t bytes) noexcept {
     return slot;
   }
   slot.kind = kind;
-  // Relaxed is enough: of two additions to one counter, one of which happens before the other,
-  // the first gets the smaller number.
+  // Relaxed order is sufficient: of two additions to one counter, of which one happens before the
+  // other, the first gets the smaller number.
   slot.ticket = ticket_->fetch_add(1, std::memory_order_relaxed);
   return slot;
 }
@@ -176,7 +176,7 @@ void Recorder::run() {
   }
 }
 
-// The offer with the next number, in whichever lane it is. False: it is still being filled.
+// Writes the offer with the next number, from any lane. Returns false if it is still being filled.
 bool Recorder::write_next() {
   for (RecorderLane& lane : lanes_) {
     const OfferSlot offer = lane.ring_.front();

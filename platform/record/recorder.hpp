@@ -1,10 +1,10 @@
-// Records from real-time threads: each offer copies into a ring of its thread, a thread of the
-// recorder's own writes the file.
+// Recorder for real-time threads: each offer is copied into its thread's ring; a separate thread
+// writes the file.
 //
-// An offer neither allocates, locks nor waits. Where its ring is full it is dropped and counted,
-// and the recording says that it is incomplete. Offers of all threads are numbered by one counter;
-// the file holds them in that order, so what was offered before a value was published stands in
-// front of every offer made by a thread that had read it.
+// An offer neither allocates, locks nor waits. If its ring is full it is dropped and counted, and
+// the recording is marked incomplete. One counter numbers the offers of all threads, and the file
+// has that order. An offer made before a value was published therefore precedes every offer of a
+// thread that had read the value.
 #pragma once
 
 #include <array>
@@ -25,19 +25,20 @@ namespace glint {
 inline constexpr std::size_t k_offered_record_bytes_max = 640;
 
 struct RecorderSettings {
-  std::size_t frame_lane_bytes = std::size_t{26} << 20;  // 24 whole AHAT frames
-  std::size_t tick_lane_bytes = std::size_t{6} << 20;    // 5 s of 1 kHz
+  std::size_t frame_lane_bytes = std::size_t{26} << 20;  // 24 full AHAT frames
+  std::size_t tick_lane_bytes = std::size_t{6} << 20;    // 5 s at 1 kHz
   std::size_t input_lane_bytes = std::size_t{1} << 16;
   std::size_t slice_lane_bytes = std::size_t{1} << 16;
   WhenFull when_full = WhenFull::drop;
-  int roi_margin_px = 8;  // beyond each region, see roi_layout
+  int roi_margin_px = 8;  // around each region, see roi_layout
   RecordingSettings file;
 };
 
-// The offers of one thread. False: dropped. What the level leaves out is taken and ignored.
+// Offers of one thread. They return false if dropped. Offers excluded by the level are ignored and
+// return true.
 class RecorderLane {
  public:
-  // The frame's pixels are copied: rois at level roi, all of them at level full.
+  // Copies the frame's pixels: the ROIs at level roi, all of them at level full.
   bool offer_frame(const Frame& frame, const Rois& rois) noexcept;
   bool offer_head_pose(const HeadPose& pose) noexcept;
   bool offer_markers(const MarkerFrame& frame) noexcept;
@@ -65,27 +66,28 @@ class RecorderLane {
 
 class Recorder {
  public:
-  // Throws InputError where the file cannot be made. Touches all its memory.
+  // Throws InputError if the file cannot be created. Touches all its memory.
   Recorder(const std::string& path, const RecordingInfo& info, RecorderSettings settings = {});
   ~Recorder();  // closes
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  // One thread each at any time.
+  // Each lane is used by one thread at a time.
   [[nodiscard]] RecorderLane& frame_lane() noexcept { return lanes_[0]; }
   [[nodiscard]] RecorderLane& tick_lane() noexcept { return lanes_[1]; }
   [[nodiscard]] RecorderLane& input_lane() noexcept { return lanes_[2]; }
   [[nodiscard]] RecorderLane& slice_lane() noexcept { return lanes_[3]; }
 
-  // Offers that were dropped so far; any thread may ask.
+  // Number of dropped offers so far; from any thread.
   [[nodiscard]] std::uint64_t dropped() const noexcept;
-  // These, and the messages that a failed write cost so far; any thread may ask.
+  // Dropped offers, and messages lost by a failed write; from any thread.
   [[nodiscard]] std::uint64_t lost() const noexcept;
 
-  // Before close(); not from a real-time thread.
+  // Call before close(); not from a real-time thread.
   void add_closing_fact(const std::string& name, const std::string& value);
 
-  // After the last offer: writes what waits, closes the file. Again: the same outcome.
+  // Call after the last offer: writes the pending offers and closes the file. Later calls return
+  // the same outcome.
   RecordingOutcome close();
 
  private:

@@ -1,8 +1,8 @@
-// The words of a recording: what is in one, beside the bytes of its file.
+// Data types of a recording, independent of its file format.
 //
-//   RecordingWriter (recording_writer.hpp)  writes one, called by one thread
-//   Recorder        (recorder.hpp)          the same behind a thread; offers never block
-//   RecordingReader (recording_reader.hpp)  gives everything back in the order of the offers
+//   RecordingWriter (recording_writer.hpp)  writes a recording, from one thread
+//   Recorder        (recorder.hpp)          the same through a separate thread; offers never block
+//   RecordingReader (recording_reader.hpp)  returns all messages in the order of the offers
 #pragma once
 
 #include <cstdint>
@@ -24,14 +24,14 @@
 
 namespace glint {
 
-// What a recording keeps of each frame. The first three replay to the same output records.
+// Recorded part of each frame. The first three levels replay to the same output records.
 enum class RecordingLevel : std::uint8_t { full, roi, blobs, outputs };
 
 [[nodiscard]] std::string_view name_of(RecordingLevel level);
-// Throws InputError, which lists the four names; `place` stands in front, e.g. "cell.toml:12".
+// Throws InputError, which lists the four names; `place` is its prefix, e.g. "cell.toml:12".
 [[nodiscard]] RecordingLevel recording_level(std::string_view name, const std::string& place);
 
-// A file kept inside the recording, so that it replays alone.
+// A file stored in the recording, so that the recording replays without other files.
 struct Attachment {
   std::string name;        // "cell.toml", "tools.toml", "rays.npy"
   std::string media_type;  // "application/toml", "application/octet-stream"
@@ -43,13 +43,13 @@ struct Attachment {
 struct RecordingInfo {
   RecordingLevel level = RecordingLevel::roi;
   Duration nominal_tick;                     // gap between two ticks
-  Duration unix_offset;                      // added to a Time it gives time since 1970 (UTC)
+  Duration unix_offset;                      // Time + this = time since 1970 (UTC)
   std::vector<std::string> tool_names;       // by slot; they name topics and frames
   std::map<std::string, std::string> facts;  // build, compiler, host, config_hash, ...
   std::vector<Attachment> attachments;
 };
 
-// An input that was refused.
+// A rejected input.
 struct DroppedInput {
   Time mid_exposure;
   Time arrival;
@@ -57,7 +57,7 @@ struct DroppedInput {
   Reason reason = Reason::none;  // frame_late, frame_doubled, frame_invalid
 };
 
-// A frame without pixels: its stamp and the candidate markers found in it (level blobs).
+// A frame without pixels: its metadata and marker candidates (level blobs).
 struct MarkerFrame {
   Time mid_exposure;
   Duration stamp_sigma;
@@ -67,7 +67,7 @@ struct MarkerFrame {
   Markers markers;
 };
 
-// What the reader gives back. Pixels outside the recorded rectangles are 0.
+// A frame as read. Pixels outside the recorded rectangles are 0.
 struct FrameMessage {
   Time mid_exposure;
   Duration stamp_sigma;
@@ -81,7 +81,7 @@ struct FrameMessage {
   }
 };
 
-// One tool at one tick: the bytes that output_sha256 is taken over.
+// Output of one tool at one tick: the bytes hashed by output_sha256.
 struct OutputMessage {
   Time tick;
   std::uint8_t tool = 0;
@@ -92,14 +92,14 @@ using RecordedMessage =
     std::variant<FrameMessage, HeadPose, MarkerFrame, ChoiceRecord, OutputMessage, DroppedInput,
                  ButtonEvent, RobotFrameRecord, PenButtonsRecord>;
 
-// How a recording ended.
+// Result of a closed recording.
 struct RecordingOutcome {
   std::uint64_t messages = 0;
   std::uint64_t bytes = 0;
-  std::uint64_t dropped = 0;  // offers that found no room
-  std::uint64_t lost = 0;     // messages that a failed write cost
-  bool ended_early = false;   // a write failed; what stands in the file is whole
-  std::string reason;         // why, with path and the system's words
+  std::uint64_t dropped = 0;  // offers rejected by a full ring
+  std::uint64_t lost = 0;     // messages lost by a failed write
+  bool ended_early = false;   // a write failed; the file's content is complete up to there
+  std::string reason;         // with path and the system's message
   std::string output_sha256;  // over the records written, lower-case hex
   [[nodiscard]] bool complete() const { return dropped == 0 && !ended_early; }
 };

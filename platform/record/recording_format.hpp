@@ -1,11 +1,11 @@
-// Names inside a recording's metadata, and what each level keeps: shared by writer and reader.
+// Metadata names of a recording and the content of each level, shared by writer and reader.
 #pragma once
 
 #include "platform/record/recording.hpp"
 
 namespace glint {
 
-inline constexpr int k_recording_format = 1;  // a change that old readers misread: 2
+inline constexpr int k_recording_format = 1;  // incremented if old readers would misread
 
 inline constexpr const char* k_opening_metadata = "glint";
 inline constexpr const char* k_fact_format = "format";
@@ -16,7 +16,7 @@ inline constexpr const char* k_fact_unix_offset = "unix_offset_ns";
 inline constexpr const char* k_closing_metadata = "glint_end";
 inline constexpr const char* k_fact_complete = "complete";
 inline constexpr const char* k_fact_dropped = "dropped";
-inline constexpr const char* k_fact_ended_early = "ended_early";  // why; empty: it did not
+inline constexpr const char* k_fact_ended_early = "ended_early";  // reason; empty: it did not
 inline constexpr const char* k_fact_output_sha256 = "output_sha256";
 
 [[nodiscard]] constexpr bool keeps_frames(RecordingLevel level) {

@@ -49,7 +49,7 @@ struct RecordingReader::Body {
     return value;
   }
 
-  // A recording holds the low 32 bits of a frame's number.
+  // Extends the recorded low 32 bits of a frame's number.
   void extend_sequence(RecordedMessage& message) {
     const auto extend = [this](auto& item) {
       if constexpr (requires { item.sequence; }) {
@@ -60,7 +60,7 @@ struct RecordingReader::Body {
     };
     std::visit(extend, message);
   }
-  // Nothing: not one of Glint's own messages.
+  // Returns nothing for messages that are not Glint's own.
   std::optional<RecordedMessage> decode(const McapMessage& message);
   std::optional<RecordedMessage> decode_frame(const McapMessage& message);
   template <class T>
@@ -79,11 +79,11 @@ struct RecordingReader::Body {
   std::uint64_t sequence = 0;  // of the newest frame
   bool any_sequence = false;
   ImageRows reflectivity, depth;  // the newest; a frame message may refer to them
-  std::uint64_t gaps = 0;         // before those images
+  std::uint64_t gaps = 0;         // damaged chunks before those images
   std::int64_t frames_without_pixels = 0;
 };
 
-// A damaged chunk may have held the images that the frame refers to.
+// The images of the frame may have been in a damaged chunk.
 std::optional<RecordedMessage> RecordingReader::Body::decode_frame(const McapMessage& message) {
   auto frame = read_frame(message.payload, reflectivity, depth);
   if (!frame && gaps > 0) {

@@ -1,4 +1,4 @@
-// Reads a recording back, message by message, in the order in which it was offered.
+// Reads the messages of a recording in the order of the offers.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,17 @@
 namespace glint {
 
 struct ReadTolerance {
-  bool truncated = false;   // a file cut short or damaged is read but for what is not whole
-  bool incomplete = false;  // a recording that dropped offers or ended early is read all the same
+  bool truncated = false;   // reads the intact part of a truncated or damaged file
+  bool incomplete = false;  // reads a recording with dropped offers or an early end
 };
 
-// What of the file is not read; all of it once next() returned nothing.
+// Data of the file that was skipped; final once next() returned nothing.
 struct RecordingLosses {
-  std::int64_t frames = 0;    // at level outputs: none
-  std::int64_t messages = 0;  // of every kind, the frames' own among them
-  std::int64_t chunks = 0;    // damaged ones
+  std::int64_t frames = 0;    // 0 at level outputs
+  std::int64_t messages = 0;  // of every kind, including the frames' own
+  std::int64_t chunks = 0;    // damaged chunks
   std::uint64_t bytes = 0;
-  bool at_least = false;  // the file does not tell how many frames and messages it had
+  bool at_least = false;  // lower bound: the file does not state its numbers of frames and messages
   [[nodiscard]] bool any() const { return bytes > 0 || messages > 0; }
 };
 // "at least 3 frames (12 messages), 4096 bytes, 1 damaged chunk".
@@ -30,8 +30,8 @@ struct RecordingLosses {
 
 class RecordingReader {
  public:
-  // Throws InputError: path, byte and what was expected; for a recording that is cut short or
-  // incomplete also what to do about it.
+  // Throws InputError: path, byte and expected value; for a truncated or incomplete recording also
+  // the remedy.
   explicit RecordingReader(const std::string& path, ReadTolerance tolerance = {});
   ~RecordingReader();
   RecordingReader(RecordingReader&&) noexcept;
@@ -40,16 +40,16 @@ class RecordingReader {
   [[nodiscard]] RecordingLevel level() const;
   [[nodiscard]] Duration nominal_tick() const;
   [[nodiscard]] Duration unix_offset() const;
-  // Facts of the beginning and of the end together; among them "complete" and "output_sha256".
+  // Opening and closing facts together, including "complete" and "output_sha256".
   [[nodiscard]] const std::map<std::string, std::string>& facts() const;
 
   // The next of Glint's own messages; nothing at the end. Throws InputError.
   [[nodiscard]] std::optional<RecordedMessage> next();
-  // Each damaged chunk leaves one gap in the order of the messages.
+  // Number of gaps in the message order: one for each damaged chunk.
   [[nodiscard]] std::uint64_t gaps() const;
   [[nodiscard]] RecordingLosses losses() const;
 
-  // Throws InputError, which lists the names there are.
+  // Throws InputError, which lists the existing names.
   [[nodiscard]] Attachment attachment(const std::string& name);
   [[nodiscard]] std::vector<std::string> attachment_names() const;
 

@@ -45,11 +45,11 @@ struct RecordingWriter::Body {
   Body(const std::string& path, const RecordingInfo& info, const RecordingSettings& settings);
 
   std::uint16_t channel(std::string_view topic, std::string_view type) {
-    // rosbag2 asks for the key; an empty value means the default quality of service.
+    // rosbag2 requires the key; an empty value means the default quality of service.
     return mcap.add_channel(std::string(topic), std::string(type), schema_text(type),
                             {{"offered_qos_profiles", ""}});
   }
-  // The message in `cdr`, at that time of the board's clock.
+  // Writes the message in `cdr`, at that monotonic time.
   void write(std::uint16_t to, Time time) {
     const auto log_time =
         static_cast<std::uint64_t>(std::max<std::int64_t>(0, (time + unix_offset).nanoseconds));

@@ -1,8 +1,8 @@
-// Writes a recording: Glint's own messages for replay, ROS messages for everybody else's viewers.
+// Writer of a recording: Glint's own messages for replay, ROS messages for other viewers.
 //
-// The file grows as PATH.part and gets its name when it is closed. A write that fails (full disk)
-// ends it at the last whole chunk, with index and statistics, and is said in outcome(); calls after
-// that do nothing, so that tracking goes on.
+// The file is PATH.part until it is closed, then it is renamed. A failed write (full disk) ends it
+// at the last complete chunk, with index and statistics, and is reported in outcome(). Later calls
+// do nothing, so that tracking continues.
 #pragma once
 
 #include <cstdint>
@@ -18,42 +18,42 @@ namespace glint {
 
 struct RecordingSettings {
   std::size_t chunk_bytes = std::size_t{4} << 20;  // a chunk ends at this size ...
-  Duration chunk_span = milliseconds(1000);        // ... or when it spans this: what a crash costs
-  Duration sync_period = milliseconds(1000);       // what a power failure costs beside that
+  Duration chunk_span = milliseconds(1000);        // ... or this span: the loss in a crash
+  Duration sync_period = milliseconds(1000);       // additional loss in a power failure
 };
 
 class RecordingWriter {
  public:
-  // Throws InputError where the file cannot be made.
+  // Throws InputError if the file cannot be created.
   RecordingWriter(const std::string& path, const RecordingInfo& info,
                   RecordingSettings settings = {});
   ~RecordingWriter();  // closes
   RecordingWriter(const RecordingWriter&) = delete;
   RecordingWriter& operator=(const RecordingWriter&) = delete;
 
-  // In the order in which a replay shall meet them. What the level leaves out is not written:
-  // frames only at full and roi, markers only at blobs, inputs and choices not at outputs.
+  // Call in the order of the replay. Messages excluded by the level are not written: frames only at
+  // full and roi, markers only at blobs, inputs and choices not at outputs.
   void write_frame(const FramePatch& patch);
   void write_head_pose(const HeadPose& pose);
   void write_markers(const MarkerFrame& frame);
   void write_choice(const ChoiceRecord& choice);
-  // Also writes /glint/pen_pose, /glint/pen_pose_cov and /tf where the sample has a pose.
+  // Also writes /glint/pen_pose, /glint/pen_pose_cov and /tf if the sample has a pose.
   void write_output(const PoseSample& sample, std::span<const std::uint8_t> record);
   void write_dropped(const DroppedInput& input);
   void write_robot_frame(const RobotFrameRecord& frame);
   void write_pen_buttons(const PenButtonsRecord& buttons);
-  void write_button(const ButtonEvent& event);  // at every level: a path is made of these
+  void write_button(const ButtonEvent& event);  // at every level: paths are made of these
 
-  // Offers that never arrived here: the recording is then marked incomplete.
+  // Number of offers dropped before this writer: the recording is then marked incomplete.
   void count_dropped_offers(std::uint64_t count);
 
-  // A fact known only at the end; written at close.
+  // Adds a fact that is available only at the end; written by close().
   void add_closing_fact(const std::string& name, const std::string& value);
 
-  // Index, statistics and closing facts; then the file gets its name. Again: does nothing.
+  // Writes index, statistics and closing facts, then renames the file. Later calls do nothing.
   RecordingOutcome close();
   [[nodiscard]] const RecordingOutcome& outcome() const;
-  // Messages that a failed write cost so far: those of its chunk and all since.
+  // Messages lost by a failed write so far: those of its chunk and all later ones.
   [[nodiscard]] std::uint64_t messages_lost() const;
 
  private:

@@ -1,5 +1,5 @@
-// A version of where the robot is, as the tick group could read it: what re-referencing found while
-// the session ran.
+// Version of the robot's pose, as an input of the tick group: result of re-referencing during the
+// session.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 namespace glint {
 
 struct RobotFrameRecord {
-  std::uint64_t version = 0;  // as a tick's choice names it
-  Time time;                  // of the picture that it rests on
+  std::uint64_t version = 0;  // referenced by a tick's choice
+  Time time;                  // of the image it is based on
   RegistrationState state = RegistrationState::none;
   Pose T_world_robot;
   double rms_m = 0;

@@ -56,7 +56,7 @@ void write_transform(CdrWriter& to, Time since_1970, const PoseSample& sample,
   to.put_length(1);
   put_header(to, since_1970, frame_name(sample.frame));
   to.put(child_frame);
-  put_pose(to, sample.pose);  // a Transform's bytes are a Pose's
+  put_pose(to, sample.pose);  // a Transform has the same bytes as a Pose
 }
 
 void write_image(CdrWriter& to, Time since_1970, const ImageShape& shape,

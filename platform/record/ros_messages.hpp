@@ -1,4 +1,5 @@
-// ROS messages made of Glint's values; each begins a message in the writer. Stamps are since 1970.
+// Serialisation of Glint's values as ROS messages; each starts a message in the writer. Time stamps
+// are since 1970.
 #pragma once
 
 #include <string>
@@ -17,18 +18,18 @@ inline constexpr std::string_view k_robot_frame = "robot_base";
 
 [[nodiscard]] std::string_view frame_name(ReferenceFrame frame);
 
-// builtin_interfaces/Time holds until 2038; what lies outside is held at the nearest it can say.
+// builtin_interfaces/Time ends in 2038; times outside its range are clamped.
 void put_header(CdrWriter& to, Time since_1970, std::string_view frame);
 void put_vector(CdrWriter& to, const Vector3& vector);
 void put_pose(CdrWriter& to, const Pose& pose);  // geometry_msgs/Pose
 
-// The pose of the tool's tip at the tick that it is predicted to.
+// Pose of the tool's tip, predicted to the tick.
 void write_pose_stamped(CdrWriter& to, Time since_1970, const PoseSample& sample);
 void write_pose_with_covariance(CdrWriter& to, Time since_1970, const PoseSample& sample);
 void write_transform(CdrWriter& to, Time since_1970, const PoseSample& sample,
                      std::string_view child_frame);
 
-// sensor_msgs/Image of rows without padding; encoding "mono8", "mono16" or "16UC1".
+// sensor_msgs/Image with rows without padding; encoding "mono8", "mono16" or "16UC1".
 struct ImageShape {
   std::uint32_t width = 0, height = 0, bytes_per_pixel = 0;
   std::string_view encoding;

@@ -14,8 +14,8 @@ struct Definition {
 };
 
 // Field lists of common_interfaces and geometry2, the same from Galactic to Jazzy. The types of
-// glint_msgs are Glint's own: times end in _ns and count on the board's clock, headers carry the
-// same instant since 1970.
+// glint_msgs are Glint's own: fields ending in _ns are monotonic times, headers hold the same time
+// since 1970.
 constexpr std::array k_definitions{
     Definition{"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
     Definition{"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
@@ -113,7 +113,7 @@ const Definition& definition(std::string_view name) {
   return *found;
 }
 
-// Adds the types in `text` to `names`, each once, those of their fields after them.
+// Adds the types in `text` to `names`, each once, followed by the types of their fields.
 void collect_types(std::string_view text, std::vector<std::string_view>& names) {
   while (!text.empty()) {
     const std::string_view line = text.substr(0, text.find('\n'));

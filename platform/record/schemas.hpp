@@ -1,4 +1,4 @@
-// The texts that tell other programs how to read our messages.
+// Message schemas (ros2msg) for other programs.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace glint {
 
-// The ros2msg text of "geometry_msgs/msg/PoseStamped" or any other type that a recording holds:
-// its own fields, then those of every type in it. A name that is not in the list ends the program.
+// The ros2msg text of "geometry_msgs/msg/PoseStamped" or any other recorded type: its own fields,
+// then those of every contained type. An unknown name ends the program.
 [[nodiscard]] std::string schema_text(std::string_view name);
 
 }  // namespace glint

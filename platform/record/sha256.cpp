@@ -22,7 +22,7 @@ std::uint32_t big_endian(const std::uint8_t* b) noexcept {
 
 }  // namespace
 
-// The letters are those of FIPS 180-4, section 6.2.2.
+// Variable names as in FIPS 180-4, section 6.2.2.
 void Sha256::compress(const std::uint8_t* block) noexcept {
   std::array<std::uint32_t, 64> w;
   for (std::size_t t = 0; t < 16; ++t) w[t] = big_endian(block + 4 * t);

@@ -1,6 +1,6 @@
-// SHA-256, so that output records have one name everywhere.
-// Cost: 64 rounds for each 64 bytes; no allocation while bytes are added.
-// Source: FIPS 180-4, sections 4.1.2, 5.1.1 and 6.2; its vectors are in sha256_test.cpp.
+// SHA-256 hash, used to identify a run's output records.
+// Cost: 64 rounds per 64 bytes; no allocation while bytes are added.
+// Source: FIPS 180-4, sections 4.1.2, 5.1.1 and 6.2; its test vectors are in sha256_test.cpp.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace glint {
 class Sha256 {
  public:
   void add(std::span<const std::uint8_t> bytes) noexcept;
-  // Of everything added so far; more may be added afterwards.
+  // Digest of all bytes added so far; more may be added afterwards.
   [[nodiscard]] std::array<std::uint8_t, 32> digest() const noexcept;
   [[nodiscard]] std::string hex() const;  // 64 lower-case digits
 

@@ -1,4 +1,4 @@
-// The topics of a recording, the same names that ROS and DDS see.
+// Topic names of a recording, equal to those in ROS and DDS.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ inline constexpr std::string_view k_robot_frame_topic = "/glint/robot_frame";
 inline constexpr std::string_view k_pen_buttons_topic = "/glint/pen_buttons";
 inline constexpr std::string_view k_transform_topic = "/tf";
 
-// Letters, digits and '_' of the name; "toolN" where nothing of it is left or there is none.
+// Letters, digits and '_' of the name; "toolN" if the result is empty or the tool has no name.
 [[nodiscard]] std::string topic_name(const std::vector<std::string>& tool_names, std::size_t tool);
 
 struct RecordedTopics {

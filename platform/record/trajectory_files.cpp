@@ -23,14 +23,14 @@ std::string_view name_in(const std::array<std::string_view, N>& names, Enum valu
   return i < N ? names[i] : "unknown";
 }
 
-// The shortest text that reads back as the same number, whatever the locale.
+// Shortest text that parses to the same number, independent of the locale.
 void put(std::string& line, double number) {
   std::array<char, 32> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
   line.append(text.data(), end);
 }
 
-// Seconds with all nanoseconds: a double would lose some since 1970.
+// Seconds with all nanoseconds: a double since 1970 would lose precision.
 void put(std::string& line, Time time) {
   constexpr std::uint64_t k_second = 1'000'000'000;
   const bool negative = time.nanoseconds < 0;

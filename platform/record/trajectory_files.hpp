@@ -1,8 +1,7 @@
-// Trajectories as text: TUM for evo and its kin, CSV with every field for spreadsheets and pandas.
+// Trajectory text files: TUM format (evo and similar tools), and CSV with every field.
 //
-// Both grow as PATH.part and get their name when they are closed. A write that fails ends the file
-// with the last whole line; failed(), error() and lines_lost() say so, later lines are only
-// counted.
+// Both are PATH.part until closed, then renamed. A failed write ends the file at its last complete
+// line; failed(), error() and lines_lost() report it, and later lines are only counted.
 #pragma once
 
 #include <cstdint>
@@ -14,42 +13,42 @@
 
 namespace glint {
 
-// `t x y z qx qy qz qw` as TUM text has it, without a newline; seconds and metres.
+// `t x y z qx qy qz qw` in TUM format, without a newline; seconds and metres.
 [[nodiscard]] std::string tum_line(Time time, const Pose& pose);
 
-// A marker's place as points_csv.hpp reads it.
+// A marker position in the format of points_csv.hpp.
 inline constexpr std::string_view k_points_heading = "time_s,x_m,y_m,z_m";
 [[nodiscard]] std::string points_line(Time time, const Vector3& point_m);
 
-// What the frame graph made of one tool in one frame.
+// Result of the frame group for one tool in one frame.
 struct FramePose {
   Time time;  // mid-exposure
   std::uint64_t sequence = 0;
   std::string_view tool;
   TrackState state = TrackState::none;
-  Reason reason = Reason::none;  // why there is no pose
-  // Of a measured tool; otherwise their fields are empty.
+  Reason reason = Reason::none;  // reason for a missing pose
+  // For a measured tool only; otherwise these fields are empty.
   ReferenceFrame frame = ReferenceFrame::camera;
   std::uint8_t marker_mask = 0;
   double rms_m = 0;  // of the fit
   Pose pose;
-  Matrix6 covariance = Matrix6::Zero();  // of the pose's origin and rotation, about frame's axes
+  Matrix6 covariance = Matrix6::Zero();  // of the pose's origin and rotation, about `frame`'s axes
 };
 [[nodiscard]] std::string frame_pose_heading();
 [[nodiscard]] std::string frame_pose_line(const FramePose& pose);
 
-// Lines of text on their way to a file.
+// Buffered writer of text lines to a file.
 class TrajectoryLines {
  public:
-  // Throws InputError where the file cannot be made.
+  // Throws InputError if the file cannot be created.
   explicit TrajectoryLines(const std::string& path) : file_(path) {}
 
   void add(std::string_view line);
-  // False: something could not be written.
+  // Returns false if a write failed.
   bool close();
   [[nodiscard]] bool failed() const { return failed_; }
   [[nodiscard]] const std::string& error() const { return file_.error(); }
-  // Lines that a failed write cost so far.
+  // Lines lost by a failed write so far.
   [[nodiscard]] std::uint64_t lines_lost() const { return lines_lost_; }
 
  private:
@@ -74,8 +73,8 @@ class TumFile {
   std::uint8_t tool_;
 };
 
-// Every sample of every tool, all its fields; states, frames and reasons by name. Without a pose
-// the fields of the pose are empty.
+// Every sample of every tool with all fields; states, frames and reasons by name. The pose fields
+// are empty without a pose.
 class CsvFile {
  public:
   explicit CsvFile(const std::string& path);
