@@ -16,8 +16,8 @@
 
 namespace glint {
 
-// Depth image for the background group. Its spans are borrowed: they must remain valid until the
-// group's progress reports `free`.
+// Depth image for the background group. Its spans and pointers are borrowed: they must remain valid
+// until the group's progress reports `free`.
 struct ShownDepth {
   // A downsampled copy of the same image for robot registration, at most k_scene_pixels_max pixels.
   struct Scene {

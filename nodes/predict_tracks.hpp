@@ -9,7 +9,7 @@
 //         table: up to lens_steps look-ups).
 // Worst:  all tools tracked, with a valid head pose; independent of the covariances.
 // Source: an Ornstein-Uhlenbeck process changes by a variance of 2 (1 - exp(-t / tau)) of its own
-// in the time t (1930); no eigenvalue exceeds the largest row sum (Gershgorin 1931).
+//         in the time t (1930); no eigenvalue exceeds the largest row sum (Gershgorin 1931).
 #pragma once
 
 #include <array>
@@ -43,8 +43,8 @@ struct ReachSettings {
   // motion is visible to the filter.
   double acceleration_max_m_s2 = 30.0;
   Duration start_max = milliseconds(60);
-  // Largest standard deviation of an estimated speed; the initial one is twice as large. A tool
-  // detected once may be faster than any hand: it is searched in the whole frame until it is
+  // Up to this standard deviation a speed counts as estimated; the initial one is twice as large. A
+  // tool detected once may be faster than any hand: it is searched in the whole frame until it is
   // detected again.
   double known_speed_m_s = 0.25;
   // Upper bound of the reach, whatever the covariance: no hand is faster or farther than this.

@@ -81,8 +81,8 @@ SeenMarkers weigh(const Tool& tool, int marker_count, const Markers& markers,
 
 // Markers that are partially occluded or merged with stray reflections exceed their noise, often
 // several at once; removing one of them does not help. Up to four times the declared sigmas, the
-// pose is kept and its covariance scaled by the reduced chi-square (Birge 1932, The calculation of
-// errors by the method of least squares). A wrong labeling has far larger residuals.
+// pose is kept and its covariance scaled by the reduced chi-square. A wrong labeling has far larger
+// residuals. Source: Birge 1932, The calculation of errors by the method of least squares.
 constexpr double k_noise_stretch_most = 16;
 
 // Three markers, an inflated fit or a fit with a removed marker may agree by chance on stray

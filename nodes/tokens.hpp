@@ -41,7 +41,7 @@ struct FrameVerdict {
   FrameStamp stamp;
   Reason reason = Reason::none;  // frame_late, frame_doubled, frame_invalid
   bool resynchronised = false;   // the time stamps restarted: earlier tracks are invalid
-  std::uint64_t accepted = 0;    // counters since program start
+  std::uint64_t accepted = 0;    // counters since the start
   std::uint64_t late = 0, doubled = 0, invalid = 0, resynchronisations = 0;
   [[nodiscard]] bool usable() const { return reason == Reason::none; }
 };
@@ -182,7 +182,7 @@ struct Track {
   bool doubted = false;       // not yet both unambiguous and precise: not published
   bool seen_now = false;      // this frame gave a measured pose of at least three markers
   bool has_previous = false;  // `previous` is in the same base and recent enough
-  Reason reason = Reason::no_frame_yet;  // why this frame detected none
+  Reason reason = Reason::no_frame_yet;  // why this frame gave no measured pose
   ReferenceFrame base = ReferenceFrame::camera;
   std::uint8_t marker_mask = 0;
   std::uint64_t frame_sequence = 0;
