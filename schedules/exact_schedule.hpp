@@ -28,7 +28,7 @@ inline constexpr std::int64_t k_search_nodes_max = 2'000'000;
 struct ExactSchedule {
   CoreOrders orders;
   std::int64_t makespan_ns = 0;
-  std::int64_t least_possible_ns = 0;  // lower bound of every schedule
+  std::int64_t least_possible_ns = 0;  // lower bound of every schedule's makespan
   bool optimal = false;
   std::int64_t searched = 0;
 };
