@@ -14,7 +14,7 @@ namespace {
 // Capabilities by their number in linux/capability.h.
 constexpr int k_cap_ipc_lock = 14;
 constexpr int k_cap_sys_nice = 23;
-// Longer than a tick's node takes to run.
+// Largest accepted exit latency of an idle state: the run time of a tick's node.
 constexpr long k_idle_exit_us = 10;
 constexpr int k_cores_max = 1024;
 

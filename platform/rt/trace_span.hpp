@@ -9,8 +9,8 @@
 namespace glint {
 
 enum TraceFlag : std::uint8_t {
-  k_span_overran = 1,    // the remaining nodes no longer fit before the deadline
-  k_span_will_miss = 2,  // what remains no longer fits before the deadline
+  k_span_overran = 1,    // the deadline had passed at this node's end
+  k_span_will_miss = 2,  // the remaining nodes no longer fit before the deadline
   k_span_injected = 4,   // a delay was injected into this node
   k_span_release = 8,    // not a node: nominal release (begin) and wake-up (end) of the group
   k_span_sent = 16,      // not a node: the CAN writes of a tick
