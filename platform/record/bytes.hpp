@@ -35,8 +35,8 @@ inline void append(Bytes& to, std::string_view text) {
   append(to, bytes_of(text));
 }
 
-// Reader of such a buffer. After a read beyond the end, failed() is true and all reads return 0 or
-// empty.
+// Bounds-checked reader of a byte buffer. After a read beyond the end, failed() is true and all
+// reads return 0 or empty.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}

@@ -18,7 +18,7 @@
 namespace glint {
 
 enum class McapEnding : std::uint8_t {
-  required,  // index, statistics and end mark are required
+  required,  // index, statistics and end mark are required and checked
   optional,  // damaged or missing parts are skipped and counted
 };
 
