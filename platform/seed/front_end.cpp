@@ -7,10 +7,10 @@ namespace glint {
 namespace {
 
 constexpr double k_seed_threshold = 250;  // of 8 bits, as published
-constexpr double k_outside = -16;         // a place outside every frame: remap leaves it black
+constexpr double k_outside = -16;         // position outside every frame: remap writes black
 
-// The half-size picture of a binary one has 0, a quarter, a half, three quarters and all of white:
-// a pixel counts from a half on. One threshold, one pass.
+// Pixels of a halved binary image are 0, 1/4, 1/2, 3/4 or 1 of white; those from 1/2 on count. One
+// threshold, one pass.
 cv::Ptr<cv::SimpleBlobDetector> make_detector(double max_area_px) {
   cv::SimpleBlobDetector::Params params;
   params.minThreshold = 126;
@@ -29,7 +29,7 @@ cv::Ptr<cv::SimpleBlobDetector> make_detector(double max_area_px) {
   return cv::SimpleBlobDetector::create(params);
 }
 
-// Of one pixel type, without a copy.
+// Matrix view of the frame's pixels, without a copy.
 cv::Mat borrowed(const void* pixels, const cv::Size& size, int type) {
   return {size, type, const_cast<void*>(pixels)};
 }
@@ -65,7 +65,7 @@ cv::Mat SeedFrontEnd::raw(const Frame& frame) const {
 void SeedFrontEnd::undistort(const Frame& frame) {
   cv::Mat source = raw(frame);
   if (source.depth() == CV_16U) {
-    // Half the cost of a remap in 16 bits, and nothing is lost: what follows is binary.
+    // Half the cost of a 16-bit remap, and no loss: the next stage is binary.
     source.convertTo(eight_bits_, CV_8U, scale_to_8_bits_);
     source = eight_bits_;
   }
@@ -88,7 +88,8 @@ void SeedFrontEnd::undistort_roi(const Frame& frame, const cv::Rect& roi) {
 }
 
 void SeedFrontEnd::threshold_raw(const Frame& frame, const cv::Rect& roi) {
-  // A lens is monotonous enough that the corners and the sides' middles enclose all between.
+  // The lens mapping is monotonic enough that the ROI's corners and side midpoints bound its
+  // pixels.
   cv::Rect area = whole();
   if (roi != whole()) {
     double left = size_.width, top = size_.height, right = 0, bottom = 0;

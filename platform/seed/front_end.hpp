@@ -1,6 +1,6 @@
-// The published method's way from a frame to blobs: undistort the whole frame, threshold, halve,
-// detect blobs. Written with OpenCV to be fast, for it is the baseline of every comparison:
-// precomputed fixed-point maps, 8 bits throughout, one pass of the blob detector, buffers kept.
+// Front end of the baseline, from a frame to blobs: undistort the whole frame, threshold, halve,
+// detect blobs. Implemented with OpenCV for speed, as the baseline of every comparison: precomputed
+// fixed-point maps, 8 bits throughout, one pass of the blob detector, reused buffers.
 //
 // Source: Puljiz et al., Inside-out Infrared Marker Tracking via Head Mounted Displays for Smart
 //         Robot Programming, section III: cv::undistort, threshold 250, half size, blob detection.
@@ -18,7 +18,7 @@
 namespace glint {
 
 struct SeedBlob {
-  Vector2 centre_px;     // of the undistorted frame, pixel centres at integer + 0.5
+  Vector2 centre_px;     // undistorted frame, pixel centres at integer + 0.5
   double radius_px = 0;  // full-size pixels
 };
 
@@ -26,22 +26,24 @@ class SeedFrontEnd {
  public:
   SeedFrontEnd(const Camera& camera, const SeedSettings& settings);
 
-  // The four stages, each on what the last one left. `roi` in undistorted pixels.
+  // The four stages in order; each reads the result of the previous one. `roi` in undistorted
+  // pixels.
   void undistort(const Frame& frame);
   void threshold(const cv::Rect& roi);
   void halve();
   void detect();
 
-  // In place of the first: the ROI alone, which is all that may be searched then.
+  // Replaces undistort(): remaps the ROI alone; only the ROI may be searched afterwards.
   void undistort_roi(const Frame& frame, const cv::Rect& roi);
-  // In place of the first two: the raw frame, in the rectangle about the ROI's raw pixels.
+  // Replaces undistort() and threshold(): the raw frame, in the bounding rectangle of the ROI's raw
+  // pixels.
   void threshold_raw(const Frame& frame, const cv::Rect& roi);
-  // After a raw search: the blobs' centres, to undistorted pixels.
+  // Call after a raw search: converts the blobs' centres to undistorted pixels.
   void undistort_blobs();
 
   [[nodiscard]] std::span<const SeedBlob> blobs() const { return blobs_; }
   [[nodiscard]] cv::Rect whole() const { return {0, 0, size_.width, size_.height}; }
-  // Where an undistorted pixel was in the frame.
+  // Returns the raw frame's pixel of an undistorted pixel.
   [[nodiscard]] Vector2 raw_pixel(const Vector2& undistorted) const;
 
  private:
@@ -50,7 +52,7 @@ class SeedFrontEnd {
   CameraModel model_;
   double threshold_16_ = 0;
   cv::Size size_;
-  double scale_to_8_bits_ = 1;  // brings the 16-bit threshold to k_seed_threshold
+  double scale_to_8_bits_ = 1;  // maps the 16-bit threshold to k_seed_threshold
   cv::Mat map_, map_fraction_;
   cv::Mat eight_bits_, part_, undistorted_, binary_, half_;
   cv::Rect roi_;

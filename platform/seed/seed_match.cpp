@@ -10,7 +10,7 @@ namespace {
 
 cv::Vec3d cv_vector(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
-// R = U diag(1, 1, det(U V^T)) V^T of the centred cross-covariance.
+// Rigid fit by SVD (Kabsch): R = U diag(1, 1, det(U V^T)) V^T of the centred cross-covariance.
 SeedMatch fitted(std::span<const Vector3> points_m, const Tool& tool, const SeedMatch& labels) {
   SeedMatch match = labels;
   cv::Vec3d mean_model, mean_point;

@@ -1,7 +1,7 @@
-// The published method's correspondence and fit: every set of blobs whose distance matrix equals
-// the tool's within delta is fitted by SVD; most markers win, then the least rms.
+// Marker labeling and pose fit of the baseline: every set of points whose distance matrix equals
+// the tool's within delta is fitted by SVD. The set with most markers wins, then the least rms.
 //
-// Source: the seed, section III: |d_R - d_M| < delta, SVD with the determinant's sign.
+// Source:   Puljiz et al., section III: |d_R - d_M| < delta, SVD with the determinant's sign.
 #pragma once
 
 #include <array>
@@ -22,9 +22,9 @@ struct SeedMatch {
   Pose T_camera_tool;
 };
 
-inline constexpr int k_seed_points_max = 64;  // later ones are not looked at
+inline constexpr int k_seed_points_max = 64;  // later points are ignored
 
-// points_m: marker centres in the camera's frame.
+// points_m: marker centres in the camera frame.
 [[nodiscard]] SeedMatch match_tool(std::span<const Vector3> points_m, const Tool& tool,
                                    const SeedSettings& settings);
 

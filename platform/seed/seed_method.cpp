@@ -5,12 +5,12 @@
 namespace glint {
 namespace {
 
-// As the publication has it: the last two poses' velocity goes on, and no word of how sure.
+// As published: constant velocity from the last two poses, and no covariance.
 FollowedTool followed_from(const Track& before, const StampedPose& now, ReferenceFrame base,
                            const Vector3& middle, Duration velocity_gap_max) {
   FollowedTool followed;
   followed.reason = Reason::none;
-  followed.stands = true;  // the publication doubts no pose
+  followed.stands = true;  // the publication flags no pose as ambiguous
   followed.base = base;
   followed.noise = {0, 0};
   followed.estimate.time = now.time;
@@ -48,7 +48,7 @@ const Estimates& SeedMethod::process(const ArrivedFrame& arrived) {
     fitted.reason = result.reason;
     fitted.rms_m = result.rms_m;
     fitted.T_camera_tool = result.T_camera_tool;
-    // The publication says nothing of which markers: the mask tells only how many.
+    // The publication does not identify markers: the mask holds only their number.
     fitted.marker_mask = static_cast<std::uint8_t>((1u << result.marker_count) - 1u);
   }
   last_ = estimates_;

@@ -1,5 +1,5 @@
-// The published method in place of Glint's tracker: the same frames, the same output at a steady
-// rate. One tool, the first of the cell.
+// Baseline in place of Glint's tracker: the same frames, the same output at a constant rate. Tracks
+// one tool, the first of the cell.
 #pragma once
 
 #include "nodes/check_frame.hpp"
@@ -15,7 +15,7 @@ class SeedMethod final : public FrameMethod {
  public:
   explicit SeedMethod(const Cell& cell);
 
-  // Outside real time: OpenCV allocates.
+  // Not for real time: OpenCV allocates.
   [[nodiscard]] const Estimates& process(const ArrivedFrame& arrived) override;
 
  private:
@@ -24,7 +24,7 @@ class SeedMethod final : public FrameMethod {
   TrackTools track_;
   graph::Latest<ToolSet> tools_;
   graph::Parts<FittedTools, k_tool_slices> fitted_;
-  Anchor anchor_;  // the publication has no reference body
+  Anchor anchor_;  // without a reference body, as published
   graph::Parts<FollowedTools, k_tool_slices> followed_;
   Estimates last_, estimates_;
 };

@@ -6,7 +6,7 @@
 namespace glint {
 namespace {
 
-constexpr double k_rim_px = 1.5;  // beyond the bright pixels, where a saturated middle has no depth
+constexpr double k_rim_px = 1.5;  // beyond the bright pixels: a saturated centre has no depth
 
 }  // namespace
 
@@ -80,7 +80,7 @@ void SeedTracker::search(const Frame& frame, const cv::Rect& roi) {
   if (settings_.undistortion == SeedUndistortion::points) front_end_.undistort_blobs();
 }
 
-// m = (Z x / f, Z y / f, Z), then a sphere's centre a radius further along the ray.
+// m = (Z x / f, Z y / f, Z); the sphere's centre is a radius further along the ray.
 SeedMatch SeedTracker::match(const Frame& frame) {
   points_m_.clear();
   const CameraModel& model = camera_.model;
@@ -119,7 +119,7 @@ cv::Rect SeedTracker::predicted_roi(const Frame& frame, const HeadPose& head) co
   top = std::clamp(top, 0.0, static_cast<double>(camera_.model.height));
   right = std::clamp(right, left, static_cast<double>(camera_.model.width));
   bottom = std::clamp(bottom, top, static_cast<double>(camera_.model.height));
-  // Even corners and sizes: the half-size picture keeps its grid.
+  // Even corners and sizes keep the grid of the half-size image.
   const int x0 = static_cast<int>(left) & ~1, y0 = static_cast<int>(top) & ~1;
   const int x1 = std::min((static_cast<int>(right) + 2) & ~1, camera_.model.width);
   const int y1 = std::min((static_cast<int>(bottom) + 2) & ~1, camera_.model.height);

@@ -1,10 +1,10 @@
-// The whole published method for one tool: frame in, pose out, and a pose at any time between and
-// after frames.
+// Tracker of the baseline for one tool: a pose per frame, and a pose at any time between and after
+// frames.
 //
-// Source: Puljiz et al., Inside-out Infrared Marker Tracking via Head Mounted Displays for Smart
-//         Robot Programming, section III. Where it leaves a choice open: a blob's depth is the
-//         median over its middle, else over all of it, else over the rim; HoloLens gives radial
-//         depth, of which Z is taken by the blob's own ray.
+// Source:   Puljiz et al., Inside-out Infrared Marker Tracking via Head Mounted Displays for Smart
+//           Robot Programming, section III. Where it leaves a choice open: a blob's depth is the
+//           median over its inner disc, else over all of it, else over the blob and its rim.
+//           HoloLens depth is radial; Z follows from the blob's ray.
 #pragma once
 
 #include <span>
@@ -22,25 +22,26 @@ namespace glint {
 
 struct SeedResult {
   Reason reason = Reason::no_frame_yet;
-  Pose T_camera_tool;  // where reason is none
+  Pose T_camera_tool;  // valid if reason is none
   int marker_count = 0;
   double rms_m = 0;
-  bool from_roi = false;  // found around the prediction
+  bool from_roi = false;  // found in the predicted ROI
 };
 
 class SeedTracker {
  public:
-  // The tool must be prepared.
+  // Requires a prepared tool.
   SeedTracker(const Camera& camera, const Tool& tool, const SeedSettings& settings = {});
 
-  // Frames in the order of their stamps; a frame that is no later than the last one is refused.
+  // Call in order of the time stamps. Rejects a frame that is not later than the newest pose.
   SeedResult process(const Frame& frame, const HeadPose& head);
 
-  // T_base_tool by constant velocity and SLERP; the base is the world where the last frame had a
-  // valid head pose, else the camera. Reason::too_old beyond SeedSettings::lost_after.
+  // Returns T_base_tool by constant velocity and SLERP. The base is the world if the newest pose
+  // had a valid head pose, else the camera. Returns Reason::too_old beyond
+  // SeedSettings::lost_after.
   [[nodiscard]] Result<Pose> pose_at(Time time) const;
 
-  // Undistort, threshold, halve, detect on the whole frame: what the benchmark times.
+  // Undistorts, thresholds, halves and detects on the whole frame; for the benchmark's timing.
   std::span<const SeedBlob> front_end(const Frame& frame);
 
  private:
@@ -57,7 +58,7 @@ class SeedTracker {
   std::vector<Vector3> points_m_;
   std::vector<std::uint16_t> depths_;
   StampedPose previous_, newest_;  // T_base_tool
-  int poses_ = 0;                  // 0, 1 or 2 of them hold
+  int poses_ = 0;                  // number of valid poses of the two: 0, 1 or 2
   bool in_world_ = false;
 };
 
