@@ -1,5 +1,5 @@
-// What a program of the project ends with: 0 done, 1 failed, 2 bad use or input, 3 a device is
-// missing; its own verdict, where it comes that far. What went wrong goes to standard error.
+// Exit codes of the project's programs: 0 done, 1 failed, 2 bad use or input, 3 missing device. A
+// body that completes returns its own code. Errors are printed to standard error.
 #pragma once
 
 #include <fcntl.h>
@@ -20,7 +20,7 @@
 
 namespace glint {
 
-// The innermost command of the line: its words, and itself.
+// Innermost subcommand of the command line: its full name and its CLI11 object.
 struct GivenCommand {
   std::string path;
   const CLI::App* app;
@@ -34,8 +34,8 @@ struct GivenCommand {
   return given;
 }
 
-// The first word that the command line cannot place, with the nearest known one; "" if every word
-// has its place.
+// Returns a message for the first word that CLI11 could not parse, with the nearest valid name; ""
+// if every word was parsed.
 [[nodiscard]] inline std::string unknown_word_text(const CLI::App& app, const CLI::App& command) {
   const std::vector<std::string> left_over = app.remaining(true);
   if (left_over.empty()) return "";
@@ -58,8 +58,9 @@ struct GivenCommand {
   return std::string("unknown ") + kind + " " + word + nearest_name_text(word, known) + list;
 }
 
-// Before a file is opened: the first would get the number of a standard stream that is closed, and
-// the table would go into it. A write beyond the limit of a file's size is an error to report.
+// Call before any file is opened. Opens closed standard streams on /dev/null; else the first file
+// opened would get such a stream's descriptor and receive the printed table. Ignores SIGXFSZ, so
+// that a write beyond the file size limit returns an error.
 inline void guard_files() {
   for (int stream = 0; stream <= 2; ++stream) {
     if (fcntl(stream, F_GETFD) != -1) continue;
@@ -72,7 +73,7 @@ inline void guard_files() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-// body(): parses by `app`, does the work and gives the program's own verdict.
+// body() parses by `app`, does the work and returns the program's own exit code.
 template <class Body>
 [[nodiscard]] int exit_code_of(const CLI::App& app, const char* program, const Body& body) {
   const auto fails = [&](const std::exception& error, int code) {
@@ -82,12 +83,12 @@ template <class Body>
   guard_files();
   try {
     const int code = body();
-    // A table that went to a full disk was not printed.
+    // Fails if the output is incomplete, as on a full disk.
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
     std::fprintf(stderr, "%s: standard output: not all of it could be written\n", program);
     return std::max(code, 1);
   } catch (const CLI::ParseError& error) {
-    // Help asked for is success; anything else is bad use, whatever CLI11 numbers it.
+    // A request for help is success; any other parse error is bad use, whatever CLI11's code.
     if (error.get_exit_code() == 0) return app.exit(error);
     const GivenCommand given = given_command(app, program);
     std::string wrong = unknown_word_text(app, *given.app);

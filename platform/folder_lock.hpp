@@ -1,4 +1,5 @@
-// One run at a time writes to a folder: the second one is refused and names the first.
+// Exclusive lock of an output folder: one run at a time writes to it. Refuses a second run, with
+// the process id of the first.
 #pragma once
 
 #include <fcntl.h>
@@ -18,8 +19,8 @@ namespace glint {
 
 class FolderLock {
  public:
-  // The folder exists. Throws InputError with the other process's id where it is in use. The lock
-  // ends with its process, also where that crashes.
+  // Requires an existing folder. Throws InputError with the other process's id if the folder is in
+  // use. The lock ends with its process, also after a crash.
   explicit FolderLock(const std::string& folder) : path_(folder + "/.glint.lock") {
     while (!take(folder)) {
     }
@@ -31,14 +32,14 @@ class FolderLock {
     }
   }
   ~FolderLock() {
-    ::unlink(path_.c_str());  // while it is held: nobody else's file
+    ::unlink(path_.c_str());  // while the lock is held: the file is this process's own
     ::close(descriptor_);
   }
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
  private:
-  // False: the file was removed by its last owner meanwhile; again.
+  // Returns false on EINTR, or if the last owner removed the file meanwhile: call again.
   [[nodiscard]] bool take(const std::string& folder) {
     descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
     if (descriptor_ < 0) {

@@ -1,5 +1,5 @@
-// A check of an option's number, with both ends allowed. CLI::Range and CLI::PositiveNumber accept
-// nan: it is neither below an end nor above one.
+// CLI11 validator for a number in a closed range; rejects nan. CLI::Range and CLI::PositiveNumber
+// accept nan, as it is neither below nor above a limit.
 #pragma once
 
 #include <CLI/CLI.hpp>

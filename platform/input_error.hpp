@@ -1,5 +1,5 @@
-// Bad use or bad input (exit code 2), and a device or peer that is not there (exit code 3). The
-// message names the file, the place in it, what was found and what was expected, in one line.
+// Exceptions for bad use or bad input (exit code 2) and for a missing device or peer (exit code 3).
+// The message is one line: the file, the position in it, what was found and what was expected.
 #pragma once
 
 #include <stdexcept>
@@ -9,8 +9,8 @@
 
 namespace glint {
 
-// A message holds words of the file: it is cleaned here, so that no reader can forget to. Of a line
-// that is too long for a screen the middle is left out.
+// Returns the message as one printable line, without the middle of a line above k_bytes_max. A
+// message may contain text of a file; cleaning it here covers every reader.
 [[nodiscard]] inline std::string one_line(const std::string& message) {
   constexpr std::size_t k_bytes_max = 2000, k_end = 400;
   if (message.size() <= k_bytes_max) return printable(message);

@@ -1,4 +1,4 @@
-// The known name nearest to a misspelt one, for error messages.
+// Spelling suggestion for error messages: the known name nearest to a misspelt one.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace glint {
 
-// Damerau-Levenshtein distance, restricted: insertions, deletions, substitutions, and exchanges of
-// two neighbours (Boytsov 2011, section 2.2.1). Cost: the product of the lengths.
+// Restricted Damerau-Levenshtein distance: insertions, deletions, substitutions and transpositions
+// of adjacent letters (Boytsov 2011, section 2.2.1). Cost: the product of the lengths.
 [[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -29,8 +29,8 @@ namespace glint {
   return row[b.size()];
 }
 
-// The first of the nearest names; "" if more than a third of the letters (at least one) differ, or
-// if the text is longer than any name could be.
+// Returns the first of the nearest names; "" if more than a third of the letters (at least one)
+// differ, or if the text is longer than k_text_max.
 [[nodiscard]] inline std::string nearest_name(std::string_view text,
                                               const std::vector<std::string>& known) {
   constexpr std::size_t k_text_max = 64;
@@ -46,7 +46,7 @@ namespace glint {
   return nearest;
 }
 
-// "; did you mean NAME?", or "" if no name is near.
+// Returns "; did you mean NAME?", or "" if no name is near enough.
 [[nodiscard]] inline std::string nearest_name_text(std::string_view text,
                                                    const std::vector<std::string>& known) {
   const std::string nearest = nearest_name(text, known);

@@ -1,7 +1,7 @@
-// A file that is written beside its final path and renamed when it is whole.
+// Atomic file write: a temporary file beside the final path, renamed when complete.
 //
-// Its temporary name is new: neither the unfinished file of a crashed run nor that of another
-// program is overwritten, and a symbolic link is never followed.
+// The temporary name is always new: it overwrites neither the unfinished file of a crashed run nor
+// another program's file. Symbolic links are never followed.
 #pragma once
 
 #include <fcntl.h>
@@ -18,10 +18,10 @@ namespace glint {
 
 struct PartFile {
   std::string path;
-  int descriptor = -1;  // -1: errno says why
+  int descriptor = -1;  // -1 on failure; errno holds the reason
 };
 
-// Makes PATH.part; where that exists, PATH.1.part and so on.
+// Creates PATH.part; if that exists, PATH.1.part and so on.
 [[nodiscard]] inline PartFile open_part_file(const std::string& path) {
   constexpr int k_names_max = 1000;
   PartFile part;
@@ -55,7 +55,7 @@ struct PartFile {
   return true;
 }
 
-// Writes the whole file or nothing. Returns the system's reason for a failure, else "".
+// Writes the whole file or nothing. Returns the system's error text, or "" on success.
 [[nodiscard]] inline std::string write_whole_file(const std::string& path, std::string_view text) {
   const bool in_place = is_written_in_place(path);
   const PartFile file =

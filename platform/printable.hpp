@@ -1,6 +1,5 @@
-// Cleans text that comes from a file or from the network before a person's screen shows it: error
-// messages, tables, HTML, SVG. Control characters would move the cursor, rewrite lines or change
-// the direction of the text.
+// Sanitises text from files and the network for display in error messages, tables, HTML and SVG.
+// Control characters would move the cursor, rewrite lines or change the direction of the text.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +9,8 @@
 
 namespace glint {
 
-// The number of bytes of the UTF-8 character that `text` begins with; 0: it is no UTF-8.
-// Unicode 15, table 3-7: neither overlong forms nor surrogates.
+// Returns the number of bytes of the UTF-8 character at the start of `text`; 0 if it is not valid
+// UTF-8. Unicode 15, table 3-7: overlong forms and surrogates are invalid.
 [[nodiscard]] inline std::size_t utf8_character(std::string_view text, char32_t& character) {
   const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text[i]); };
   const std::uint8_t first = byte(0);
@@ -29,7 +28,7 @@ namespace glint {
   return character < least[size] || character > 0x10FFFF || surrogate ? 0 : size;
 }
 
-// Whether a terminal shows the character as a glyph or a blank, in the order of the text.
+// Whether a terminal shows the character as a glyph or a blank, without reordering the text.
 [[nodiscard]] inline bool is_printable(char32_t c) {
   const auto within = [c](char32_t low, char32_t high) { return c >= low && c <= high; };
   const bool control = c < 0x20 || within(0x7F, 0x9F);
@@ -39,8 +38,8 @@ namespace glint {
   return !control && !invisible_or_turning;
 }
 
-// One line: '?' stands for each character that is_printable refuses and for each byte that is no
-// UTF-8. Printable text stays as it is.
+// Returns one line: '?' replaces each character that is_printable rejects and each byte that is not
+// valid UTF-8.
 [[nodiscard]] inline std::string printable(std::string_view foreign) {
   std::string clean;
   clean.reserve(foreign.size());
@@ -57,7 +56,7 @@ namespace glint {
   return clean;
 }
 
-// The same line by line, for a table: line feeds stay.
+// printable() per line, for a table: keeps line feeds.
 [[nodiscard]] inline std::string printable_lines(std::string_view foreign) {
   std::string clean;
   for (std::size_t end = 0; (end = foreign.find('\n')) != std::string_view::npos;) {
@@ -67,8 +66,8 @@ namespace glint {
   return clean + printable(foreign);
 }
 
-// Cleaned, and as text of HTML, XML or SVG, between tags or in an attribute's double quotes. A line
-// feed stays: it is a blank there.
+// printable_lines(), escaped for HTML, XML or SVG, between tags or in a double-quoted attribute.
+// Line feeds are kept; they render as blanks.
 [[nodiscard]] inline std::string printable_markup(std::string_view foreign) {
   std::string text;
   for (const char c : printable_lines(foreign)) {

@@ -1,4 +1,4 @@
-// A file as a whole, within a limit: a device never ends, and a folder is no file.
+// Reads a whole file, up to a size limit: a device never ends. Rejects a folder.
 #pragma once
 
 #include <array>
@@ -10,10 +10,11 @@
 
 namespace glint {
 
-inline constexpr std::size_t k_text_bytes_max = 64 << 20;  // what is written to be read
-inline constexpr std::size_t k_data_bytes_max = 1 << 30;   // what is measured
+inline constexpr std::size_t k_text_bytes_max = 64 << 20;  // text files
+inline constexpr std::size_t k_data_bytes_max = 1 << 30;   // measured data
 
-// Throws InputError naming the file: absent, a folder, not readable, or longer than `bytes_max`.
+// Throws InputError with the path if the file is absent, a folder, unreadable, or longer than
+// `bytes_max`.
 [[nodiscard]] inline std::string read_file(const std::string& path, std::size_t bytes_max,
                                            const std::string& expected) {
   std::error_code failed;

@@ -1,5 +1,5 @@
-// SIGINT (Ctrl-C), SIGTERM and SIGHUP (its terminal closed) end a run at once, with its figures and
-// everything written.
+// Stop by signal: SIGINT (Ctrl-C), SIGTERM and SIGHUP (terminal closed) end a run at once. Its
+// figures and all output are still written.
 #pragma once
 
 #include <atomic>
@@ -10,7 +10,8 @@ namespace glint {
 inline std::atomic<bool> g_stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler stores it");
 
-// Set by each of the signals from now on; a SIGHUP that is ignored (nohup) stays so.
+// Installs the signal handlers and returns the flag that they set. A SIGHUP that is ignored (nohup)
+// stays ignored.
 [[nodiscard]] inline const std::atomic<bool>& stop_on_signals() noexcept {
   const auto stop = [](int) { g_stop_requested = true; };
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, stop);

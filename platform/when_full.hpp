@@ -1,4 +1,4 @@
-// What a bounded queue to a slow device does when it is full.
+// Overflow policy of a bounded queue to a slow device.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +6,8 @@
 namespace glint {
 
 enum class WhenFull : std::uint8_t {
-  drop,  // and count: a run in real time must not wait
-  wait,  // a run that is not in real time keeps everything: the caller sleeps until there is room
+  drop,  // and count: a real-time run must not wait
+  wait,  // the caller sleeps until there is room: a run outside real time loses nothing
 };
 
 }  // namespace glint
