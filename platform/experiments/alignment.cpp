@@ -9,10 +9,10 @@
 namespace glint {
 namespace {
 
-constexpr int k_rounds = 5;  // the set that counts stands still after two or three
+constexpr int k_rounds = 5;  // the inlier set is constant after two or three
 constexpr double k_medians_kept = 3;
 
-// Keeps what lies within k_medians_kept times the median distance.
+// Marks as inliers the values within k_medians_kept times the median distance.
 std::vector<bool> near_ones(const std::vector<double>& distances) {
   const double limit = k_medians_kept * median_of(distances);
   std::vector<bool> kept;

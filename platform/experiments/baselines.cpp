@@ -78,7 +78,7 @@ class OneEuro final : public Predictor {
   Vector6 speed_ = Vector6::Zero();
 };
 
-// Of position and quaternion alike: smoothed, and smoothed again.
+// Position and quaternion components, exponentially smoothed twice.
 class DoubleExponential final : public Predictor {
  public:
   explicit DoubleExponential(const BaselineSettings& settings) : settings_(settings) {}
@@ -124,9 +124,9 @@ class DoubleExponential final : public Predictor {
   Values once_ = Values::Zero(), twice_ = Values::Zero();
 };
 
-// Gains of one axis; three axes of equal noise share them.
+// Kalman gains of one axis; three axes of equal noise share them.
 struct VelocityGains {
-  double noise;  // density of the white acceleration
+  double noise;  // spectral density of the white acceleration
   double pp = 1, pv = 0, vv = 25;
 
   struct Gain {

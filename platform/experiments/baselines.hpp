@@ -1,9 +1,9 @@
-// The usual ways to predict a pose, each tuned once for all recordings by the same search that
-// tuned ours: the least sum, over recordings and horizons, of the error relative to linear + SLERP.
+// Baseline predictors of a pose, each tuned once for all recordings by the same search as Glint's
+// filter: the least sum, over recordings and horizons, of the error relative to linear + SLERP.
 //
 //   last value        the newest pose, held
 //   linear + SLERP    through the last two poses (the published method)
-//   one euro          Casiez, Roussel and Vogel 2012, algorithm 1, and on at its filtered speed
+//   one euro          Casiez, Roussel and Vogel 2012, algorithm 1; extrapolates its filtered speed
 //   double exp.       LaViola 2003, Double exponential smoothing: an alternative to Kalman
 //                     filter-based predictive tracking; orientations as quaternions
 //   constant velocity Kalman filter with white acceleration: Bar-Shalom, Li and Kirubarajan 2001,

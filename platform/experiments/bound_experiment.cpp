@@ -45,7 +45,7 @@ std::string name_of(const BoundCase& c) {
   return text.data();
 }
 
-// What one method's poses are, beside the truth and the bound.
+// Errors of one method's poses against ground truth, and the bound.
 struct BoundErrors {
   std::string method;
   std::int64_t frames = 0, found = 0, flips = 0;

@@ -1,5 +1,5 @@
-// The experiments that answer with a list of cases, by name. A new one is a line in the table of
-// case_experiments.cpp.
+// Registry of the experiments that return a list of cases, by name. A new experiment is a line in
+// the table of case_experiments.cpp.
 #pragma once
 
 #include <span>
@@ -9,11 +9,11 @@
 namespace glint {
 
 struct CaseExperiment {
-  const char* name;         // of the subcommand
+  const char* name;         // name of the subcommand
   const char* what;         // one line of help
-  bool wants_data = false;  // works on recordings: --data DIR
+  bool wants_data = false;  // needs recordings: --data DIR
   CaseList (*run)(const CaseOptions& options) = nullptr;
-  bool counts_tries = false;  // takes --tries N
+  bool counts_tries = false;  // accepts --tries N
 };
 
 [[nodiscard]] std::span<const CaseExperiment> case_experiments();

@@ -1,4 +1,4 @@
-// What an experiment found: a list of cases, each with its figures and the bars they are held to.
+// Results of an experiment: a list of cases, each with figures and their acceptance bars.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace glint {
 
-// What a figure is held to. Figures of a baseline have none.
+// Acceptance limit of a figure. Figures of a baseline have none.
 struct Bar {
   enum class Kind { none, at_most, at_least };
   Kind kind = Kind::none;
@@ -16,7 +16,7 @@ struct Bar {
   static constexpr Bar none() { return {}; }
   static constexpr Bar at_most(double limit) { return {Kind::at_most, limit}; }
   static constexpr Bar at_least(double limit) { return {Kind::at_least, limit}; }
-  // A value that is not finite meets no bar.
+  // NaN meets no limit.
   [[nodiscard]] constexpr bool met_by(double value) const {
     if (kind == Kind::none) return true;
     return kind == Kind::at_most ? value <= limit : value >= limit;
@@ -33,7 +33,7 @@ struct Figure {
 struct ExperimentCase {
   std::string name;    // "8700339 at 0.5 m, 3 mm"
   std::string method;  // "glint", "svd", "seed", ...
-  std::int64_t n = 0;  // samples behind the figures
+  std::int64_t n = 0;  // number of samples
   std::vector<Figure> figures;
 };
 
@@ -44,24 +44,25 @@ struct CaseList {
 };
 
 struct CaseOptions {
-  bool quick = false;       // a few seconds: to see that it works; bars that need more are left out
-  std::uint64_t seed = 1;   // of the random numbers
-  std::string out = "out";  // folder of the plots; it exists
-  std::string data;         // folder of recordings; empty: none given
-  // Called now and then with samples done and in all; may be empty.
+  bool quick = false;       // smoke test of a few seconds; without the bars that need more samples
+  std::uint64_t seed = 1;   // random seed
+  std::string out = "out";  // existing folder for the plots
+  std::string data;         // folder of recordings; empty if not given
+  // Called from time to time with the samples done and in total; may be empty.
   std::function<void(int done, int total)> progress;
-  int tries = 0;  // of an experiment that counts tries; 0: its other cases
+  int tries = 0;  // for experiments with --tries; 0: their other cases
 };
 
-// Figures that miss their bar.
+// Returns the number of figures that miss their bar.
 [[nodiscard]] int missed_bars(const CaseList& list);
 
-// A table for people: a row a case, "<=" or ">=" and the bar behind each judged figure, "MISSED"
-// where it is missed.
+// Returns a table with a row per case. A judged figure has "<=" or ">=" and its bar, and "MISSED"
+// if it misses the bar.
 [[nodiscard]] std::string case_table(const CaseList& list);
 
-// {"experiment", "config_hash", "quick", "missed", "cases": [{"case", "method", "n", "figures":
-// {name: {"value", "unit", "bar", "met"}}}]}; "bar" is {"at_most": x}, {"at_least": x} or null.
+// Returns {"experiment", "config_hash", "quick", "missed", "cases": [{"case", "method", "n",
+// "figures": {name: {"value", "unit", "bar", "met"}}}]}; "bar" is {"at_most": x}, {"at_least": x}
+// or null.
 [[nodiscard]] std::string case_json(const CaseList& list, const CaseOptions& options);
 
 }  // namespace glint

@@ -9,10 +9,10 @@ namespace {
 
 constexpr double k_focal_px = 253;
 constexpr double k_diameters_px[] = {4, 5, 6, 8, 10};
-// Rims beat with the pixels as a sphere grows: sizes are spread evenly over a pixel.
+// The rim error varies with the diameter at the period of a pixel: diameters cover a pixel evenly.
 constexpr double k_diameter_spread_px = 0.5;
-// The renderer's own: of a rim pixel's 64 rays so many meet the sphere that its light is off by up
-// to a hundredth, which is an error from pixel to pixel; a smeared one is the mean of eight.
+// Error of the renderer itself: with 64 rays per rim pixel, its signal is off by up to a hundredth,
+// independently from pixel to pixel; a motion-blurred sphere is the mean of eight renderings.
 constexpr double k_rendered_unevenness = 0.006, k_smeared_unevenness = 0.002;
 
 CentroidCase base(const std::string& name, double diameter_px) {
@@ -42,13 +42,13 @@ CentroidCase sized(const std::string& kind, double diameter_px) {
   return one;
 }
 
-// So many times what the sensor holds.
+// Sets the peak signal to `times` the sensor's full scale.
 void saturate(CentroidCase& one, double times) {
   one.setting.peak_counts = times * 65535.0;
   one.rms_max_px = one.diameter_px < 5 ? 0.08 : one.diameter_px < 6 ? 0.06 : 0.05;
 }
 
-// 70 counts of 8 bits, noise 2 % of the full scale, the threshold half-way.
+// 70 counts of 8 bits, noise 2 % of full scale, threshold half-way.
 void weaken(CentroidCase& one) {
   one.setting.camera.reflectivity_bits = 8;
   one.setting.camera.threshold = 55;
@@ -60,7 +60,7 @@ void weaken(CentroidCase& one) {
   one.rms_max_px = 0.08;
 }
 
-// Of 6.2 px, so that a column of pixels stays dark, and no more, between two 8 px apart.
+// Diameter 6.2 px: between two spheres 8 px apart exactly one pixel column stays dark.
 CentroidCase spoilt(const std::string& name, std::uint8_t flag) {
   CentroidCase one = base(name, 6.2);
   one.whole = false;

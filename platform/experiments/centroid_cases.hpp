@@ -1,4 +1,4 @@
-// The spheres that the experiment `centroid` renders, and what is asked of each.
+// Rendered spheres of the experiment `centroid`, and the bars of each case.
 #pragma once
 
 #include <cstdint>
@@ -13,20 +13,20 @@ namespace glint {
 struct CentroidCase {
   std::string name;
   SphereSetting setting;
-  PixelNoise stated;       // what the variances are computed with: the setting's noise
+  PixelNoise stated;       // for the stated variances: the setting's noise
   double rms_max_px = 0;   // 0: no bar
-  bool whole = true;       // its sigma holds both ways; of what is cut or merged it may be larger
-  std::uint8_t flag = 0;   // BlobFlag that it must have
+  bool whole = true;       // isolated: sigma has both bars; if cut or merged, only one
+  std::uint8_t flag = 0;   // BlobFlag that the blob must have
   double diameter_px = 0;  // for the plot
 };
 
-// Sizes from 4 to 10 px, as they come, smeared, saturated and weak.
+// Diameters from 4 to 10 px: plain, motion-blurred, saturated and with low signal.
 [[nodiscard]] std::vector<CentroidCase> sized_cases();
 
-// Cut by the frame, beside another, merged with it; hardly and ten times saturated.
+// Cut by the frame, with a neighbour, merged with it; 1.2 and 10 times saturated.
 [[nodiscard]] std::vector<CentroidCase> spoilt_cases();
 
-// 45 degrees off the axis, near and far, by a pinhole and by the headset's own lens.
+// 45 degrees off the axis, near and far, with a pinhole and with the headset's lens.
 [[nodiscard]] std::vector<CentroidCase> off_axis_cases();
 
 }  // namespace glint

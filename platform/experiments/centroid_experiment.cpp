@@ -12,12 +12,12 @@ namespace glint {
 namespace {
 
 constexpr int k_spheres = 2000, k_spheres_quick = 150;
-// A stated sigma must be no less than the error by this factor, and no more.
+// Limits of the ratio of rms error to stated sigma.
 constexpr double k_ratio_most = 1.4, k_ratio_least = 0.7;
-constexpr double k_corrected_px = 0.02;  // what may be left of a sphere's shift
+constexpr double k_corrected_px = 0.02;  // limit of the bias after sphere correction
 constexpr double k_flagged_least = 0.95;
 
-// Errors of one method on one case.
+// Error statistics of one method on one case.
 class Errors {
  public:
   void add(const Vector2& error) {
@@ -26,7 +26,7 @@ class Errors {
     ++count_;
   }
   [[nodiscard]] std::int64_t count() const { return count_; }
-  [[nodiscard]] double rms() const { return std::sqrt(squares_ / (2 * per())); }  // an axis
+  [[nodiscard]] double rms() const { return std::sqrt(squares_ / (2 * per())); }  // per axis
   [[nodiscard]] double bias() const { return (sum_ / per()).norm(); }
 
  private:
@@ -38,7 +38,7 @@ class Errors {
 
 struct Outcome {
   Errors raw, corrected, weighted, binary, seed;
-  double variance_sum = 0;  // stated, of both axes
+  double variance_sum = 0;  // stated, sum of both axes
   double range_squares = 0, range_variance_sum = 0, range_sum = 0;
   std::int64_t markers = 0, flagged = 0;
 };
@@ -134,7 +134,7 @@ ExperimentCase off_axis_case(const CentroidCase& one, const Outcome& outcome) {
            {"rms", "px", outcome.corrected.rms(), Bar::at_most(0.03)}}};
 }
 
-// rms by diameter, a line a method, a picture a kind of sphere.
+// rms by diameter: a line per method, a plot per kind of sphere.
 class Plots {
  public:
   void add(const CentroidCase& one, const Outcome& outcome) {

@@ -1,5 +1,5 @@
-// How far centroids are off, and whether they say so: rendered spheres at random places between
-// the pixels, located by Glint and by three simpler methods.
+// Accuracy of blob centroids and consistency of their stated variances: rendered spheres at random
+// subpixel positions, located by Glint and by three simpler methods.
 #pragma once
 
 #include "platform/experiments/case_list.hpp"

@@ -11,12 +11,13 @@ namespace {
 
 constexpr std::uint32_t k_area_max_px = 2000;
 
-// Where a sensor clips: its greatest number.
+// Saturation level: the sensor's largest value.
 std::uint16_t saturated_from(const Camera& camera) {
   return camera.reflectivity_bits == 8 ? 255 : 0xFFFF;
 }
 
-// The place nearest to `to`, within reach; `at(i)` gives place i.
+// Returns the index of the position nearest to `to`, or -1 if none is within k_near_px. `at(i)`
+// returns position i.
 template <class At>
 int nearest(int count, const Vector2& to, At at) {
   int best = -1;

@@ -1,4 +1,4 @@
-// One picture of a sphere, located by every method that the experiment `centroid` compares.
+// Centroids of one image of a sphere by every method that the experiment `centroid` compares.
 #pragma once
 
 #include <array>
@@ -16,20 +16,20 @@ class SeedFrontEnd;
 
 class CentroidMethods {
  public:
-  // nominal: of back-projection. noise: what the stated variances follow from.
+  // nominal: for back-projection. noise: for the stated variances.
   CentroidMethods(const Camera& camera, const PixelNoise& noise, const NominalMarker& nominal);
   ~CentroidMethods();
 
-  // Of the blob nearest to the truth, and within k_near_px of it. Nothing where there is none.
+  // Results for the blob nearest to the ground truth; nullopt if none is within k_near_px of it.
   struct Located {
     Blob blob;
     std::optional<Marker> marker;
-    Vector2 weighted, binary;  // the same blob's
+    Vector2 weighted, binary;  // centroids of the same blob
   };
   static constexpr double k_near_px = 16;
   [[nodiscard]] std::optional<Located> locate(const Frame& frame, const Vector2& truth_px);
 
-  // By the published method.
+  // By the baseline.
   [[nodiscard]] std::optional<Vector2> locate_as_seed(const Frame& frame, const Vector2& truth_px);
 
  private:

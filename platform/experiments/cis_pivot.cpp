@@ -40,8 +40,8 @@ Pose fitted(std::span<const Vector3> model, std::span<const Vector3> measured,
                    "); expected 3 or more that are not on a line");
 }
 
-// The pointer's poses from its markers; the first frame's, about their mean, are its geometry, as
-// the course has it.
+// Pointer poses from its markers. The first frame's markers, relative to their mean, are the
+// geometry, as in the course.
 std::vector<StampedPose> poses_of(const std::vector<std::vector<Vector3>>& frames,
                                   const std::string& path) {
   std::vector<Vector3> model = frames.front();
@@ -66,7 +66,7 @@ std::vector<std::vector<Vector3>> frames_em(const std::string& path) {
   return frames;
 }
 
-// The pointer as the optical tracker sees it, in the frame of the base that it sees with it.
+// Pointer markers of the optical tracker, in the frame of the base measured at the same time.
 std::vector<std::vector<Vector3>> frames_optical(const std::string& path,
                                                  const std::string& base_path) {
   const CisFile file = load_cis(path), base_file = load_cis(base_path);
@@ -109,7 +109,7 @@ void run_problem_1(const std::string& folder, CaseList& list) {
   TipErrors em, optical;
   for (const std::string& path : cis_paths(folder, ending)) {
     const std::string name = stem(path, ending), start = folder + "/" + name;
-    if (!std::filesystem::exists(start + "-output1.txt")) continue;  // a case without answer
+    if (!std::filesystem::exists(start + "-output1.txt")) continue;  // a case without an answer
     const CisFile answer = load_cis(start + "-output1.txt");
     judge_pivot(name + " em", frames_em(path), answer.points_m(0, 2)[0], list, em);
     judge_pivot(name + " optical", frames_optical(start + "-optpivot.txt", start + "-calbody.txt"),
@@ -127,14 +127,14 @@ void run_problem_1(const std::string& folder, CaseList& list) {
   add("all optical posts", optical);
 }
 
-// Markers of a body, its tip behind them.
+// Returns the markers of a body, then its tip.
 std::vector<Vector3> body_of(const std::string& path) {
   const CisFile file = load_cis(path);
   require(file, 1);
   return file.points_m(0, static_cast<std::size_t>(file.counts[0]) + 1);
 }
 
-// The pointer's tip in body B's frame. What a frame holds behind both bodies' markers are dummies.
+// Pointer tip in body B's frame. A frame's entries after both bodies' markers are dummies.
 Vector3 two_body_tip(const std::vector<Vector3>& a, const std::vector<Vector3>& b,
                      std::span<const Vector3> frame, const std::string& path) {
   const std::span<const Vector3> markers_a(a.data(), a.size() - 1),

@@ -1,5 +1,5 @@
-// Pivot calibration and two-body tips of the computer-integrated surgery course, against its
-// answers: its pivot posts by an electromagnetic and an optical tracker (problem 1), and the tip of
+// Validation of pivot calibration and two-body tips against the answers of the computer-integrated
+// surgery course: pivot posts by an electromagnetic and an optical tracker (problem 1), the tip of
 // a pointer in a second body's frame (problem 3).
 #pragma once
 
@@ -7,8 +7,8 @@
 
 namespace glint {
 
-// options.data: the folder that holds pa1/ and pa3/. Throws InputError where both are missing or a
-// file of a case is.
+// options.data: the folder with pa1/ and pa3/. Throws InputError if both are missing or if a case's
+// file is missing.
 [[nodiscard]] CaseList run_cis_pivot(const CaseOptions& options);
 
 }  // namespace glint

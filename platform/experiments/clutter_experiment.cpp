@@ -24,7 +24,7 @@ namespace {
 constexpr int k_clutter_frames = 2000, k_clutter_frames_quick = 60;
 constexpr int k_seed_frames = 300, k_seed_frames_quick = 10;
 constexpr std::array k_strays = {0, 20, 50, 100, 200};
-constexpr int k_runs_a_blob = 8;  // as a cell file that states blobs only has it
+constexpr int k_runs_a_blob = 8;  // as for a cell file that states only blobs
 
 struct ClutterCase {
   std::string name;
@@ -57,8 +57,8 @@ Cell cell_of(const ClutterCase& c) {
   return cell;
 }
 
-// What leaves the graph: the pose that the filter has after the frame, in this frame's camera, and
-// its covariance, moved from the markers' middle to the tip.
+// Output of the graph: the filter's pose after the frame, in this frame's camera frame. Its
+// covariance is moved from the markers' mean to the tip.
 FrameOutcome as_followed(const FrameOutcome& fitted, const Estimates& estimates,
                          const ToolSet& tools, const HeadPose& head) {
   FrameOutcome outcome = fitted;
@@ -83,7 +83,7 @@ FrameOutcome as_followed(const FrameOutcome& fitted, const Estimates& estimates,
   return outcome;
 }
 
-// A tracker of the published method for each tool.
+// One baseline tracker per tool.
 class SeedTrackers {
  public:
   explicit SeedTrackers(const ClutterCase& c) {
@@ -94,7 +94,7 @@ class SeedTrackers {
     FrameOutcome outcome;
     for (std::size_t t = 0; t < trackers_.size(); ++t) {
       const SeedResult found = trackers_[t].process(frame, head);
-      // It states no assignment: `swapped` is judged by all markers.
+      // The baseline states no labeling: `swapped` is judged by all markers.
       outcome.tools[t].seen = found.reason == Reason::none;
       outcome.tools[t].reason = found.reason;
       outcome.tools[t].marker_mask = 0xFF;
@@ -139,7 +139,7 @@ void run_case(const ClutterCase& c, const CaseOptions& options, CaseList& list) 
   list.cases.push_back({c.name, "seed", published.trackable(), published.figures({}, {})});
 }
 
-// 1 where the cell reader refuses the two tools.
+// `refused` is 1 if the cell reader refuses the two tools.
 ExperimentCase refusal(const std::string& name, const ToolSet& tools, const Bar& bar) {
   double refused = 0;
   try {

@@ -16,16 +16,16 @@
 namespace glint {
 namespace {
 
-// World: x ahead, y left, z up, origin at the camera. An arm's length ahead and below the eyes.
+// World: x ahead, y left, z up, origin at the camera. At arm's length, ahead and below the eyes.
 const Vector3 k_workplace_m{0.46, 0, -0.18};
 constexpr double k_tool_gap_m = 0.17;
-// Where strays are: from before the hands to the table and the wall behind them.
+// Volume of the false markers: from in front of the hands to the table and the wall behind them.
 const Vector3 k_stray_low_m{0.25, -0.5, -0.6}, k_stray_high_m{0.9, 0.5, 0.15};
 constexpr double k_stray_radius_m = 0.0055;
 constexpr double k_swing_m = 0.13, k_swing_s = 4.0;
 constexpr double k_apart_m = 0.1;
 
-// To and fro along y.
+// Sinusoidal motion along y.
 class Swing final : public sim::Motion {
  public:
   explicit Swing(double amplitude_m) : amplitude_m_(amplitude_m) {}
@@ -51,7 +51,7 @@ sim::Scenario empty_run(int frames, std::uint64_t seed) {
   return scenario;
 }
 
-// `moved_by` carries the hand along; null: it stays where it works.
+// `moved_by` carries the hand; null: the hand stays at its workplace.
 void add_hand(const Tool& tool, const Vector3& place, sim::MotionPointer moved_by,
               const sim::HandSettings& settings, sim::Scenario& scenario) {
   const sim::Grip grip = sim::best_grip(tool);
@@ -153,7 +153,7 @@ sim::Scenario passing_run(const ToolSet& two_tools, Passing passing, int frames,
   const Vector3 away =
       passing == Passing::beside ? Vector3(0, 0, 0.5 * k_apart_m) : Vector3(-0.5 * k_apart_m, 0, 0);
   sim::HandSettings hand;
-  hand.stroke_rms_m = 0.005;  // the swing moves it
+  hand.stroke_rms_m = 0.005;  // the swing moves the hand
   add_hand(two_tools.items[0], k_workplace_m + away, std::make_shared<Swing>(k_swing_m), hand,
            scenario);
   add_hand(two_tools.items[1], k_workplace_m - away, std::make_shared<Swing>(-k_swing_m), hand,

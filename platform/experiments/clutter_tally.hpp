@@ -1,9 +1,9 @@
-// How often tools among strays are tracked, tracked with a gross error, and taken for each other.
+// Counts of tools among false markers that are tracked, tracked with a gross error, or swapped.
 //
-// Trackable, fresh and gross are those of platform/session/accuracy.hpp. Swapped: gross, and every
-// marker of the pose lies within 20 mm of one of some other tool's. Findable: trackable, and four
-// of the tool's markers have been visible since the run began. Three markers among strays are not
-// enough to name a tool that was never seen, so the bar stands on the findable frames.
+// platform/session/accuracy.hpp defines trackable, fresh and gross. Swapped: gross, and every
+// marker of the pose is within 20 mm of a marker of one other tool. Findable: trackable, and four
+// of the tool's markers were visible in one frame since the run began. Three markers among false
+// markers cannot identify a tool without a prior, so the bar applies to findable frames.
 #pragma once
 
 #include <array>
@@ -24,12 +24,12 @@ class ClutterTally {
 
   void add(const FrameOutcome& outcome, const FrameTruth& truth);
 
-  [[nodiscard]] std::int64_t trackable() const { return trackable_; }  // tools and frames
+  [[nodiscard]] std::int64_t trackable() const { return trackable_; }  // tools times frames
   [[nodiscard]] std::int64_t tracked() const { return tracked_; }      // of those, fresh
   [[nodiscard]] std::int64_t gross() const { return gross_; }          // of all poses
   [[nodiscard]] std::int64_t swapped() const { return swapped_; }
-  // found, tracked, gross, swapped, trackable_share, and how often which reason left a trackable
-  // tool out.
+  // Returns found, tracked, gross, swapped, trackable_share, and per reason the number of trackable
+  // tools that were missed.
   [[nodiscard]] std::vector<Figure> figures(const Bar& found, const Bar& wrong) const;
 
  private:

@@ -1,4 +1,5 @@
-// Whether errors are as large as their covariance says: normalised squares against chi square.
+// Consistency of errors with their stated covariance: normalised squared errors against chi-square
+// limits.
 //
 // Source: Bar-Shalom, Li and Kirubarajan 2001, section 5.4.2 (normalised estimation error squared).
 #pragma once
@@ -10,7 +11,7 @@
 
 namespace glint {
 
-// Of chi square with 6 degrees of freedom.
+// Chi-square quantiles with 6 degrees of freedom.
 inline constexpr double k_inside_95 = 12.592, k_inside_999 = 22.458;
 
 struct Consistency {

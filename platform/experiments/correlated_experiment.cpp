@@ -1,10 +1,10 @@
-// Poses of real tools at rest, whose errors are correlated: their noise model, and how honest the
-// filter's covariance is with it.
+// Experiment `correlated`: noise model of static real tools with correlated errors, and consistency
+// of the filter's covariance under it.
 //
-// The relative poses of two tools that a HoloLens 2 saw at rest (hl2_real) give the model (`glint
-// calibrate noise`). RestErrors are the model's Allan deviation, the filter fed with the series
-// itself, its own mean as truth, and the filter fed with series that the model generates, against
-// each one's truth.
+// The relative poses of two static tools before a HoloLens 2 (hl2_real) give the model (`glint
+// calibrate noise`). Judged are the model's Allan deviation; the filter on the series itself, whose
+// mean is the ground truth; and the filter on series that the model generates, each against its
+// ground truth.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -75,7 +75,7 @@ std::unique_ptr<ToolMotion> filter_for(const RestModel& model) {
   return motion;
 }
 
-// Each pose by the model's own noise; its covariance is the model's.
+// Runs the filter on a static pose with errors and covariance of the model.
 void generated_run(const RestModel& model, double period_s, std::uint64_t seed, std::uint64_t run,
                    RestErrors& judged) {
   const auto motion = filter_for(model);
@@ -107,7 +107,7 @@ void generated_run(const RestModel& model, double period_s, std::uint64_t seed, 
   }
 }
 
-// The series' mean: of small deviations from its first pose.
+// Mean pose of the series, from small deviations from its first pose.
 Pose mean_pose(const std::vector<StampedPose>& poses) {
   Vector6 sum = Vector6::Zero();
   const Pose& first = poses.front().pose;
@@ -137,7 +137,7 @@ ExperimentCase judged_case(const std::string& name, const RestErrors& judged, bo
            {"stated_by_rms", "", std::sqrt(judged.stated_m2 / judged.square_m2), {}}}};
 }
 
-// At the judged averaging times, of the nearest window.
+// Allan deviation at the judged averaging times, each from the nearest window.
 ExperimentCase allan_case(const NoiseCalibration& noise) {
   ExperimentCase out{"Allan deviation, model by measured", "glint", noise.poses, {}};
   for (const double seconds : k_judged_s) {

@@ -6,12 +6,12 @@
 namespace glint {
 namespace {
 
-// Wide enough that a table of rays in single precision shows its slope, not its rounding: 3e-8 of
-// a ray are 1e-5 px, and a step moves a marker by a pixel.
+// Steps of the numerical derivative: a step moves a marker by a pixel. The rounding of a ray table
+// in single precision, 3e-8 of a ray, is 1e-5 px.
 constexpr double k_step_m = 0.001;
 constexpr double k_step_rad = 0.01;
 
-// The minimal parameters: a shift of the reference, then a rotation about it.
+// Minimal parameters: translation of the reference point, then rotation about it.
 Pose changed(const Pose& pose, const Vector3& reference_m, int parameter, double by) {
   const Vector3 axis = Vector3::Unit(parameter % 3);
   const Vector3 place = pose * reference_m;
@@ -20,7 +20,7 @@ Pose changed(const Pose& pose, const Vector3& reference_m, int parameter, double
   return {rotation, place - rotation * reference_m};
 }
 
-// Pixel and range, in their sigmas.
+// Pixel and range, divided by their standard deviations.
 Vector3 measured(const Camera& camera, const Vector3& point, const MarkerVariance& variance) {
   const Vector2 pixel = project(camera.model, point).value;
   return {pixel.x() / std::sqrt(variance.xx_px2), pixel.y() / std::sqrt(variance.yy_px2),

@@ -1,4 +1,4 @@
-// The parameters of an experiment, written down so that a figure can be traced to them.
+// Declared parameters of an experiment as JSON, with a hash, so that a figure is traceable to them.
 #pragma once
 
 #include <string>
@@ -9,11 +9,12 @@
 
 namespace glint {
 
-// JSON: camera, noise, signal, localisation, reference, both methods' gates, frames and seeds.
+// JSON: camera, noise, signal, localisation, reference, the baseline's gates, frames and random
+// seeds.
 [[nodiscard]] std::string declared_parameters(const std::vector<ExperimentRun>& runs);
 
-// FNV-1a with 64 bits, as 16 hexadecimal digits: names a set of parameters, protects nothing.
-// Source: Fowler, Noll, Vo, The FNV non-cryptographic hash algorithm.
+// 64-bit FNV-1a hash as 16 hexadecimal digits: identifies a set of parameters; not cryptographic.
+// Source:   Fowler, Noll, Vo, The FNV non-cryptographic hash algorithm.
 [[nodiscard]] std::string fnv1a_text(std::string_view text);
 
 }  // namespace glint

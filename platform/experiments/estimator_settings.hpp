@@ -1,4 +1,4 @@
-// The one built-in configuration of the estimator that every experiment runs, and its name.
+// Built-in configuration of the estimator in every experiment, and its hash.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace glint {
 
-// Default-constructed it is the configuration. Whoever adds a part of the estimator adds its
-// settings here, and their fields to estimator_text().
+// Default-constructed, it is the configuration. A new part of the estimator adds its settings here
+// and their fields to estimator_text().
 struct EstimatorSettings {
-  // Wider than where the residual alone decides, for here chi-square does.
+  // Wider than where the residual alone decides: here the chi-square test decides.
   CorrespondSettings correspond{.gate_sigmas = 8};
   PixelNoise pixel_noise;
   ToolMotionSettings motion;
@@ -23,7 +23,7 @@ struct EstimatorSettings {
 // Every field by name, as JSON.
 [[nodiscard]] std::string estimator_text();
 
-// FNV-1a of that text, 16 hexadecimal digits: experiments with equal names ran the same estimator.
+// FNV-1a of that text, 16 hexadecimal digits: experiments with equal hashes ran the same estimator.
 [[nodiscard]] std::string estimator_hash();
 
 }  // namespace glint

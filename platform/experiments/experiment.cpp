@@ -14,11 +14,11 @@
 namespace glint {
 namespace {
 
-constexpr int k_bins = 61;  // odd: one of them has zero in its middle
+constexpr int k_bins = 61;  // odd: one bin is centred at zero
 constexpr int k_progress_every = 50;
 constexpr int k_quick_part = 10;
 
-// The answer and the seconds it took.
+// Returns the result of process() and its duration in seconds.
 template <class Process>
 std::pair<Result<UncertainPose>, double> timed(Process&& process) {
   const auto begin = std::chrono::steady_clock::now();
@@ -54,7 +54,7 @@ ExperimentBars bars_of(ExperimentKind kind) {
 int missed_bars(const ExperimentResult& result) {
   const ExperimentBars bars = bars_of(result.kind);
   const MethodFigures& held = result.glint_held;
-  // Without a sample a mean is zero, and no bar is met.
+  // Without a sample the mean is zero: no bar is met.
   const bool any = held.samples > 0;
   return (any && held.position_mm.summary.mean_abs <= bars.position_mm ? 0 : 1) +
          (any && held.angle_deg.summary.mean_abs <= bars.angle_deg ? 0 : 1);
@@ -109,7 +109,7 @@ ExperimentResult run_experiment(ExperimentKind kind, const std::vector<Experimen
   for (const ExperimentRun& run : runs) {
     const sim::Simulator simulator(run.scenario), board_simulator(with_reference(run.scenario));
     SeedTracker seed_tracker(run.scenario.camera, tool);
-    const HeadNoise noise;  // as shipped: the simulated headset is another
+    const HeadNoise noise;  // as shipped: the simulated headset differs
     GlintChain free_chain(run.scenario.camera, ChainSetup{{tool}, -1, noise});
     GlintChain held_chain(run.scenario.camera, ChainSetup{{tool, reference_board()}, 1, noise});
     seed.begin_run();

@@ -57,7 +57,7 @@ Json json_of(const MethodFigures& figures) {
           {"angle_deg", spread_json(figures.angle_deg)}};
 }
 
-// The figures of one row; nothing where a column has none.
+// Figures of one row; nullopt for a column without one.
 struct Row {
   std::optional<double> published, seed, glint, held, perfect;
 };
@@ -82,7 +82,7 @@ HistogramSeries series_of(const std::string& name, const ErrorColumn& column) {
   return {name, column.histogram, column.fit};
 }
 
-// Longer paths only blacken the picture.
+// A longer path would fill the plot.
 TrajectorySeries beginning_of(const std::string& name, const std::vector<Vector3>& path_m) {
   const auto length = static_cast<std::ptrdiff_t>(std::min(path_m.size(), k_path_frames));
   return {name, {path_m.begin(), path_m.begin() + length}};

@@ -1,4 +1,4 @@
-// An experiment's figures as JSON, as a table for a terminal, and as plots.
+// Reports of an experiment: JSON, a table for a terminal, and SVG plots.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace glint {
 
-// {"experiment": .., "published": {..}, "seed": {..}, "glint": {..}, ..}; see README.md. A figure
-// that the publication does not state is null.
+// Returns {"experiment": .., "published": {..}, "seed": {..}, "glint": {..}, ..}; see README.md. A
+// figure that the publication does not state is null.
 [[nodiscard]] std::string experiment_json(const ExperimentResult& result);
 
-// Published, seed and Glint side by side, with the definition of the figures underneath.
+// Returns published, baseline and Glint figures side by side, with their definitions below.
 [[nodiscard]] std::string experiment_table(const ExperimentResult& result);
 
-// Writes NAME_position.svg, NAME_angle.svg and NAME_path.svg into the folder, NAME being static or
-// dynamic; returns their paths. Throws InputError where it cannot.
+// Writes NAME_position.svg, NAME_angle.svg and NAME_path.svg into the folder; NAME is static or
+// dynamic. Returns their paths. Throws InputError if a file cannot be written.
 std::vector<std::string> write_experiment_plots(const ExperimentResult& result,
                                                 const std::string& folder);
 

@@ -15,13 +15,13 @@
 namespace glint {
 namespace {
 
-constexpr int k_poses = 100;  // of each part
+constexpr int k_poses = 100;  // per part
 constexpr int k_quick_poses = 15;
-constexpr int k_held_frames = 3;       // of each pose; the middle one is judged
+constexpr int k_held_frames = 3;       // per pose; the middle one is judged
 constexpr double k_roll_rad = 0.4363;  // 25 degrees to either side
-constexpr double k_grid_m = 0.05;      // between points, 3 x 3 x 2 of them
+constexpr double k_grid_m = 0.05;      // spacing of the points, 3 x 3 x 2 of them
 
-// The tool in one pose after the other.
+// Motion that holds one pose after the other, each for the same time.
 class HeldPoses : public sim::Motion {
  public:
   HeldPoses(std::vector<Pose> poses, Duration each) : poses_(std::move(poses)), each_(each) {}
@@ -39,7 +39,7 @@ struct TipPair {
   Vector3 measured_m, true_m;  // camera frame
 };
 
-// The tip in the middle frame of each pose; frames without a pose are left out.
+// Tip in the middle frame of each pose; skips frames without a pose.
 std::vector<TipPair> measured(const std::vector<Pose>& poses, const CaseOptions& options,
                               const std::function<void()>& step) {
   sim::Scenario scenario = sim::still_run(hololens2_ahat());
@@ -68,7 +68,7 @@ Pose resting() {
   return scenario.tools[0].motion->pose(Time{});
 }
 
-// Turned about its tip, which stays at `tip_world`.
+// The tool rotated about its tip, which stays at `tip_world`.
 Pose turned(const Pose& rest, const Vector3& tip_tool, const Vector3& tip_world,
             const Vector3& by_rad) {
   const Quaternion rotation = (rest.rotation * from_rotation_vector(by_rad)).normalized();
@@ -79,7 +79,7 @@ Figure lost(std::size_t poses, std::size_t found) {
   return {"frames_without_pose", "", static_cast<double>(poses - found)};
 }
 
-// The tips' distances from their mean: what F2554 calls single point precision.
+// Distances of the tips from their mean: the single point precision of F2554.
 ExperimentCase point_case(const std::string& name, std::size_t poses,
                           const std::vector<TipPair>& tips, HistogramSeries* series) {
   Vector3 mean = Vector3::Zero();
@@ -125,7 +125,7 @@ ExperimentCase distance_case(std::size_t poses, const std::vector<TipPair>& tips
            lost(poses, tips.size())}};
 }
 
-// Evenly from one side to the other.
+// Evenly spaced angles from one side to the other.
 double swing(int i, int count) { return k_roll_rad * (2.0 * i / std::max(count - 1, 1) - 1); }
 
 Vector3 grid_point(int i) { return k_grid_m * Vector3(i % 3 - 1, i / 3 % 3 - 1, i / 9 % 2 - 0.5); }

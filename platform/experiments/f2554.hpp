@@ -1,8 +1,8 @@
-// How well a tip is located, in the manner of ASTM F2554: on one point, turned about each axis of
-// the tool, and from point to point, on simulated frames with the tracker as it is.
+// Tip accuracy after ASTM F2554 on simulated frames: on a single point, under rotation about each
+// axis of the tool, and as distances between points. The tracker is unchanged.
 //
-// Every frame is tracked by itself, in the camera's frame, so that neither a filter nor the
-// headset's localisation has a part in it.
+// Each frame is tracked independently, in the camera frame, so that neither a filter nor the
+// headset's localisation affects the result.
 #pragma once
 
 #include "platform/experiments/case_list.hpp"

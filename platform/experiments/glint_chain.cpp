@@ -12,7 +12,7 @@ GlintChain::GlintChain(const Camera& camera, const ChainSetup& setup)
     : tracker_(std::make_unique<Tracker>()) {
   Cell cell = default_cell();
   set_camera(cell, camera);
-  cell.camera.uncertainty = k_exact_camera;  // judged is the random part
+  cell.camera.uncertainty = k_exact_camera;  // only random errors are judged
   cell.tools.count = 0;
   for (const Tool& tool : setup.tools)
     cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] = tool;

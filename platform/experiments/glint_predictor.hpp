@@ -1,4 +1,4 @@
-// Glint's filter and prediction as one predictor among others, with its one built-in setting.
+// Glint's motion filter and prediction as a Predictor, with the built-in settings.
 #pragma once
 
 #include "kernels/motion/integrate_motion.hpp"
@@ -9,7 +9,7 @@ namespace glint {
 
 class GlintPredictor final : public Predictor {
  public:
-  // Throws where SUNDIALS cannot be prepared.
+  // Throws std::runtime_error if SUNDIALS cannot be prepared.
   explicit GlintPredictor(const ToolMotionSettings& settings = {});
   void update(const UncertainPose& measured) override;
   [[nodiscard]] Pose predict(Time time) const override;
@@ -17,7 +17,7 @@ class GlintPredictor final : public Predictor {
  private:
   ToolMotion motion_;
   MotionState state_;
-  mutable MotionIntegrator integrator_;  // its workspace
+  mutable MotionIntegrator integrator_;  // workspace
 };
 
 }  // namespace glint

@@ -16,10 +16,10 @@ namespace {
 constexpr double k_speed_m_s = 0.5, k_turn_rad_s = 90 / k_degrees_per_radian;
 constexpr double k_lag_tilt_rad = 30 / k_degrees_per_radian;
 constexpr int k_still_frames = 90;   // 2 s
-constexpr int k_moving_frames = 28;  // 0.6 s: then it is as near to the camera as it may come
+constexpr int k_moving_frames = 28;  // 0.6 s: then the tool is at its least distance
 constexpr int k_lag_runs = 1000, k_lag_quick_runs = 40;
 
-// LagErrors by frame after the start, in axes that begin with the run's own direction of motion.
+// Error sums by frame after the start, in axes whose first is the run's direction of motion.
 struct FrameErrors {
   Vector6 sum = Vector6::Zero(), squares = Vector6::Zero();
 };
@@ -54,11 +54,11 @@ void one_start(const std::vector<Vector3>& model, const PointNoise& noise, LagEr
 }
 
 struct Worst {
-  double mean_mm = 0, mean_deg = 0;  // length of the mean error: how far it trails
-  double rms_mm = 0, rms_deg = 0;    // with each run's noise
+  double mean_mm = 0, mean_deg = 0;  // length of the mean error: the lag
+  double rms_mm = 0, rms_deg = 0;    // with the noise of each run
 };
 
-// The largest at `seconds` after the start or later.
+// Largest errors from `seconds` after the start on.
 Worst worst_after(const LagErrors& errors, double seconds, int runs) {
   Worst worst;
   for (int frame = 0; frame < k_moving_frames; ++frame) {

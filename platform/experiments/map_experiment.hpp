@@ -1,13 +1,13 @@
-// How well a map of depth pictures agrees with a second one of the same place.
+// Repeatability of a map of depth images: agreement with a second map of the same scene.
 #pragma once
 
 #include "platform/experiments/case_list.hpp"
 
 namespace glint {
 
-// options.data: a folder as platform/mapping/depth_sequence.hpp describes. Even against odd
-// pictures, the three largest planes before anything is moved onto them; then what was moved.
-// Throws InputError where the pictures are missing or wrong.
+// options.data: a folder as in platform/mapping/depth_sequence.hpp. Compares even with odd images:
+// the three largest planes before points are snapped to them, then the snapped points. Throws
+// InputError if images are missing or invalid.
 [[nodiscard]] CaseList run_map(const CaseOptions& options);
 
 }  // namespace glint

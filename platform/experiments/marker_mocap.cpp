@@ -21,7 +21,7 @@ namespace {
 constexpr double k_geometry_max_mm = 0.2;
 constexpr double k_tip_axis_rms_max_mm = 0.7;
 
-// The published probe; a row "ProbeTip" is its origin.
+// Reads the published probe geometry; a row "ProbeTip" is its origin.
 Tool published_probe(const std::string& path) {
   Tool tool;
   std::ifstream in(path);
@@ -45,7 +45,7 @@ Tool published_probe(const std::string& path) {
                    " markers; expected rows Probe1,x,y,z .. of 3 or more that fix a pose");
 }
 
-// The trial's probe markers without their names, each frame's in an order of its own.
+// The trial's probe markers without labels, in random order in each frame.
 std::vector<PointFrame> unlabelled(const std::string& path, int markers, std::uint64_t seed) {
   const C3dTrial trial = C3dFile(path).read();
   std::vector<PointFrame> frames;
@@ -76,10 +76,10 @@ Tool found_tool(const ToolGeometry& geometry) {
   return tool;
 }
 
-// The published probe laid onto the found markers, whichever is which.
+// The published probe fitted to the found markers, without given correspondences.
 struct Overlay {
   Labeling labeling;
-  std::vector<double> errors_mm;  // of each published marker that was found
+  std::vector<double> errors_mm;  // per published marker that was found
 };
 
 Overlay overlay(const Tool& published, const Tool& found, const std::string& what) {
@@ -103,7 +103,7 @@ Overlay overlay(const Tool& published, const Tool& found, const std::string& wha
   return result;
 }
 
-// Where the tip was in each frame that the tool was found in.
+// Returns the tip's position in each frame in which the tool was found.
 std::vector<Vector3> tips(std::span<const PointFrame> frames, const Tool& tool,
                           const Vector3& tip_m, const ToolGeometry& geometry) {
   std::vector<Vector3> places;
@@ -115,7 +115,7 @@ std::vector<Vector3> tips(std::span<const PointFrame> frames, const Tool& tool,
   return places;
 }
 
-// About their mean, in the room.
+// Scatter of positions about their mean, in the frame of the room.
 struct Scatter {
   std::vector<double> distances_mm;
   Vector3 axis_rms_mm = Vector3::Zero();

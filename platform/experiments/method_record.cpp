@@ -8,7 +8,7 @@
 namespace glint {
 namespace {
 
-constexpr double k_inside = 7.815;  // chi square of 3 degrees of freedom, 95 %
+constexpr double k_inside = 7.815;  // chi-square, 3 degrees of freedom, 95 %
 constexpr double k_mm = 1000;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Keeps what one method gave over an experiment: aligns, judges, times.
+// Results of one method over an experiment: alignment, errors and timing.
 #pragma once
 
 #include <vector>
@@ -13,20 +13,20 @@ namespace glint {
 
 class MethodRecord {
  public:
-  // The tool's tip is what is judged, by a reference tracker with noise of its own.
+  // Judges the tool's tip against a reference tracker with noise of its own.
   MethodRecord(std::string name, const Tool& tool, const sim::ReferenceSettings& reference);
 
-  // A new run: aligned anew.
+  // Starts a new run with a new alignment.
   void begin_run();
-  // One frame's answer, while both rest or afterwards: T_world_tip, with its covariance or zero
-  // where the method states none, or a reason.
+  // Record the result of one frame, while aligning or afterwards: T_world_tip with its covariance
+  // (zero if the method states none), or a reason.
   void take_aligning(const sim::SimFrame& frame, const Result<UncertainPose>& answer,
                      double seconds);
   void take_judged(const sim::SimFrame& frame, const Result<UncertainPose>& answer, double seconds);
 
   [[nodiscard]] MethodFigures figures() const;
-  // The tip in the reference's frame, for each judged frame of the run at hand; not finite where
-  // there was none.
+  // Tip positions in the reference's frame, one per judged frame of the current run; not finite
+  // without a pose.
   [[nodiscard]] const std::vector<Vector3>& path_m() const { return path_m_; }
 
  private:
@@ -35,7 +35,7 @@ class MethodRecord {
 
   std::string name_;
   Pose T_tool_tip_;
-  double reference_variance_m2_ = 0;  // of the tip, an axis
+  double reference_variance_m2_ = 0;  // of the tip, per axis
   std::vector<PosePair> aligning_;
   bool aligned_ = false;
   Pose T_reference_world_;

@@ -11,7 +11,7 @@
 namespace glint {
 namespace {
 
-// Each second of the recording hides all markers but one or two for a while.
+// In each second of the recording all markers but one or two are occluded for a while.
 constexpr std::size_t k_cycle_frames = 45, k_gap_frames = 9;          // 1 s, 0.2 s
 constexpr double k_across_sigma_m = 0.0002, k_along_sigma_m = 0.001;  // of a marker, along z
 
@@ -22,7 +22,7 @@ struct Gap {
   }
 };
 
-// Not within the first fifth of its second: the filter has found its feet again.
+// Not within the first fifth of its second, so that the filter has converged again.
 Gap gap_of(std::uint64_t seed, std::size_t cycle) {
   const sim::RandomKey key{seed, sim::Stream::transport, 0};
   const std::size_t free_frames = k_cycle_frames - 2 * k_gap_frames;

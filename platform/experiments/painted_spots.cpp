@@ -12,7 +12,7 @@ namespace {
 
 constexpr double k_gap_px = 3;  // from a marker's rim to a spot's
 
-// The standard fixes mt19937's numbers, not what its distributions make of them.
+// The C++ standard specifies mt19937's numbers, but not the output of its distributions.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : random_(static_cast<std::uint32_t>(seed * 2654435761u + 1)) {}

@@ -1,9 +1,9 @@
-// Bright spots painted into rendered frames: hot pixels, reflections, textures that no tool has.
+// Bright spots painted into rendered frames: hot pixels, reflections, textures of no tool.
 //
-// They are drawn as plain discs into the pixels, by a generator of their own: the simulator's
-// strays are balls in its scene, and a tracker that is good with the one may fail with the other.
-// A spot that would touch one of the tools' markers is left out of that frame, as if it were hidden
-// behind the hand, so that the truth's visible markers stay visible; single pixels stay everywhere.
+// Plain discs drawn into the pixels by an independent generator. The simulator's false markers are
+// balls in its scene; a tracker may pass the one test and fail the other. A spot that would touch a
+// tool's marker is omitted from that frame, as if hidden behind the hand, so that the ground
+// truth's visible markers stay visible. Single pixels are never omitted.
 #pragma once
 
 #include <cstdint>
@@ -18,20 +18,20 @@ namespace glint {
 
 struct SpotSettings {
   int count = 0;
-  double radius_min_px = 0, radius_max_px = 0;  // 0: a single pixel, whose depth stays
+  double radius_min_px = 0, radius_max_px = 0;  // 0: a single pixel, whose depth is unchanged
   int level_min = 3000, level_max = 60'000;     // reflectivity, raw
   int depth_min_mm = 300, depth_max_mm = 950;
   int clusters = 0;          // 0: anywhere in the frame
-  double cluster_px = 40;    // spots lie within this of their cluster's middle, along each axis
-  double speed_px_s = 0;     // each in a direction of its own; those that leave come back in
-  double flicker_share = 0;  // of the frames in which a spot is not there
+  double cluster_px = 40;    // spots are within this of their cluster's centre, along each axis
+  double speed_px_s = 0;     // each in its own direction; wraps around at the frame's edges
+  double flicker_share = 0;  // fraction of the frames in which a spot is absent
 };
 
 class PaintedSpots {
  public:
   PaintedSpots(const SpotSettings& settings, const Camera& camera, std::uint64_t seed);
 
-  // Paints the spots of a frame over its pixels. Returns how many.
+  // Paints the spots of a frame over its pixels. Returns their number.
   int paint(const ToolSet& tools, sim::SimFrame& frame) const;
 
  private:

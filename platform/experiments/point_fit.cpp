@@ -8,8 +8,8 @@ namespace glint {
 namespace {
 
 constexpr int k_steps_max = 20;
-constexpr double k_step_small = 1e-9;  // metres and radians
-constexpr double k_difference = 1e-6;  // of the numeric Jacobian; metres and radians
+constexpr double k_step_small = 1e-9;  // convergence limit; metres and radians
+constexpr double k_difference = 1e-6;  // step of the numeric Jacobian; metres and radians
 
 using Residuals = Eigen::VectorXd;
 

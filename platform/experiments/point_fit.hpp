@@ -1,8 +1,8 @@
-// A tool's pose from where its markers are seen: the simple reference for experiments that need a
-// weighted measurement with its covariance, not a camera's frames.
+// Reference fit of a tool's pose, with covariance, to marker observations (u, v, range), for
+// experiments at point level without camera frames.
 //
-// What: least squares of (u, v, range) by Gauss and Newton with a numeric Jacobian, from the rigid
-//       fit of the back-projected points; covariance (J'WJ)^-1.
+// What:     least squares of (u, v, range) by Gauss-Newton with a numeric Jacobian. Initial guess:
+//           the rigid fit of the back-projected points. Covariance (J'WJ)^-1.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +19,15 @@ struct PointCamera {
   double range_sigma_m = 0.001;
 };
 
-// (u, v, range) of a point in the camera's frame; u and v from the principal point.
+// Returns (u, v, range) of a point in the camera frame; u and v from the principal point.
 [[nodiscard]] Vector3 seen_at(const PointCamera& camera, const Vector3& point_m);
 
-// model_m: the markers about their own middle, so that the pose is the middle's.
+// model_m: the markers relative to their mean, so that the pose is that of the mean.
 [[nodiscard]] Result<UncertainPose> fit_points(const PointCamera& camera,
                                                const std::vector<Vector3>& model_m,
                                                const std::vector<Vector3>& seen);
 
-// NDI 8700339's four markers about their middle; exactly in one plane, x = 0.
+// The four markers of NDI 8700339 relative to their mean; exactly in the plane x = 0.
 [[nodiscard]] std::vector<Vector3> tool_8700339();
 
 }  // namespace glint

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double k_distance_m = 0.5;
 constexpr double k_half_turn = 3.14159265358979323846;
-constexpr std::uint64_t k_frames_max = 1 << 20;  // of a run: noise of two runs never meets
+constexpr std::uint64_t k_frames_max = 1 << 20;  // per run: the noise of two runs never overlaps
 
 }  // namespace
 
@@ -21,7 +21,7 @@ Pose held_pose(double tilt_rad, std::uint64_t seed, std::uint64_t run) {
   const sim::RandomKey key{seed, sim::Stream::hand, 0};
   const double roll = k_half_turn * (2 * sim::uniform(key, 2 * run) - 1);
   const double side = k_half_turn * (2 * sim::uniform(key, 2 * run + 1) - 1);
-  // The tool's x axis, normal to its markers, towards the camera.
+  // Points the tool's x axis, normal to its markers, towards the camera.
   const Quaternion facing = from_rotation_vector(0.5 * k_half_turn * Vector3::UnitY());
   const Quaternion rolled = from_rotation_vector(roll * Vector3::UnitZ());
   const Vector3 tilt_axis = from_rotation_vector(side * Vector3::UnitZ()) * Vector3::UnitX();

@@ -1,5 +1,4 @@
-// A tool seen by its markers at a steady rate while it moves as told: what rest, lag and sine
-// share.
+// Point-level pose measurements of a moving tool at a constant rate, shared by rest, lag and sine.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +8,23 @@
 
 namespace glint {
 
-// 45 Hz, from time 0 on.
+// Frame times at 45 Hz, from time 0 on.
 [[nodiscard]] constexpr Time frame_time(int frame) { return Time{} + Duration{22'222'222} * frame; }
 
-// How a run's tool lies and turns: the middle of its markers at 0.5 m, their plane's normal tilted
-// from the line of sight, the rest by chance.
+// Pose at the start of a run: the mean of the markers at 0.5 m, their plane's normal tilted from
+// the line of sight, otherwise random.
 [[nodiscard]] Pose held_pose(double tilt_rad, std::uint64_t seed, std::uint64_t run);
 
-// A unit vector by chance.
+// Returns a random unit vector.
 [[nodiscard]] Vector3 direction(std::uint64_t seed, std::uint64_t run, std::uint64_t which);
 
 struct PointNoise {
-  double share = 1;  // of the camera's sigmas; 0: noise-free, the covariance stays as declared
+  double share = 1;  // factor on the camera's sigmas; 0: noise-free, covariance as declared
   std::uint64_t seed = 1;
   std::uint64_t run = 0;
 };
 
-// The pose measured at frame `frame` of the run, or why there is none.
+// Returns the pose measured at frame `frame` of the run, or the reason for none.
 [[nodiscard]] Result<UncertainPose> measure(const PointCamera& camera,
                                             const std::vector<Vector3>& model_m, const Pose& truth,
                                             const PointNoise& noise, std::uint64_t frame);

@@ -1,5 +1,5 @@
-// A tool as points in a simulated camera: each marker's pixel and range with noise of a declared
-// size, without an image. What experiments on the pose alone work on.
+// Simulated marker observations of a tool without an image: pixel and range of each marker, with
+// noise of declared size. Used by experiments on the pose alone.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace glint {
 
-// A tool, which of its axes is its normal (that of its plane, if it is flat), and a point 150 mm
-// beyond its markers' mean, across the normal, where a pen of this head has its tip.
+// A tool and its normal axis (that of its plane, if it is flat). Its tip is 150 mm from the
+// markers' mean, perpendicular to the normal, as on a pen with this head.
 struct PointTool {
   std::string name;
   Tool tool;
@@ -31,17 +31,17 @@ struct PointTool {
 
 [[nodiscard]] Vector3 marker_mean(const Tool& tool);
 
-// AHAT with its lens as a table of rays at pixel centres, as the device itself has it.
+// AHAT with its lens as a table of rays at pixel centres, as on the device.
 [[nodiscard]] Camera ahat_ray_table();
 
 struct SightNoise {
-  double pixel_px = 0.1;  // an axis
+  double pixel_px = 0.1;  // per axis
   double range_m = 0.001;
-  // What is declared of it: an estimator's sigma is never zero.
+  // Declared variance; the range's sigma has a minimum, as an estimator's sigma is never zero.
   [[nodiscard]] MarkerVariance variance() const;
 };
 
-// The random numbers of one sample, drawn one after the other.
+// Sequence of random numbers of one sample.
 class SampleNumbers {
  public:
   SampleNumbers(std::uint64_t seed, std::uint64_t case_number, std::uint64_t sample)
@@ -58,29 +58,30 @@ class SampleNumbers {
   std::uint64_t next_;
 };
 
-// A pose and what a flat tool would look like nearly the same in: its plane mirrored in depth.
+// A pose and the one in which a flat tool looks nearly the same: its plane mirrored in depth.
 struct DrawnPose {
   Pose T_camera_tool, T_camera_mirrored;
 };
-// The markers' mean `range_m` away, within 25 degrees of the axis; the normal tilted by this much
-// from the line of sight, about any axis, and the tool turned by any angle about it.
+// Draws a pose: the markers' mean `range_m` away, within 25 degrees of the optical axis; the normal
+// tilted by `tilt_rad` from the line of sight, about a random axis; a random rotation about the
+// normal.
 [[nodiscard]] DrawnPose draw_pose(const PointTool& tool, double range_m, double tilt_rad,
                                   SampleNumbers& numbers);
 
-// One frame's markers and what the camera knows of each.
+// Markers of one frame, with their local rays and variances.
 struct PointView {
   Markers markers;
   MarkerSights sights;
-  std::array<std::int16_t, k_markers_per_tool_max> truth{};  // of each tool marker, -1: none
+  std::array<std::int16_t, k_markers_per_tool_max> truth{};  // index per tool marker, -1: none
 
   void clear();
-  // False: outside the lens. `label` -1: a stray.
+  // Returns false outside the lens or beyond k_blobs_max. `label` -1: a false marker.
   bool add(const Camera& camera, const Tool& tool, const Vector3& centre, int label,
            const SightNoise& noise, SampleNumbers& numbers);
   void shuffle(SampleNumbers& numbers);
 };
 
-// Angle between two rotations, radians.
+// Returns the angle between the two rotations, radians.
 [[nodiscard]] double turned_by(const Pose& a, const Pose& b);
 
 }  // namespace glint

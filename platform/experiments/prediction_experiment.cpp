@@ -16,7 +16,7 @@ namespace {
 constexpr std::array<const char*, 2> k_ahead = {"25 ms", "50 ms"};
 const std::vector<Duration> k_horizons = {milliseconds(25), milliseconds(50)};
 
-// What Glint's error may be of that of linear + SLERP, and of the best rival's.
+// Limits of Glint's error relative to linear + SLERP and to the best baseline predictor.
 struct Shares {
   double position_of_linear, rotation_of_linear;
   double position_of_best, rotation_of_best;
@@ -36,7 +36,7 @@ const std::vector<NamedPredictor>& rivals() {
   return k_rivals;
 }
 
-using HorizonErrors = std::vector<PredictionError>;  // one a horizon
+using HorizonErrors = std::vector<PredictionError>;  // one per horizon
 
 ExperimentCase case_of(const char* recording, std::size_t h, const std::string& method,
                        const HorizonErrors& errors) {

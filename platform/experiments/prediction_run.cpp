@@ -8,7 +8,7 @@
 namespace glint {
 namespace {
 
-// A truth further than this from both recorded neighbours is none.
+// Ground truth is valid only between recorded samples that are at most this far apart.
 constexpr Duration k_gap_max = milliseconds(100);
 
 bool recorded_near(const Trajectory& truth, Time time) {

@@ -1,4 +1,4 @@
-// A recording measured with noise at a steady rate, and how far a predictor is off.
+// Noisy measurements of a recorded motion at a constant rate, and errors of a predictor on them.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct PredictionSettings {
   Duration period{22'222'222};  // 45 Hz
   double position_sigma_m = 0.0005;
   double rotation_sigma_rad = 0.3 * 3.14159265358979323846 / 180;
-  Duration warm_up = milliseconds(1000);  // not judged, and not after a gap of the recording
+  Duration warm_up = milliseconds(1000);  // not judged, at the start and after each gap
 };
 
 struct NoisyRecording {
@@ -22,12 +22,12 @@ struct NoisyRecording {
   std::vector<UncertainPose> measured;
 };
 
-// Whether a measurement may be judged: a second after the begin and after each gap of the
+// Whether a measurement is judged: from `warm_up` on after the start and after each gap of the
 // recording.
 class Judged {
  public:
   explicit Judged(Duration warm_up) : warm_up_(warm_up), from_(Time{} + warm_up) {}
-  // Each measurement's time in turn.
+  // Call with the time of each measurement, in order.
   [[nodiscard]] bool operator()(Time time);
 
  private:
@@ -44,8 +44,8 @@ struct PredictionError {
   int n = 0;
 };
 
-// One pass over the recording; the errors at each horizon after every measurement that a recorded
-// sample stands near to.
+// Runs the predictor over the recording once. Returns the errors at each horizon, over the judged
+// measurements for which the predicted time is near recorded samples.
 [[nodiscard]] std::vector<PredictionError> prediction_errors(const NoisyRecording& recording,
                                                              Predictor& predictor,
                                                              const std::vector<Duration>& horizons,

@@ -1,4 +1,4 @@
-// Whoever says from noisy poses where a tool will be: Glint's filter and its rivals, alike.
+// Interface of pose predictors from noisy poses: Glint's filter and the baseline predictors.
 #pragma once
 
 #include <memory>
@@ -12,9 +12,9 @@ namespace glint {
 class Predictor {
  public:
   virtual ~Predictor() = default;
-  // Stamps rise.
+  // Requires increasing time stamps.
   virtual void update(const UncertainPose& measured) = 0;
-  // After at least one update; time: that of the newest measurement or later.
+  // Requires at least one update and a time not before the newest measurement.
   [[nodiscard]] virtual Pose predict(Time time) const = 0;
 };
 

@@ -24,9 +24,9 @@ namespace {
 constexpr Duration k_tick = milliseconds(4);
 constexpr Time k_never{INT64_MIN / 2};
 constexpr double k_rates_tilt_rad = 0.5;
-constexpr std::uint64_t k_view_case = 3000;  // of the random numbers
+constexpr std::uint64_t k_view_case = 3000;  // case number of the random numbers
 
-// The pen, its pose that of its markers' middle.
+// The pen, with the mean of its markers as origin.
 Tool middle_pen() {
   Tool tool = five_marker_pen().tool;
   const Vector3 mean = marker_mean(tool);
@@ -35,7 +35,7 @@ Tool middle_pen() {
   return tool;
 }
 
-// A hand that rests and draws, from any place of its cycle on.
+// Hand motion that alternates between rest and drawing, from a random phase of its cycle on.
 sim::MotionPointer hand_of(const RatesRun& run) {
   sim::HandSettings settings;
   settings.T_world_tool = held_pose(k_rates_tilt_rad, run.seed, run.run);
@@ -44,7 +44,7 @@ sim::MotionPointer hand_of(const RatesRun& run) {
   return sim::hand_motion(settings, run.seed, run.run);
 }
 
-// The bytes themselves, for a kernel's state.
+// Bytes of a kernel's state, for a bitwise comparison.
 template <class State>
 std::vector<std::byte> bytes_of(const State& state) {
   std::vector<std::byte> bytes(sizeof state);
@@ -73,7 +73,7 @@ class MotionWay {
       (void)motion_.update(measured.value);
       return;
     }
-    // The filter refuses by itself what the node has refused.
+    // The filter itself must reject what the node has rejected.
     const std::vector<std::byte> before = bytes_of(motion_);
     (void)motion_.update(measured.value);
     if (bytes_of(motion_) != before) ++tally.refused_changed;
@@ -142,7 +142,7 @@ class GraphWay {
     if (estimates.verdict.usable() && fresh(age, camera_.period)) ++frames_unmeasured_;
   }
 
-  // newest: the last exposure whose frame has arrived with a true stamp, or k_never.
+  // newest: latest exposure whose frame has arrived with a true time stamp, or k_never.
   void tick(Time time, Time newest, const Pose& truth, GraphTally& graph, RatesTally& tally) {
     const PoseSample now = sample(time);
     ++graph.ticks;
@@ -164,7 +164,7 @@ class GraphWay {
     return 2 * age.nanoseconds <= 3 * period.nanoseconds;
   }
 
-  // The states' contract, from the schedule alone.
+  // Expected track state, from the schedule alone.
   static TrackState right_state(Time time, Time newest, Duration period) {
     if (newest == k_never) return TrackState::none;
     if (fresh(time - newest, period)) return TrackState::measured;

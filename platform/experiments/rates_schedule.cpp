@@ -9,7 +9,7 @@ namespace glint {
 namespace {
 
 constexpr Duration k_doubled_after = milliseconds(5), k_late_by = milliseconds(60);
-// No two frames that are kept lie so far apart: at 5 Hz four in a row would have to be lost.
+// Longer than any gap between kept frames: at 5 Hz, four frames in a row would have to be lost.
 constexpr Duration k_backward_by = milliseconds(1000);
 
 std::optional<sim::FaultEvent> mishap(const Mishaps& mishaps, double share, Time at) {
@@ -30,7 +30,7 @@ std::vector<sim::FrameTiming> rates_schedule(const Camera& camera, const Mishaps
   const sim::RandomKey chance{seed, sim::Stream::transport, 1};
   const sim::RandomKey place{seed, sim::Stream::transport, 2};
   for (const sim::FrameTiming& frame : sim::frame_timings(camera, settings, k_rates_length, seed)) {
-    if (frame.sequence == 0) continue;  // nothing could tell that the first stamp is wrong
+    if (frame.sequence == 0) continue;  // a wrong first time stamp is not detectable
     const double share = sim::uniform(chance, frame.sequence);
     if (const auto fault = mishap(mishaps, share, frame.exposed)) settings.faults.push_back(*fault);
   }

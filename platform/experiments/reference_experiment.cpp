@@ -36,10 +36,10 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-// Ends beside the best known pose, and what the verdicts said of them.
+// Converged poses relative to the best known pose, with their verdicts.
 struct ReferenceTally {
   int runs = 0, accepted = 0, ambiguous = 0, right = 0, right_refused = 0, wrong_accepted = 0;
-  std::vector<double> mm, degrees, sigma_mm, sigma_degrees;  // of the accepted, against `truth`
+  std::vector<double> mm, degrees, sigma_mm, sigma_degrees;  // of all runs, against `truth`
 
   void add(const Reference& reference, const Pose& truth) {
     const ModelAlignment& alignment = reference.found.alignment;
@@ -125,7 +125,8 @@ class Experiment {
     add(name, seeds_, tally.verdicts());
   }
 
-  // The pose of the others beside the published one, by the median distance in the frame left out.
+  // Cross-validation: the other frames' pose against the published one, by the median distance in
+  // the frame left out.
   void left_out() {
     double worst = 0;
     for (std::size_t out = 0; out < scan_.frames.size(); ++out) {
@@ -173,7 +174,7 @@ class Experiment {
     add("frame " + std::to_string(number) + " alone", seeds_, std::move(figures));
   }
 
-  // A column that looks much alike from all sides: an ambiguous verdict is no wrong one.
+  // A column that looks much alike from all sides: an ambiguous verdict is not counted as wrong.
   void straight_up() {
     const std::string folder = options_.data + "/robots/ur5";
     const RobotModel robot =
@@ -205,7 +206,7 @@ class Experiment {
     simulated(name + "'s points", robot, 1, true, &cloud);
   }
 
-  // Cloud: what the robot is looked for by, in place of its triangles; may be null.
+  // cloud: used for the search in place of the robot's triangles; may be null.
   void simulated(const std::string& name, const RobotModel& robot, int views, bool mask,
                  const RobotCloud* cloud) {
     const int count = options_.quick ? k_simulated_quick : k_simulated;
@@ -222,7 +223,7 @@ class Experiment {
       const Pose start = start_about(scene.T_world_base, 0.1, 10, options_.seed, instance);
       tally.add(find_reference(scene.frames, start, {}), scene.T_world_base);
     }
-    // One view without a mask is refused where half is hidden, right or not.
+    // One view without a mask is rejected if half of the robot is hidden, right or wrong.
     const bool judged = mask || views > 1;
     std::vector<Figure> figures = tally.verdicts(judged ? Bar::at_most(2) : Bar::none());
     const double mm = median(tally.mm), degrees = median(tally.degrees);

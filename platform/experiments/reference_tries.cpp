@@ -18,7 +18,7 @@ namespace {
 
 constexpr double k_cpu_max_s = 10;
 
-// All that the tries have in common.
+// Data shared by all tries.
 struct TryScan {
   RobotScan scan;
   std::vector<RobotModel> other_robots;
@@ -45,7 +45,7 @@ TryScan read_try_scan(const std::string& data) {
   return all;
 }
 
-// The random numbers of a try, one after the other.
+// Sequence of random numbers of one try.
 class TryDraws {
  public:
   TryDraws(std::uint64_t seed, int number)
@@ -143,7 +143,7 @@ std::vector<TryResult> read_tries(const std::string& path, std::uint64_t seed) {
   std::vector<TryResult> tries;
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {
-    if (file.eof()) break;  // cut short: no end of line
+    if (file.eof()) break;  // truncated: no end of line
     std::istringstream fields(line);
     TryResult one;
     char comma = 0;
@@ -170,7 +170,7 @@ CaseList count_tries(const std::vector<TryResult>& tries) {
       cpu_s = std::max(cpu_s, one.cpu_s);
       ambiguous += one.verdict == "ambiguous" ? 1 : 0;
       if (one.verdict != "accepted") continue;
-      // Where the robot is not in the picture no pose is right.
+      // If the robot is not in the image, no pose is right.
       const bool there = classes[c].fault == TryFault::none || classes[c].fault == TryFault::joints;
       right += there && one.right() ? 1 : 0;
       wrong += !there || one.wrong() ? 1 : 0;

@@ -45,7 +45,7 @@ struct Results {
   Sums single;  // the last frame alone
 };
 
-// One stroke that ends smoothly in the held pose, and the rest after it.
+// One stroke that ends smoothly in the held pose, then rest.
 void one_rest(const std::vector<Vector3>& model, double tilt_rad, const PointNoise& noise,
               Results& results) {
   const PointCamera camera;

@@ -16,7 +16,8 @@ namespace {
 
 constexpr int k_scan_frames = 5;
 
-// The published pose has x forward, y left, z up; a camera's picture z forward, x right, y down.
+// The published frame has x forward, y left, z up; a camera's optical frame z forward, x right, y
+// down.
 Pose published_pose(const std::string& path) {
   const NpyArray array = read_npy_float32(path);
   if (array.values.size() != 16) throw InputError(path + ": expected a 4 x 4 matrix");
@@ -42,7 +43,7 @@ void add_quad(PosedSurface& to, const Vector3& corner, const Vector3& along, con
   to.faces.push_back({first, first + 2, first + 3});
 }
 
-// Of many parts: a renderer leaves out what reaches behind the camera.
+// Split into parts, as the renderer omits triangles that reach behind the camera.
 void add_wall(PosedSurface& to, const Vector3& corner, const Vector3& along, const Vector3& up) {
   constexpr int parts = 24;
   for (int i = 0; i < parts; ++i) {
@@ -52,11 +53,11 @@ void add_wall(PosedSurface& to, const Vector3& corner, const Vector3& along, con
   }
 }
 
-// A camera at this azimuth and elevation that looks at the point.
+// Returns T_camera_base of a camera at this azimuth and elevation that looks at the target.
 Pose camera_at(const Vector3& target, double distance_m, double azimuth, double elevation) {
   const SineCosine a = sine_cosine(azimuth), e = sine_cosine(elevation);
   const Vector3 out(a.cosine * e.cosine, a.sine * e.cosine, e.sine);
-  Matrix3 axes;  // the camera's, in the base's frame, as columns
+  Matrix3 axes;  // of the camera, in the base's frame, as columns
   axes.col(2) = -out;
   axes.col(0) = Vector3(-a.sine, a.cosine, 0) * 1.0;
   axes.col(1) = axes.col(2).cross(axes.col(0));
@@ -77,7 +78,7 @@ Picture rendered(const PosedSurface& surface, const Pose& T_camera_base, const P
   return picture;
 }
 
-// A board between camera and robot, over the left half of the robot's pixels.
+// Adds a panel between camera and robot, over the left half of the robot's pixels.
 void hide_half(PosedSurface& world, const Picture& robot, const Pinhole& camera,
                const Pose& T_camera_base, double distance_m) {
   std::vector<int> columns;

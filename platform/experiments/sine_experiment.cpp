@@ -46,7 +46,7 @@ ExperimentCase swing_case(const CaseOptions& options, const SineSwing& swing, co
   for (int run = 0; run < runs; ++run) {
     const PointNoise noise{1, options.seed, static_cast<std::uint64_t>(run)};
     const Pose middle = held_pose(k_sine_tilt_rad, noise.seed, noise.run);
-    const double phase = 0.7 * run;  // of no simple ratio to the turn
+    const double phase = 0.7 * run;  // no simple fraction of a full turn
     const PredictorPointer predictor = make();
     for (int frame = 0; frame < k_sine_frames; ++frame) {
       const Time time = frame_time(frame);

@@ -13,11 +13,12 @@ namespace {
 
 constexpr int k_side_px = SpherePictures::k_side_px;
 constexpr double k_wall_m = 0.95;  // behind the spheres
-// Off the axis in neither the rows' nor the columns' direction.
+// Off the axis in a direction along neither rows nor columns.
 constexpr double k_azimuth_rad = 0.6;
 constexpr double k_turn_rad = 6.28318530717958648;
 
-// So that the ray at this angle from the axis meets the middle of the small frame.
+// Moves the principal point, so that the ray at this angle from the axis meets the centre of the
+// small frame.
 SphereSetting centred(SphereSetting setting) {
   CameraModel& model = setting.camera.model;
   const SineCosine off = sine_cosine(setting.off_axis_rad), round = sine_cosine(k_azimuth_rad);
@@ -63,7 +64,7 @@ void SpherePictures::draw_sphere(std::uint64_t number, const Vector2& pixel) {
   const double spread = 2 * uniform(seed_, number, 3) - 1;
   sphere.radius_m = setting_.radius_m + setting_.radius_spread_m * spread;
   const double front_m = setting_.range_m - sphere.radius_m;
-  sphere.signal = setting_.peak_counts * front_m * front_m / 0.25;  // stated at 0.5 m
+  sphere.signal = setting_.peak_counts * front_m * front_m / 0.25;  // peak_counts is that at 0.5 m
   sphere.limb = setting_.limb;
   sim::draw(sphere, model, rays_, {}, planes_);
 }

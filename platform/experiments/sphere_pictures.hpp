@@ -1,9 +1,8 @@
-// Pictures of one sphere each, at a random place between the pixels, with the truth beside them.
+// Rendered images of one sphere each at a random subpixel position, with ground truth.
 //
-// What:     the simulator's reflector and sensor on a small frame; where the sphere is off the
-// axis,
-//           the lens is moved instead, so that the frame stays small.
-// Source:   random numbers by counter: picture i depends on the seed and i alone.
+// What:     the simulator's reflector and sensor on a small frame. For a sphere off the axis the
+//           principal point is moved, so that the frame stays small.
+// Source:   counter-based random numbers: image i depends on the random seed and i alone.
 #pragma once
 
 #include <cstdint>
@@ -19,21 +18,21 @@
 namespace glint {
 
 struct SphereSetting {
-  Camera camera;  // its lens; the frame's size is of no interest
+  Camera camera;  // its lens is used, its frame size is not
   double radius_m = 0.0055;
-  double radius_spread_m = 0;  // evenly up to so much more or less, new in every picture
+  double radius_spread_m = 0;  // uniform, up to this more or less, drawn for each image
   double range_m = 0.5;        // to the sphere's centre
   double off_axis_rad = 0;
   double peak_counts = 20'000;  // of the sphere's middle, before clipping
   double background_counts = 300;
-  double limb = 0.6;         // of the signal that is left at its limb
-  Vector2 place_px{32, 32};  // its centre is up to a pixel beyond; the frame is k_side_px wide
-  Vector2 other_px{0, 0};    // a second sphere like it is so far away; 0: there is none
-  double smear_px = 0;       // travelled during the exposure, in a random direction
-  sim::NoiseSettings noise;  // its errors of whole blobs are left out
+  double limb = 0.6;         // fraction of the signal that remains at the limb
+  Vector2 place_px{32, 32};  // the centre is up to a pixel beyond; the frame is k_side_px wide
+  Vector2 other_px{0, 0};    // offset of a second, equal sphere; 0: none
+  double smear_px = 0;       // motion during the exposure, in a random direction
+  sim::NoiseSettings noise;  // without its errors of whole blobs
 };
 
-// At this range an on-axis sphere's image has this diameter.
+// Returns the range at which the image of an on-axis sphere has this diameter.
 [[nodiscard]] double range_of_diameter(double diameter_px, double focal_px, double radius_m);
 
 class SpherePictures {
@@ -42,12 +41,12 @@ class SpherePictures {
   SpherePictures(const SphereSetting& setting, std::uint64_t seed);
 
   struct Truth {
-    Vector2 centre_px = Vector2::Zero();  // where the sphere's centre projects, mid-exposure
+    Vector2 centre_px = Vector2::Zero();  // projection of the sphere's centre at mid-exposure
     Vector3 centre_m = Vector3::Zero();   // camera frame
   };
   Truth render(std::uint64_t number, FrameBuffer& out);
 
-  // The setting's camera with a small frame about the place that the sphere is seen at.
+  // The setting's camera, with a small frame around the sphere's image position.
   [[nodiscard]] const Camera& camera() const { return setting_.camera; }
 
  private:

@@ -1,4 +1,4 @@
-// Devices and tools whose errors are as large as stated, or one of them four times that.
+// Simulated devices and tools whose errors are as large as stated, or one of them four times that.
 #pragma once
 
 #include <cstdint>
@@ -17,19 +17,19 @@ enum class LargeError {
   tool_geometry,
   principal_point,
   focal_length,
-  time_offset,  // of the head's poses against the frames
+  time_offset,  // of the head poses relative to the frames
   head_drift
 };
 
-// Draws the errors of device, tools, stamps and headset anew: even, below one stated standard
-// deviation, where the scenario's own are of the stated distributions; one may be of
-// k_large_sigmas.
+// Draws the errors of device, tools, time stamps and headset again: uniform, below one stated
+// standard deviation, in place of the scenario's own from the stated distributions. One error may
+// have k_large_sigmas.
 void draw_below_one_sigma(const Cell& cell, LargeError large, std::uint64_t seed,
                           sim::Scenario& scenario);
 
-// The headset's own error, by this factor of what it is.
+// Multiplies the headset's own error by this factor.
 void scale_drift(double factor, sim::LocalisationSettings& head);
-// By this factor of what is declared.
+// Sets it to this factor times the declared one.
 void set_drift(double factor, sim::LocalisationSettings& head);
 
 }  // namespace glint

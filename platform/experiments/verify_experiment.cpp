@@ -17,8 +17,8 @@
 namespace glint {
 namespace {
 
-constexpr int k_devices = 25;      // of each case
-constexpr double k_wrong_max = 3;  // of them
+constexpr int k_devices = 25;      // per case
+constexpr double k_wrong_max = 3;  // per case
 constexpr double k_distance_sigma_m = 0.0001;
 
 enum class Drawn { as_stated, below_one_sigma };
@@ -52,7 +52,7 @@ sim::Scenario touching(const Cell& cell, const VerifyDevice& device) {
   return scenario;
 }
 
-// A refused recording is neither verdict.
+// A rejected recording is neither verdict.
 bool is_verdict(bool agrees, const VerifyDevice& device) {
   const sim::TouchSettings touches;
   const Cell cell = field_cell(device.seed, touches.duration().seconds());
@@ -80,7 +80,7 @@ ExperimentCase agreeing(const char* name, Drawn drawn, int devices, const CaseOp
           {{"wrong_verdicts", "", wrong, options.quick ? Bar::none() : Bar::at_most(k_wrong_max)}}};
 }
 
-// The kinds of error take turns.
+// Cycles through the kinds of error.
 ExperimentCase disagreeing(int devices, const CaseOptions& options,
                            const std::function<void()>& step) {
   std::array<double, k_large_errors.size()> wrong{};

@@ -19,7 +19,7 @@ constexpr double k_warned_s = 30, k_warned_quick_s = 10;
 struct WarningCase {
   const char* name;
   LargeError large;
-  bool body;  // one that stands still is in view
+  bool body;  // a static reference body is in view
   int seeds, quick;
   Bar bar;
 };
@@ -36,7 +36,7 @@ const std::array<WarningCase, k_warning_case_count> k_warning_cases = {
     WarningCase{"time offset, body", LargeError::time_offset, true, k_few, 1, Bar::at_least(14)},
     WarningCase{"headset drift, body", LargeError::head_drift, true, k_few, 1, Bar::at_least(14)}};
 
-// Looks slowly around: the lens shows where the body wanders through the picture.
+// Slow look around: the body moves across the image, which makes lens errors observable.
 sim::HeadSettings moving_head() {
   sim::HeadSettings head;
   head.target_m = Vector3(0.44, 0, -0.2);
@@ -46,7 +46,7 @@ sim::HeadSettings moving_head() {
   return head;
 }
 
-// Fixed to the table.
+// Adds a reference body, fixed to the table.
 void add_reference_body(Cell& cell) {
   cell.reference = cell.tools.count;
   cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] = reference_board();
