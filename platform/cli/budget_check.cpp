@@ -1,4 +1,4 @@
-// glint budget check: what a plan is worth on a board, before it runs.
+// glint budget check: response-time analysis of a schedule on a board, before it runs.
 #include <algorithm>
 #include <cstdio>
 #include <memory>

@@ -1,4 +1,4 @@
-// The parts of `glint budget`. Each adds itself below `budget` and leaves its exit code.
+// Subcommands of `glint budget`. Each adds itself to `budget` and stores its exit code.
 #pragma once
 
 #include <CLI/CLI.hpp>

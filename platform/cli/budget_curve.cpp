@@ -1,4 +1,5 @@
-// glint budget curve: a frame's cost against tools and strays, beside its bound.
+// glint budget curve: cost of a frame against the number of tools and false markers, with its
+// bound.
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -77,7 +78,7 @@ int draw_curve(const CurveCommand& command) {
     write_text(command.out + "/cost_against_strays.svg", strays_plot(rows, unit));
     write_text(command.out + "/cost_against_tools.svg", tools_plot(rows, unit));
   }
-  // A time above the bound is the machine's affair as long as others use it; instructions are ours.
+  // Other load on the machine may raise a time above its bound, but not an instruction count.
   return holds || !counts ? 0 : 1;
 }
 

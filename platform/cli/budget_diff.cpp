@@ -1,4 +1,4 @@
-// glint budget diff: what changed between two measurements or runs, told from noise.
+// glint budget diff: significant changes between two measurements or runs.
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// glint budget export: a run's trace for other programs.
+// glint budget export: conversion of a run's trace for other programs.
 #include <cstdio>
 #include <memory>
 
@@ -11,7 +11,7 @@ namespace {
 
 struct ExportArguments {
   std::string trace, format = "perfetto", out;
-  std::uint32_t frame = 0;  // 0: all of them
+  std::uint32_t frame = 0;  // 0: all frames
 };
 
 int export_trace(const ExportArguments& arguments) {

@@ -1,4 +1,4 @@
-// glint budget measure: what each kernel's loops cost, and whether the bound made of it holds.
+// glint budget measure: costs of each kernel's loops, and validation of the bound made of them.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -116,7 +116,7 @@ void print(const Measurement& measurement) {
   }
 }
 
-// The command that makes the same file again, without this machine's paths.
+// Returns the command that makes the same file again, without this machine's paths.
 std::string command_text(const MeasureCommand& command) {
   std::string text = "glint budget measure --count " + command.count + " --arch " + command.arch +
                      " --inputs " + std::to_string(command.inputs);
@@ -179,7 +179,7 @@ int measure_costs(const MeasureCommand& command) {
     for (const BoardKernel& one : board.kernels) {
       if (one.loops.kernel == kernel.name) costs = &one;
     }
-    if (!command.board.empty() && costs == nullptr) continue;  // of no graph that runs
+    if (!command.board.empty() && costs == nullptr) continue;  // belongs to no graph that runs
     measurement.kernels.push_back(costs_of(kernel, costs, command.margin_percent / 100));
   }
   measurement.interference = interference_of(request, seen, command);

@@ -1,4 +1,4 @@
-// glint budget report: the page that a timing engineer reads, and the same in Markdown.
+// glint budget report: timing report with bounds, estimates and observations, as HTML and Markdown.
 #include <cstdio>
 #include <filesystem>
 #include <memory>

@@ -1,4 +1,4 @@
-// glint budget schedule: a plan for a cell on a board.
+// glint budget schedule: schedule synthesis for a cell on a board.
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -48,7 +48,7 @@ int schedule(const ScheduleArguments& arguments) {
   plan.traffic.tools = limits.tools;
   plan.bus = bit_rates_of(cell);
   for (std::size_t g = 0; typical && g < plan.groups.size(); ++g) {
-    // What was proven holds for the typical load, not for the bounds.
+    // Optimality was proven for the typical load, not for the bounds.
     plan.groups[g].optimal = false;
     plan.groups[g].least_possible_ns =
         least_makespan(model.groups[g], model.cores, model.system.core_handover_ns);

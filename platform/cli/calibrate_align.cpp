@@ -1,4 +1,4 @@
-// glint calibrate align: where one tracker's frame lies in another's, and their clocks.
+// glint calibrate align: transform between the frames of two trackers, and their clock offset.
 #include <cmath>
 #include <memory>
 
@@ -18,7 +18,7 @@ struct AlignArguments {
   CalibrationOutput output;
 };
 
-// x, y, z, w; and as turns about fixed axes, the way a cell writes a robot's base.
+// Order x, y, z, w. fixed_axes_deg: rotations about fixed axes, as a cell states a robot's base.
 Figures quaternion_figures(const Quaternion& q) { return {q.x(), q.y(), q.z(), q.w()}; }
 
 Vector3 fixed_axes_deg(const Quaternion& q) {
@@ -33,8 +33,8 @@ Figures pose_figures(const Pose& pose) {
           {"rotation_xyzw", quaternion_figures(pose.rotation)}};
 }
 
-// The reference's frame as seen from the poses': with a robot's base for a reference, what a cell
-// calls [robot].
+// Pose of the reference in the frame of the poses. If the reference is a robot's base, this is the
+// [robot] of a cell.
 Figures robot_figures(const AlignResult& result) {
   const Pose T_file_reference = result.T_reference_file.inverse();
   return {{"position_mm", figures_of(T_file_reference.translation, 1e3)},

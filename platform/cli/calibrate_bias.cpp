@@ -1,4 +1,4 @@
-// glint calibrate bias: the mean error of a tool at rest, as a correction that a cell may name.
+// glint calibrate bias: mean error of a static tool, as a correction for a cell.
 #include <memory>
 
 #include "platform/calibrate/alignment_file.hpp"

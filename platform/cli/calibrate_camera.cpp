@@ -1,4 +1,4 @@
-// glint calibrate camera: a lens, from pictures of a board or from a device's table of rays.
+// glint calibrate camera: lens model from images of a calibration target or a device's ray table.
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -71,7 +71,7 @@ BoardSettings board_settings(const CameraArguments& arguments) {
   return settings;
 }
 
-// The lens is yet to be found: any will do to read the frames.
+// The lens is not calibrated yet; any lens serves to read the frames.
 void put_any_lens(Camera& camera) {
   if (has_lens(camera)) return;
   camera.model.lens = Lens::brown;

@@ -1,4 +1,4 @@
-// The parts of `glint calibrate`, and what they have in common.
+// Subcommands of `glint calibrate`, with their common options and output.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// glint calibrate depth: by how much a camera's ranges to the markers in use are too long.
+// glint calibrate depth: bias of a camera's ranges to the markers in use (too long: positive).
 #include <cmath>
 #include <memory>
 

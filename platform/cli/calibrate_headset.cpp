@@ -1,4 +1,4 @@
-// glint calibrate headset: how far the headset's own localisation wanders.
+// glint calibrate headset: drift of the headset's own localisation.
 #include <memory>
 
 #include "kernels/angles.hpp"

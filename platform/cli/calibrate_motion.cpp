@@ -1,4 +1,5 @@
-// glint calibrate motion: how a hand moves, from recordings, for the filter and the prediction.
+// glint calibrate motion: motion model of a hand from recordings, for the filter and the
+// prediction.
 #include <cmath>
 #include <memory>
 
@@ -35,8 +36,8 @@ double factor_of(const Eigen::Matrix2d& covariance, int i) {
   return std::exp(std::sqrt(covariance(i, i)));
 }
 
-// The filter follows its innovations with a factor of its own: what is likelier need not foretell
-// better.
+// The filter adapts its noise to its innovations by a factor; so a higher likelihood does not imply
+// a better prediction.
 bool foretells_as_well(const MotionCalibration& found) {
   constexpr double k_slack = 1.02;
   const auto holds = [](const MotionError& own, const MotionError& other) {

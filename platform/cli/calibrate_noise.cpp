@@ -1,4 +1,4 @@
-// glint calibrate noise: how the errors of a tool's poses at rest go on in time.
+// glint calibrate noise: white and correlated noise of a static tool's poses, by Allan deviation.
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -14,7 +14,7 @@
 namespace glint {
 namespace {
 
-constexpr Duration k_apart_max = milliseconds(20);  // of two poses taken for simultaneous
+constexpr Duration k_apart_max = milliseconds(20);  // of two poses that are treated as simultaneous
 constexpr const char* k_axis_names[k_pose_axes] = {"x", "y", "z", "rx", "ry", "rz"};
 
 struct NoiseArguments {
@@ -25,12 +25,12 @@ struct NoiseArguments {
 struct RestSeries {
   std::vector<StampedPose> poses;
   std::string what;
-  std::optional<Cell> cell;  // of recorded frames, with their tool's number
+  std::optional<Cell> cell;  // of recorded frames; `tool` is its index there
   std::size_t tool = 0;
   std::vector<std::string> failures;
 };
 
-// Camera and tool rest.
+// Requires a static camera and a static tool.
 RestSeries recorded_series(const NoiseArguments& arguments) {
   RecordedFrames recorded = open_recorded(arguments.recording, arguments.config);
   RestSeries series;

@@ -1,4 +1,4 @@
-// glint calibrate pivot: the tip of a tool that stands in a dent and is turned about it.
+// glint calibrate pivot: tip of a tool by pivot calibration (rotation about a fixed point).
 #include <algorithm>
 #include <cmath>
 #include <memory>

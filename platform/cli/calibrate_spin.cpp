@@ -1,4 +1,4 @@
-// glint calibrate spin: the axis of a tool that is rolled about it.
+// glint calibrate spin: axis of a tool that is rotated about it.
 #include <memory>
 
 #include "platform/calibrate/say.hpp"
@@ -16,14 +16,14 @@ struct SpinArguments {
   double sigma_deg = 0;
 };
 
-// From the tip up to the markers, as the built-in pen's z runs.
+// Direction from the tip to the markers, as the z axis of the built-in pen.
 Vector3 upwards(const Tool& tool) {
   Vector3 sum = Vector3::Zero();
   for (int i = 0; i < tool.marker_count; ++i) sum += tool.markers_m[static_cast<std::size_t>(i)];
   return sum / tool.marker_count - tool.tip_m;
 }
 
-// The tool with its tip where it was and its z along the axis.
+// Rotates the markers about the tip so that the tool's z is along the axis.
 Tool turned_to_axis(Tool tool, const Vector3& axis) {
   const Quaternion turn = turn_between(axis, Vector3::UnitZ());
   for (int i = 0; i < tool.marker_count; ++i) {

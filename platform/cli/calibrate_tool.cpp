@@ -1,4 +1,4 @@
-// glint calibrate tool: where the markers of a new tool are, from it in motion.
+// glint calibrate tool: marker geometry of a new tool, from its motion.
 #include <memory>
 #include <string>
 #include <utility>
@@ -58,7 +58,7 @@ std::vector<PointFrame> points_for(const ToolArguments& arguments, const Tool& t
   return points;
 }
 
-// All but the markers: the drawing's, or a new one's.
+// Returns the tool whose markers are calibrated: that of --like, or a new one without markers.
 Tool tool_to_fill(const ToolArguments& arguments) {
   if (!arguments.like.empty()) return named_tool(arguments.like);
   Tool tool;
@@ -72,7 +72,7 @@ int run_tool(const ToolArguments& arguments) {
   if (arguments.points.empty() == arguments.recording.empty()) {
     throw InputError("calibrate tool: expected either --points FILE or --recording SOURCE");
   }
-  Tool tool = tool_to_fill(arguments);  // refused before anything is computed
+  Tool tool = tool_to_fill(arguments);  // throws before anything is computed
   ToolGeometrySettings settings;
   settings.noise_m = 1e-3 * arguments.noise_mm;
   settings.longest_side_m = 1e-3 * arguments.longest_mm;

@@ -1,4 +1,4 @@
-// --config FILE, the cell file, with --cell as its alias: every command takes it.
+// Option --config FILE of every command: the cell file; alias --cell.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,11 +11,11 @@ namespace glint {
 void add_cell_option(CLI::App& command, std::string& file,
                      const std::string& what = "cell file; default: the built-in cell");
 
-// To each command below `app` without that option: the file is read and checked, no more. A script
-// may thus pass one --config to every command.
+// Adds the option to each command below `app` that lacks it; such a command only reads and checks
+// the file. A script may therefore pass one --config to every command.
 void add_cell_check(CLI::App& app);
 
-// The built-in cell for an empty name. Throws InputError as load_cell.
+// Returns the built-in cell for an empty name. Throws InputError as load_cell does.
 [[nodiscard]] Cell cell_or_default(const std::string& file);
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-// glint calibrate: what a user's own tools and devices are, from measurements.
+// glint calibrate: calibration of a user's tools and devices from measurements.
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>

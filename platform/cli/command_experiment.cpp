@@ -1,4 +1,4 @@
-// glint experiment: how good the estimates are, case by case, beside the published method.
+// glint experiment: accuracy of the estimates, case by case, compared with the baseline.
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -39,7 +39,7 @@ int run_published(ExperimentKind kind, const ExperimentArguments& arguments) {
   for (const std::string& file : write_experiment_plots(result, arguments.out)) {
     std::printf("written  %s\n", file.c_str());
   }
-  // A tenth of the frames is for seeing that it works.
+  // A tenth of the frames is a smoke test.
   return options.quick || missed_bars(result) == 0 ? 0 : 1;
 }
 

@@ -1,4 +1,4 @@
-// glint export: marker positions, poses and truth of recorded frames, as text for other programs.
+// glint export: marker positions, poses and ground truth of recorded frames, as text.
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdio>
@@ -68,7 +68,7 @@ constexpr FrameExportKind k_truth{
     true,
     true};
 
-// The tools of the rows: the one that was named, else all.
+// Indices of the tools of the rows: the named one, else all.
 std::vector<std::size_t> tools_of(RecordedFrames& recorded, const std::string& name) {
   if (!name.empty()) return {select_tool(recorded.cell, name)};
   std::vector<std::size_t> tools;

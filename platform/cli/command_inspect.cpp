@@ -1,4 +1,4 @@
-// glint inspect: what Glint sees in one frame, why a tool is or is not tracked, with a picture.
+// glint inspect: detections in one frame, and why a tool is or is not tracked, with an image.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -33,12 +33,12 @@ namespace {
 
 struct InspectArguments {
   std::string frame, layout = "adi", config, json, out = "out", recording, kind;
-  double at_s = -1;  // less than 0: none
+  double at_s = -1;  // negative: not set
   std::vector<std::string> tools;
   int threshold = 0;
 };
 
-// A frame of another maker's camera comes without a calibration: a pinhole of this width.
+// Horizontal field of view of the pinhole for a frame of another camera, without calibration.
 constexpr double k_uncalibrated_degrees = 75.0;
 
 Camera camera_for(FrameFileLayout layout, const FrameBuffer& pixels) {
@@ -105,14 +105,14 @@ std::size_t frame_number(const std::string& text) {
   throw InputError("--frame " + text + ": expected a frame's number, from 0, with --recording");
 }
 
-// The frame that is looked at, and what the tracker made of it.
+// The inspected frame and the tracker's result.
 struct Inspected {
   Cell cell;
   std::unique_ptr<Tracker> tracker = std::make_unique<Tracker>();
   FrameBuffer pixels;                   // of a frame file
   std::unique_ptr<FrameSource> source;  // of a recording; owns the frame's pixels
   std::string text, picture_name;
-  std::optional<CheckRow> at_that_time;  // whether a frame was there
+  std::optional<CheckRow> at_that_time;  // whether there was a frame
 };
 
 void start_tracker(Inspected& inspected) {
@@ -149,7 +149,7 @@ Inspected inspected_file(const InspectArguments& arguments) {
   return inspected;
 }
 
-// Tracks up to the frame, so that it is seen as a run would see it.
+// Tracks up to the frame, so that it is processed as in a run.
 Inspected inspected_recording(const InspectArguments& arguments) {
   const bool by_time = arguments.at_s >= 0;
   const std::size_t wanted = by_time ? SIZE_MAX : frame_number(arguments.frame);

@@ -1,4 +1,4 @@
-// glint map: depth pictures in, a smooth cloud with its planes out.
+// glint map: smoothed point cloud with planes, from depth images and poses.
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -70,7 +70,7 @@ void print_table(const OccupancyCounts& counts) {
   notice(counts.rays_left_out + counts.points_left_out, "rays and points left out: octomap full");
 }
 
-// Frames were added to the map; the same pixels show what is free.
+// Returns free space from the pixels of the mapped frames, and the map's points as surface.
 std::unique_ptr<Occupancy> occupancy_of(const MapArguments& arguments,
                                         const DepthSequence& sequence,
                                         const DepthPointSettings& depth, const PointCloud& map) {

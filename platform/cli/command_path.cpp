@@ -1,5 +1,4 @@
-// glint path: what was drawn with the pen while its button was held, as a table and a robot
-// program.
+// glint path: path drawn with the pen while its button was held, as a table and a robot program.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -111,7 +110,7 @@ void publish(const RecordedPath& drawn, const PublishOptions& options) {
 int make_path(PathArguments& arguments) {
   if (!arguments.button.empty()) arguments.options.presses = press_times(arguments.button);
   const RecordedPath drawn = recorded_path(arguments.recording, arguments.options);
-  // Both texts before either file: what is refused leaves nothing behind.
+  // Makes both texts before either file: a rejected path leaves no file.
   const std::string csv = path_csv(drawn.path);
   const std::string script = ur_script(drawn.path, arguments.script);
   print_table(drawn, arguments.options.capture.stroke.spacing_m);
@@ -127,7 +126,7 @@ int make_path(PathArguments& arguments) {
   return drawn.losses.any() ? 1 : 0;
 }
 
-// Metres, written with their unit: 2mm, 0.5cm, 0.01m.
+// Adds an option for a length in metres, given with its unit: 2mm, 0.5cm, 0.01m.
 void add_length(CLI::App* command, const std::string& name, double& metres, const std::string& what,
                 double least, double most) {
   const std::map<std::string, double> units{{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}};

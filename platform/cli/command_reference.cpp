@@ -1,4 +1,4 @@
-// glint reference: where a robot stands, from depth pictures of it and a rough pose.
+// glint reference: pose of a robot, from depth images of it and a rough pose.
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>

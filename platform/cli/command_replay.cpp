@@ -1,4 +1,4 @@
-// glint replay: decide a recording again, or track a tool in bare marker points.
+// glint replay: recomputes a recording and compares its output, or tracks a tool in marker points.
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -90,7 +90,7 @@ int replay_marker_points(const ReplayArguments& arguments) {
       const Vector3& t = pose.pose.translation;
       const Quaternion& q = pose.pose.rotation;
       item["rms_mm"] = pose.rms_m * 1e3;
-      item["margin"] = pose.margin;  // null: no other pose is in question
+      item["margin"] = pose.margin;  // null: no alternative pose
       item["marker_mask"] = pose.marker_mask;
       item["position_m"] = {t.x(), t.y(), t.z()};
       item["rotation_xyzw"] = {q.x(), q.y(), q.z(), q.w()};

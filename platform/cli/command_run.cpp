@@ -1,4 +1,4 @@
-// glint run: frames in, poses out over DDS and CAN, everything recorded. glint track: the same of
+// glint run: frames in, poses out over DDS and CAN, everything recorded. glint track: the same for
 // recorded frames, as fast as possible.
 #include <unistd.h>
 
@@ -66,12 +66,12 @@ Cell cell_of(const RunArguments& arguments) {
   if (arguments.no_dds) cell.dds.on = false;
   if (arguments.method == "seed") {
     cell.method = Method::seed;
-    cell.record.level = "outputs";  // nothing of it can be decided again
+    cell.record.level = "outputs";  // a run of the baseline cannot be replayed
   }
   return cell;
 }
 
-// Says which key does what; nothing without --keys.
+// Reads keys and prints their functions; does nothing without --keys.
 void listen_to_keys(const RunArguments& arguments, const Cell& cell,
                     std::optional<KeyTerminal>& terminal) {
   if (!arguments.keys) return;
@@ -83,7 +83,7 @@ void listen_to_keys(const RunArguments& arguments, const Cell& cell,
   std::fflush(stdout);
 }
 
-// A file that cannot be written, on a full disk, costs that file and nothing else.
+// A write that fails, as on a full disk, loses only its own file.
 bool written(const std::function<void()>& write, SessionResult& result) {
   try {
     write();
@@ -94,7 +94,7 @@ bool written(const std::function<void()>& write, SessionResult& result) {
   return true;
 }
 
-// The figures first, the plots last.
+// Writes the figures first, the plots last.
 int report(const Cell& cell, const SessionOptions& options, const std::string& json_file,
            SessionResult& result) {
   const auto write_summary = [&] { write_json(json_file, summary_of(cell, options.plan, result)); };
@@ -145,7 +145,7 @@ int run(const RunArguments& arguments) {
   return report(cell, options, arguments.json, result);
 }
 
-// The options that both commands have.
+// Adds the options of both commands.
 void add_common(CLI::App& command, RunArguments& arguments) {
   add_cell_option(command, arguments.config);
   command

@@ -1,4 +1,4 @@
-// glint simulate: the frames and the truth beside them, without tracking.
+// glint simulate: simulated frames with ground truth, without tracking.
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -28,10 +28,10 @@ struct SimulateArguments {
   std::string config, out = "out", json;
   double duration_s = 0;
   bool without_pixels = false;
-  int file_every = 0;  // frames; 0: no frame is a file
+  int file_every = 0;  // every n-th frame is written as a file; 0: none
 };
 
-// One body's poses as TUM text.
+// Poses of one body as TUM text.
 class PoseFile {
  public:
   explicit PoseFile(const std::string& path) : path_(path), file_(path) {}
@@ -42,7 +42,7 @@ class PoseFile {
     sample.pose = pose;
     file_.write(sample);
   }
-  // The path. Throws InputError where not all of it could be written.
+  // Returns the path. Throws InputError if the file could not be written completely.
   std::string close() {
     if (!file_.close()) throw InputError(file_.file().error());
     return path_;

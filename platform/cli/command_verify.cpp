@@ -1,4 +1,4 @@
-// glint verify: whether touches of two points and a rest agree with the stated uncertainty.
+// glint verify: test of the stated uncertainty by touches of two points and a rest.
 #include <algorithm>
 #include <cstdio>
 #include <memory>

@@ -1,4 +1,4 @@
-// The commands of `glint`. Each adds its options to the command line and leaves its exit code:
+// Commands of `glint`. Each adds its options to the command line and stores its exit code:
 // 0 done, 1 a check failed, 2 bad use or input, 3 a device or peer is missing.
 #pragma once
 

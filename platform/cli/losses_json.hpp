@@ -1,4 +1,4 @@
-// What a recording lacks, as --json has it.
+// Losses of a recording as JSON, for --json.
 #pragma once
 
 #include <nlohmann/json.hpp>

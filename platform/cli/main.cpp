@@ -1,4 +1,4 @@
-// glint COMMAND: frames in, poses out, and what they are worth.
+// glint COMMAND: main program of the tracker and its tools.
 #include "platform/cli/cell_option.hpp"
 #include "platform/cli/commands.hpp"
 #include "platform/cli/version.hpp"

@@ -1,4 +1,4 @@
-// Which measuring program is run, and by what: shared by the commands that measure.
+// Measuring program, its architecture and emulator; shared by the commands that measure.
 #pragma once
 
 #include <string>
@@ -16,17 +16,17 @@ inline constexpr const char* k_own_arch = "x86-64";
 
 struct MeasureTarget {
   std::string program = "glint_measure";  // beside this one, or in the other build's folder
-  std::string program_file;               // overrides where it is looked for
+  std::string program_file;               // overrides the program's path
   std::string count = "instructions";     // or time
   std::string arch = k_own_arch;
-  int jobs = 0;  // counted at a time; 0: one a core
+  int jobs = 0;  // kernels measured in parallel; 0: one per core
 };
 
-// The next step for times above a board's bounds; "" for instructions, and if `made_by`, the
-// command that measured the costs, evicted the caches already.
+// Returns the next step for times above a board's bounds; "" for instructions, or if `made_by`, the
+// command that measured the costs, already evicted the caches.
 [[nodiscard]] std::string advice_above_bound(CostCounter counter, const std::string& made_by);
 
-// Throws InputError where an emulator would have to tell the time.
+// Throws InputError if an emulator would have to measure time.
 [[nodiscard]] MeasureRequest measure_request(const MeasureTarget& target);
 
 }  // namespace glint

@@ -99,7 +99,7 @@ void ReservedRoom::release() noexcept {
 }
 
 void write_json(const std::string& path, const nlohmann::ordered_json& figures) {
-  // Names of files may be no UTF-8, which JSON does not hold.
+  // File names may be invalid UTF-8, which JSON cannot hold.
   constexpr auto replace = nlohmann::ordered_json::error_handler_t::replace;
   if (!path.empty()) write_text(path, figures.dump(2, ' ', false, replace) + "\n");
 }

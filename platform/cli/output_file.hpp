@@ -1,4 +1,4 @@
-// Files that a command leaves behind, written whole or not at all.
+// Output files of a command, written completely or not at all.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,28 +10,28 @@
 
 namespace glint {
 
-// Throws InputError where the file cannot be written; its folder is made.
+// Creates the file's folder. Throws InputError if the file cannot be written.
 void write_text(const std::string& path, const std::string& text);
 
 // --json FILE: the figures of the table. An empty path writes nothing.
 void write_json(const std::string& path, const nlohmann::ordered_json& figures);
 
-// What of a command's input could not be read: a line each on standard error. The exit code: 1, or
-// 0 where nothing was lost.
+// Prints one line per failure, an unreadable part of the input, on standard error. Returns the exit
+// code: 1, or 0 if there is none.
 [[nodiscard]] int report_losses(const std::vector<std::string>& failures);
 
-// A text file that grows line by line beside its final path and gets its name in finish(). What is
-// no regular file is written in place.
+// Text file that is written line by line beside its final path; finish() gives it its name. A path
+// that is not a regular file is written in place.
 class GrowingText {
  public:
-  // Makes its folder. Throws InputError where the file cannot be made.
+  // Creates the folder. Throws InputError if the file cannot be created.
   explicit GrowingText(const std::string& path);
-  // Removes what is not finished.
+  // Removes an unfinished file.
   ~GrowingText();
   GrowingText(const GrowingText&) = delete;
   GrowingText& operator=(const GrowingText&) = delete;
 
-  // The line without its newline. Both throw InputError where the system refuses a write.
+  // `line` without its newline. add() and finish() throw InputError if a write fails.
   void add(std::string_view line);
   void finish();
 
@@ -45,14 +45,14 @@ class GrowingText {
   std::string waiting_;
 };
 
-// Makes the folder a file is to be in. Throws InputError where that cannot be.
+// Create the folder of a file, or a folder. Both throw InputError on failure.
 void make_folder_of(const std::string& path);
 void make_folder(const std::string& path);
 
-// Room on the disk for a file that is written last: what fills the disk in between leaves it free.
+// Disk space reserved for a file that is written last, so that earlier output cannot use it.
 class ReservedRoom {
  public:
-  // Beside `path`; an empty path, or a file system that cannot do this, reserves nothing.
+  // Reserves beside `path`; nothing for an empty path or a file system without support.
   explicit ReservedRoom(const std::string& path);
   ~ReservedRoom() { release(); }
   ReservedRoom(const ReservedRoom&) = delete;

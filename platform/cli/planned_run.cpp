@@ -8,7 +8,7 @@
 namespace glint {
 namespace {
 
-// 0 where there is none.
+// Returns 0 if absent.
 double microseconds_of(std::optional<std::int64_t> ns) {
   return static_cast<double>(ns.value_or(0)) * 1e-3;
 }

@@ -1,4 +1,4 @@
-// A run by a plan file, with the bounds that a board's costs give.
+// Schedule of a run from a plan file, with the bounds that follow from a board's costs.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace glint {
 
-// Throws InputError for a board of another build, a plan that does not validate, or one without
-// the other. Both empty: by rule, without bounds.
+// Throws InputError for a board of another build, an invalid plan, or one without the other. Both
+// empty: schedule by rule, without bounds.
 [[nodiscard]] RunPlan planned_run(const Cell& cell, const std::string& board,
                                   const std::string& plan);
 

@@ -1,4 +1,4 @@
-// One line that moves, on a terminal; silence elsewhere.
+// Progress line on a terminal; no output elsewhere.
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // At most ten times a second; `done` of `all` (all 0: unknown), never more than all of it.
+  // Prints at most ten times a second; `done` of `all` (all 0: unknown), at most 100 %.
   void show(double done, double all, const std::string& note = {});
-  // Takes the line away: before anything else is printed.
+  // Erases the line; call before other output.
   void clear();
 
  private:

@@ -1,4 +1,4 @@
-// --dds SECONDS: what a command made, published for so long.
+// Option --dds SECONDS: publishes the results of a command for this time.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,7 +9,7 @@
 namespace glint {
 
 struct PublishOptions {
-  double seconds = 0;  // 0: nothing is published
+  double seconds = 0;  // 0: publishes nothing
   DdsSettings settings;
 };
 
@@ -18,10 +18,10 @@ void add_network_options(CLI::App& command, DdsSettings& settings);
 
 void add_publish_options(CLI::App& command, PublishOptions& options);
 
-// Now, on the clock that stamps messages.
+// Current time on the clock of the messages' time stamps.
 [[nodiscard]] Time publishing_time();
 
-// Stays so long, that listeners who come later are served too; ends with how many there were.
+// Waits for options.seconds, so that late subscribers are served too; prints their largest number.
 void keep_publishing(const SurroundingsPublisher& publisher, const PublishOptions& options);
 
 }  // namespace glint

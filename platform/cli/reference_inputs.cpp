@@ -12,7 +12,7 @@
 namespace glint {
 namespace {
 
-// A rough pose, from `what`.
+// Returns the pose if it is finite and within 1 km per axis; else throws InputError with `what`.
 Pose checked(const Pose& pose, const std::string& what) {
   if (!pose.translation.allFinite() || !pose.rotation.coeffs().allFinite() ||
       pose.translation.cwiseAbs().maxCoeff() > 1e3) {
@@ -21,7 +21,7 @@ Pose checked(const Pose& pose, const std::string& what) {
   return pose;
 }
 
-// A guess in a frame that is named is of the camera's, where the calibration names that.
+// Requires a guess in the camera's frame, if both the guess and the calibration name a frame.
 void check_frame(const HeardGuess& guess, const std::string& camera_file) {
   const std::string found = guess.frame.data(), expected = read_camera_frame(camera_file);
   if (found.empty() || expected.empty() || found == expected) return;

@@ -1,4 +1,4 @@
-// What `glint reference` is given, and what of it is heard instead.
+// Inputs of `glint reference`, from files and options or received over DDS.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace glint {
 
-// Robot, joints and seed come from files and options, or are heard.
+// Robot, joints and initial pose come from files and options, or are received over DDS.
 struct ReferenceArguments {
   RobotFiles robot;
   SceneFiles scene;
@@ -31,21 +31,22 @@ struct ReferenceArguments {
   }
 };
 
-// The range that is searched, and the declared errors.
+// Returns the search range and the declared errors.
 [[nodiscard]] FindReferenceSettings settings_of(const ReferenceArguments& arguments);
 
 using AnyRobot = std::variant<RobotModel, RobotCloud>;
 
-// Throws InputError for an option that is missing.
+// Throws InputError for a missing option.
 void check_given(const ReferenceArguments& arguments);
 
-// Hears what no file gives; null where nothing is missing or nobody listens.
+// Returns a listener for the inputs that no file provides; null if none is missing or without
+// --listen.
 [[nodiscard]] std::unique_ptr<ReferenceListener> listener_of(const ReferenceArguments& arguments);
 
 [[nodiscard]] AnyRobot robot_of(ReferenceArguments& arguments, ReferenceListener* listener);
 
-// Where the robot is guessed to be; joints that are heard stand in the scene from now on. Says what
-// was heard.
+// Returns the initial pose of the robot and stores received joint positions in the scene. Prints
+// what was received.
 [[nodiscard]] Pose start_of(ReferenceArguments& arguments, const AnyRobot& robot,
                             ReferenceListener* listener);
 

@@ -70,7 +70,7 @@ nlohmann::ordered_json reference_json(const Reference& reference, const Referenc
   for (int r = 0; r < 6; ++r) {
     for (int c = 0; c < 6; ++c) covariance.push_back(alignment.covariance(r, c));
   }
-  json["covariance"] = covariance;  // shift in metres, turn in radians, the camera's axes
+  json["covariance"] = covariance;  // translation in metres, rotation in radians, camera axes
   json["pairs"] = alignment.pairs;
   json["frames"] = facts.frames;
   json["starts"] = reference.starts;

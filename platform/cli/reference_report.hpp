@@ -1,4 +1,4 @@
-// What `glint reference` found, as lines and as JSON.
+// Report of `glint reference`: lines for a terminal, and JSON.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

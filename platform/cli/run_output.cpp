@@ -55,7 +55,7 @@ std::string source_late_text(const SessionResult& result) {
          " of the ticks without a measurement for it";
 }
 
-// Of recorded frames: where they are from, and each count that is not 0.
+// Source of recorded frames, and each count that is not 0.
 std::vector<std::pair<std::string, std::string>> source_rows(const SessionResult& result) {
   std::vector<std::pair<std::string, std::string>> rows;
   if (result.source.text.empty()) return rows;
@@ -71,7 +71,7 @@ std::vector<std::pair<std::string, std::string>> source_rows(const SessionResult
   return rows;
 }
 
-// Null where no pose has a truth.
+// Null if no pose has ground truth.
 ordered_json errors_of(const OutputErrors& errors) {
   if (errors.count == 0) return nullptr;
   const auto n = static_cast<double>(errors.count);
@@ -89,7 +89,7 @@ ordered_json errors_of(const OutputErrors& errors) {
           {"coverage_angle", share(errors.inside_rotation, errors.count)}};
 }
 
-// One item for each rate of frames at which there were ticks.
+// One item for each frame rate with ticks.
 ordered_json by_rate(const OutputByRate& rates, std::size_t tool, Duration period) {
   const double period_ms = milliseconds_of(period);
   const double limits_ms[k_frame_rates + 1] = {0, 1.5 * period_ms, 4.5 * period_ms, INFINITY};
@@ -239,7 +239,7 @@ std::vector<std::string> failures_of(const SessionResult& result) {
     lines.push_back("source too slow: " + source_late_text(result) + "; expected at most 1 %");
   }
   for (const std::string& line : result.source.failures) lines.push_back("source: " + line);
-  const bool any_pose = result.accuracy.frames > 0 ? result.accuracy.poses > 0  // by truth
+  const bool any_pose = result.accuracy.frames > 0 ? result.accuracy.poses > 0  // by ground truth
                                                    : result.frames_tracked > 0;
   if (!any_pose) {
     lines.emplace_back("not one pose in the whole run: see the tools, the camera and the method");

@@ -39,7 +39,7 @@ std::string fixed(double value, int digits, const char* unit) {
   return text;
 }
 
-// Null where there is no pose: a figure of nothing is none.
+// Null without poses.
 ordered_json of_poses(const Accuracy& accuracy, double figure) {
   return accuracy.poses > 0 ? ordered_json(figure) : ordered_json(nullptr);
 }
@@ -48,7 +48,7 @@ bool best_effort(const SessionResult& result) {
   return !result.refused.empty() || !result.machine.spoils.empty();
 }
 
-// Frames whose way to the bus took longer than their bound.
+// Number of frames whose latency to the bus exceeded its bound.
 std::int64_t above_bound(const RunPlan& plan, const SessionResult& result) {
   if (plan.frame_to_can_bound_us <= 0) return 0;
   return std::count_if(
@@ -122,7 +122,7 @@ std::string released_text(std::uint64_t released) {
   return released == 0 ? "" : "; " + std::to_string(released) + " released, their sender gone";
 }
 
-// Beyond what a marker's own pixels show, 1 sigma.
+// Noise beyond that of a marker's own pixels, 1 sigma.
 ordered_json noise_json(const Cell& cell, const SessionResult& result) {
   const MarkerNoise declared{cell.camera.range_sigma_m, cell.camera.pixel_sigma_px};
   const MarkerNoise noise = noise_now(result.noise, declared);

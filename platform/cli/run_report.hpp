@@ -1,4 +1,4 @@
-// What a run says at its end: a table for a person, summary.json with the same figures, plots.
+// Reports of a run: a table, summary.json with the same figures, plots.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,11 @@ namespace glint {
 
 void print_table(const nlohmann::ordered_json& summary, const SessionResult& result);
 
-// Rows of the files from this index on.
+// Prints the rows of the files from index `first` on.
 void print_files(const SessionResult& result, std::size_t first);
 
-// tip_error.svg, tip_path.svg and frame_to_can.svg in `folder`; their names go to result.files.
-// Throws InputError where one cannot be written.
+// Writes tip_error.svg, tip_path.svg and frame_to_can.svg into `folder`; appends their names to
+// result.files. Throws InputError if one cannot be written.
 void draw_plots(const std::string& folder, SessionResult& result);
 
 }  // namespace glint
