@@ -15,7 +15,7 @@ inline constexpr const char* k_own_arch = "x86-64";
 #endif
 
 struct MeasureTarget {
-  std::string program = "glint_measure";  // beside this one, or in the other build's folder
+  std::string program = "glint_measure";  // in the folder of this program or of the other build
   std::string program_file;               // overrides the program's path
   std::string count = "instructions";     // or time
   std::string arch = k_own_arch;
