@@ -94,7 +94,7 @@ void Axes::bar(double x_low, double x_high, double y, std::string_view fill, dou
 void Axes::vertical(double x, const Stroke& stroke, std::string_view label, double label_drop) {
   if (!(x >= x_.low && x <= x_.high)) return;
   canvas_.line(place(x, y_.low), place(x, y_.high), stroke);
-  // Where there is no room to the right of the line, the label stands to its left.
+  // Without room to the right of the line, the label is to its left.
   const Vector2 top = place(x, y_.high);
   const bool right = top.x() < corner_.x() + 0.7 * size_.x();
   canvas_.text(

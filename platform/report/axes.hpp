@@ -1,5 +1,4 @@
-// One panel of a diagram: a frame with ticks at round numbers, and the way from values to picture
-// units.
+// One panel of a plot: frame, ticks at round numbers, and the transform from data to canvas units.
 #pragma once
 
 #include <string>
@@ -15,11 +14,12 @@ struct Range {
   [[nodiscard]] double span() const { return high - low; }
 };
 
-// The range with `part` of its span added on both sides; an empty or reversed one becomes [-1, 1]
-// about its low end.
+// Adds `part` of the range's span on both sides. Returns [low - 1, low + 1] for an empty or
+// reversed range, [-1, 1] if its low end is not finite.
 [[nodiscard]] Range widened(const Range& range, double part);
 
-// Round numbers (1, 2 or 5 times a power of ten apart) inside the range, about `wanted` of them.
+// Round numbers inside the range, about `wanted` of them; their step is 1, 2 or 5 times a power of
+// 10.
 struct Ticks {
   std::vector<double> values;
   int decimals = 0;
@@ -34,7 +34,7 @@ struct AxesText {
 
 class Axes {
  public:
-  // corner and size of the plotted area; labels are drawn outside of it: 70 left, 48 below, 28
+  // Corner and size of the plotted area. Labels are outside of it: 70 units left, 48 below, 28
   // above.
   Axes(SvgCanvas& canvas, const Vector2& corner, const Vector2& size, const Range& x,
        const Range& y);
@@ -42,10 +42,10 @@ class Axes {
   void draw(const AxesText& text);
   [[nodiscard]] Vector2 place(double x, double y) const;
   void line(std::vector<Vector2> values, const Stroke& stroke);
-  // From the axis up to y.
+  // Bar from the axis up to y.
   void bar(double x_low, double x_high, double y, std::string_view fill, double opacity);
   void vertical(double x, const Stroke& stroke, std::string_view label, double label_drop);
-  // A stroke and a name, in the upper right corner, `row` counting from the top.
+  // Draws a stroke and its name in the upper right corner; `row` counts from the top.
   void legend(int row, std::string_view name, const Stroke& stroke);
 
  private:
@@ -55,8 +55,8 @@ class Axes {
   std::string clip_;
 };
 
-// Far apart in brightness too, so that they differ in grey. Okabe and Ito 2008, Color universal
-// design.
+// Colours that differ in brightness, so that they also differ in grey. Source: Okabe and Ito 2008,
+// Color universal design.
 [[nodiscard]] std::string_view series_colour(std::size_t index);
 
 }  // namespace glint

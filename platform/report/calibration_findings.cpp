@@ -11,18 +11,19 @@
 namespace glint {
 namespace {
 
-// Of an error's variance, how much of it the data have to show.
+// Part of an error's variance that the data must remove.
 constexpr double k_shown_least = 0.5;
-// In stated sigmas: of one error, of the largest of several, and the rms of several.
+// Limits in stated standard deviations: one error, the largest of several, the rms of several.
 constexpr double k_one_most = 2.5, k_largest_most = 3.2, k_rms_most = 2;
 constexpr int k_sights_least = 30;
-constexpr double k_drift_most = 2;  // times what is declared, less two sigma of the sights
-// Of the factor's logarithm: the headset's own velocity, which the walk grows with, holds its
-// error.
+constexpr double k_drift_most = 2;  // ratio to the declared drift, less two standard deviations of
+                                    // the observations
+// Standard deviation of the log of the drift factor. The drift's random walk scales with the
+// headset's own velocity, which has an error.
 constexpr double k_drift_model_sigma = 0.4;
 
-// The most likely errors and their covariance, in stated sigmas: first those that the tools share,
-// then each tool's own.
+// Maximum a posteriori errors and their covariance, in stated standard deviations: first the errors
+// common to all tools, then each tool's own.
 struct Estimate {
   Eigen::MatrixXd covariance;
   Eigen::VectorXd errors;
@@ -34,7 +35,7 @@ struct Estimate {
     Eigen::VectorXd pull = Eigen::VectorXd::Zero(size);
     constexpr Eigen::Index k_shared = k_shared_errors, k_common = k_common_errors;
     if (world != nullptr) {
-      // Less what was stated before, which counts once.
+      // `world` contains the prior already, so it replaces the identity and the prior counts once.
       const Eigen::MatrixXd both =
           world->covariance.llt().solve(Eigen::MatrixXd::Identity(k_shared, k_shared));
       matrix.topLeftCorner(k_shared, k_shared) = both;
@@ -58,7 +59,7 @@ struct Estimate {
   [[nodiscard]] double shown(int error) const { return 1 - covariance(error, error); }
 };
 
-// What a body that stands still shows, by the factor of the headset's error that explains it best.
+// Errors that a static body shows, with the maximum-likelihood factor of the headset's drift.
 struct World {
   bool seen = false;
   WorldFindings errors;
@@ -74,7 +75,7 @@ struct World {
       if (each[i].log_likelihood > each[best].log_likelihood) best = i;
     }
     errors = each[best];
-    // The top of the parabola through it and its neighbours.
+    // Maximum of the parabola through the best factor and its neighbours.
     const std::size_t middle = std::clamp<std::size_t>(best, 1, k_factors - 2);
     const double below = each[middle - 1].log_likelihood, here = each[middle].log_likelihood,
                  above = each[middle + 1].log_likelihood;
@@ -86,8 +87,8 @@ struct World {
   }
 };
 
-// How large the errors first .. first + count are, where the data show them: along the axes of the
-// ellipsoid that the data leave.
+// Size of the errors first .. first + count - 1, along those principal axes of the remaining
+// covariance that the data determine.
 struct Size {
   int axes = 0;
   double largest = 0, rms = 0, chi_square = 0;
@@ -112,7 +113,7 @@ struct Size {
   }
 };
 
-// What measures it, or where it is stated.
+// The calibration command that measures the error, or the place where it is stated.
 const char* remedy_of(ErrorSource source) {
   switch (source) {
     case ErrorSource::principal_point:
@@ -180,7 +181,7 @@ class Findings {
     add({}, source, estimate_.errors(at) * stated, std::sqrt(estimate_.covariance(at, at)) * stated,
         Size(estimate_, at, 1));
   }
-  // At the mean range.
+  // Combined offset and scale, at the mean range.
   void add_range() {
     const Eigen::Vector2d part(stated_.range_offset_m, stated_.range_scale * range_m_);
     add({}, ErrorSource::range, part.dot(estimate_.errors.head<2>()),

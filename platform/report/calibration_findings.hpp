@@ -1,9 +1,10 @@
-// Which calibration errors are larger than stated, out of the sums of
-// kernels/pose/calibration_errors.
+// Findings of calibration errors larger than their stated standard deviations, estimated from the
+// sums of kernels/pose/calibration_errors.
 //
-// An error counts where the data show it: where they leave less than half of its stated variance.
-// Errors that the data do not separate are one finding: a range offset and a range scale at one
-// range. Sizes are in stated standard deviations, along the axes of what the data leave.
+// An error is assessed only if the data reduce its variance to less than half of the stated one.
+// Errors that the data do not separate form one finding: a range offset and a range scale at a
+// single range. Sizes are in stated standard deviations, along the principal axes of the remaining
+// covariance.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +22,10 @@ namespace glint {
 enum class ErrorSource : std::uint8_t {
   range_offset,
   range_scale,
-  range,  // the two, not separated
+  range,  // range offset and scale, not separated
   principal_point,
   focal_length,
-  time_offset,  // of the head's poses against the frames
+  time_offset,  // of the head poses relative to the frames
   head_drift,   // of the headset's own localisation
   tool_geometry
 };
@@ -32,30 +33,31 @@ enum class ErrorSource : std::uint8_t {
 [[nodiscard]] std::string_view name_of(ErrorSource source);
 
 struct CalibrationFinding {
-  std::string tool;  // its name; empty: an error that all tools share
+  std::string tool;  // the tool's name; empty: an error common to all tools
   ErrorSource source = ErrorSource::range;
-  // Of an offset and of `range` m, at range_m; of scales 1; of the principal point its distance,
-  // px; of the time s; of the drift the factor of what is declared; of the geometry the markers'
-  // rms, m.
+  // Units: m for offsets (at range_m), for `range` (at range_m) and for the geometry (rms of the
+  // markers); 1 for scales; px for the principal point (its distance); s for time; for the drift
+  // the ratio to the declared drift.
   double estimate = 0, sigma = 0, range_m = 0;
-  double stated_sigmas = 0;  // the error's size
-  // Along the axes that the data show; 0 axes: they leave more than half of its stated variance.
+  double stated_sigmas = 0;  // size of the error
+  // Over the axes that the data determine. 0 axes: more than half of the stated variance remains.
   double chi_square = 0;
   int axes = 0;
   bool named = false;  // larger than the stated standard deviations explain
 };
 
-// In which unit a source's estimate is printed.
+// Unit in which the estimate of a source is printed.
 struct ErrorUnit {
   const char* text;
   double per_base;
 };
 [[nodiscard]] ErrorUnit unit_of(ErrorSource source);
 
-// "pen: tool geometry 1.20 mm (sigma 0.31), 4.0 times what is stated; glint calibrate tool".
+// Example: "pen: tool geometry 1.20 mm (sigma 0.31), 4.0 times what is stated; glint calibrate
+// tool".
 [[nodiscard]] std::string text_of(const CalibrationFinding& finding);
 
-// The newest findings, between two threads: one computes them, one publishes them.
+// Newest findings, shared by the thread that computes them and the thread that publishes them.
 class CalibrationNotes {
  public:
   void set(std::vector<CalibrationFinding> findings);
@@ -66,16 +68,17 @@ class CalibrationNotes {
   std::vector<CalibrationFinding> findings_;
 };
 
-// What was seen of one tool.
+// Accumulated errors of one tool.
 struct ToolErrors {
-  std::string tool;  // its name
+  std::string tool;  // the tool's name
   int markers = 0;
   double marker_sigma_m = 0;  // as stated
   CalibrationErrors sums;     // of at least one fit
 };
 
-// Of the errors that the tools share, and of each tool's own. world: of a body that stands still,
-// null: none; time_sigma_s: of the head's poses against the frames, as stated.
+// Returns findings of the errors common to all tools and of each tool's own. world: errors of a
+// static body, null if there is none. time_sigma_s: stated standard deviation of the time offset of
+// the head poses relative to the frames.
 [[nodiscard]] std::vector<CalibrationFinding> calibration_findings(
     std::span<const ToolErrors> tools, const CameraUncertainty& stated,
     const WorldErrors* world = nullptr, double time_sigma_s = 0);

@@ -13,7 +13,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_enlarge = 2;  // so that a marker of 6 px can be looked at
+constexpr int k_enlarge = 2;  // for markers of about 6 px
 constexpr int k_line_height = 20;
 constexpr double k_white_part = 0.999;
 const cv::Scalar k_roi_colour{80, 200, 80}, k_blob_colour{60, 160, 255},
@@ -47,7 +47,7 @@ cv::Mat toned(const Frame& frame) {
   return colour;
 }
 
-// Pixel centres at integer + 0.5 become OpenCV's, which are at integers.
+// Converts pixel centres at integer + 0.5 to OpenCV's, which are at integers.
 cv::Point on_picture(const Vector2& pixel) {
   const auto to_int = [](double v) {
     return static_cast<int>(std::lround(std::clamp(v * k_enlarge - 0.5, -1e6, 1e6)));

@@ -1,6 +1,5 @@
-// A frame as a PNG with what Glint saw in it: ROI boxes, blobs circled and numbered (orange), the
-// markers among them with their range (blue), those that a tool's pose rests on by name (magenta),
-// and lines of text below.
+// Writes a frame as a PNG with its detections: ROI boxes, blobs circled and numbered (orange),
+// markers with their range (blue), markers of a tool's pose by name (magenta), lines of text below.
 #pragma once
 
 #include <span>
@@ -13,10 +12,10 @@
 
 namespace glint {
 
-// Reflectivity is drawn as the root of its part of the 99.9th percentile, so that a dim room shows
-// beside bright markers. Written to a temporary file first, then renamed.
-// `names`: of blobs, in their order, empty for those of no tool; or none at all.
-// Throws InputError where path cannot be written or the frame has no reflectivity.
+// Brightness is the square root of the reflectivity relative to its 99.9th percentile, so that a
+// dark scene is visible beside bright markers. Writes a temporary file and renames it. `names`:
+// labels of the blobs in their order, empty for a blob of no tool; or no names at all.
+// Throws InputError if path cannot be written or the frame has no reflectivity.
 void write_picture(const std::string& path, const Frame& frame, const Rois& rois,
                    const Blobs& blobs, const Markers& markers, std::span<const std::string> lines,
                    std::span<const std::string> names = {});

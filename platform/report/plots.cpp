@@ -32,7 +32,7 @@ double total(const Histogram& histogram) {
   return std::max(sum, 1.0);
 }
 
-// Part of all values a unit of x, so that bins of unequal width compare.
+// Relative frequency per unit of x, so that bins of different width compare.
 double density(const HistogramSeries& series, double count) {
   return count / (total(series.histogram) * series.histogram.width);
 }
@@ -46,7 +46,7 @@ std::vector<Vector2> bell(const HistogramSeries& series, const Range& x) {
   return points;
 }
 
-// Equal scale on both axes: the smaller span grows about its middle.
+// Equal scale on both axes: extends the smaller span about its middle.
 Range grown_to(const Range& range, double span) {
   const double middle = 0.5 * (range.low + range.high);
   return {middle - 0.5 * span, middle + 0.5 * span};

@@ -1,5 +1,5 @@
-// The diagrams of a report, as SVG text: lines over time, error histograms with the bell that fits
-// them, trajectories from above and from the side, latencies.
+// Plots of a report as SVG text: lines over time, error histograms with a Gaussian fit,
+// trajectories in top and side view, latencies.
 #pragma once
 
 #include <span>
@@ -14,13 +14,13 @@ namespace glint {
 
 struct LineSeries {
   std::string name;
-  std::vector<Vector2> points;  // in the axes' units; a point that is not finite breaks the line
+  std::vector<Vector2> points;  // in the axes' units; a non-finite point breaks the line
 };
 
 struct HistogramSeries {
   std::string name;
   Histogram histogram;
-  GaussianFit fit;  // drawn where valid
+  GaussianFit fit;  // drawn if valid
 };
 
 struct TrajectorySeries {
@@ -30,16 +30,15 @@ struct TrajectorySeries {
 
 [[nodiscard]] std::string line_plot(const AxesText& text, std::span<const LineSeries> series);
 
-// Bars as parts of all values, so that series of unequal length compare; the fits as dashed lines.
+// Bars are relative frequencies, so that series of different length compare; the fits are dashed.
 [[nodiscard]] std::string histogram_plot(const AxesText& text,
                                          std::span<const HistogramSeries> series);
 
-// Two panels of one scale: from above (x to the right, y up) and from the side (x to the right, z
-// up).
+// Two panels of equal scale: top view (x right, y up) and side view (x right, z up).
 [[nodiscard]] std::string trajectory_plot(const std::string& title,
                                           std::span<const TrajectorySeries> series);
 
-// Bars up to p99.9, with p50, p99 and p99.9 marked; the greatest value stands in the title.
+// Bars up to p99.9, with p50, p99 and p99.9 marked; the maximum is in the title.
 [[nodiscard]] std::string latency_plot(const std::string& title,
                                        std::span<const double> latencies_us);
 

@@ -10,7 +10,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_gaussian_iterations = 30;  // Guo 2011 needs 10 where half of the bars are noise
+constexpr int k_gaussian_iterations = 30;  // Guo 2011 needs 10 if half of the bars are noise
 
 }  // namespace
 
@@ -99,7 +99,7 @@ double GaussianFit::at(double x) const {
 }
 
 GaussianFit fit_gaussian(const Histogram& histogram) {
-  // In bins about the middle one: the parabola's powers stay near 1.
+  // x in bins about the middle, scaled: the powers stay near 1.
   const std::size_t bins = histogram.counts.size();
   const double middle = 0.5 * static_cast<double>(bins);
   const double scale = std::max(middle, 1.0);

@@ -1,4 +1,4 @@
-// What a column of figures says in a few numbers. For reports only: the core never includes it.
+// Descriptive statistics, histograms and Gaussian fits for reports. The core never includes it.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace glint {
 
-// In the unit of the values. All zero for no values.
+// In the unit of the values. All zero without values.
 struct Summary {
   std::size_t count = 0;
   double mean = 0;
@@ -19,12 +19,12 @@ struct Summary {
 };
 [[nodiscard]] Summary summarize(std::span<const double> values);
 
-// The smallest value that at least this fraction of the values does not exceed (nearest rank), so
-// that it is always one of them. fraction in [0, 1]; 0 for no values.
+// Nearest-rank percentile: the smallest value that at least `fraction` of the values do not exceed.
+// Requires fraction in [0, 1]; returns 0 without values.
 [[nodiscard]] double percentile(std::span<const double> values, double fraction);
 
-// P(chi-square of so many degrees of freedom > x). Source: Abramowitz and Stegun 1964, 26.4.4 and
-// 26.4.5.
+// Upper tail probability P(X > x) of the chi-square distribution. Source: Abramowitz and Stegun
+// 1964, 26.4.4 and 26.4.5.
 [[nodiscard]] double chi_square_tail(double x, int degrees_of_freedom);
 
 // Bin i covers low + i width <= value < low + (i + 1) width.
@@ -32,7 +32,7 @@ struct Histogram {
   double low = 0;
   double width = 1;
   std::vector<std::size_t> counts;
-  std::size_t below = 0, above = 0;  // values outside, NaN among the latter
+  std::size_t below = 0, above = 0;  // values outside the bins; NaN counts in `above`
 
   [[nodiscard]] double centre(std::size_t bin) const {
     return low + (static_cast<double>(bin) + 0.5) * width;
@@ -40,15 +40,15 @@ struct Histogram {
   [[nodiscard]] double high() const { return low + static_cast<double>(counts.size()) * width; }
 };
 
-// bins >= 1 and low < high, else std::invalid_argument.
+// Requires bins >= 1 and low < high; throws std::invalid_argument otherwise.
 [[nodiscard]] Histogram make_histogram(std::span<const double> values, double low, double high,
                                        int bins);
 
-// The same over limits that hold `coverage` of the values and lie alike on both sides of zero.
+// Histogram with limits symmetric about zero that contain `coverage` of the values.
 [[nodiscard]] Histogram make_symmetric_histogram(std::span<const double> values, int bins,
                                                  double coverage = 0.995);
 
-// height exp(-(x - mean)^2 / (2 sd^2)), in counts a bin.
+// height exp(-(x - mean)^2 / (2 sd^2)), in counts per bin.
 struct GaussianFit {
   bool valid = false;
   double mean = 0;
@@ -57,11 +57,11 @@ struct GaussianFit {
   [[nodiscard]] double at(double x) const;
 };
 
-// A bell fitted to the histogram's bars: it follows their bulk, so that beside a plain standard
-// deviation it shows how heavy the tails are. Invalid for fewer than three filled bins or bars that
-// have no maximum. Source: Guo 2011, A simple algorithm for fitting a Gaussian function, IEEE
-// Signal Processing Magazine 28(5), eq. (17): least squares on the logarithm, weighted by the
-// squared counts of the last fit.
+// Fits a Gaussian to the histogram by weighted least squares on the logarithm, iterated with the
+// squared counts of the last fit as weights. The fit follows the bulk of the values, so its sd
+// beside the plain standard deviation shows heavy tails. Invalid with fewer than three non-empty
+// bins or without a maximum. Source: Guo 2011, A simple algorithm for fitting a Gaussian function,
+// IEEE Signal Processing Magazine 28(5), eq. (17).
 [[nodiscard]] GaussianFit fit_gaussian(const Histogram& histogram);
 
 }  // namespace glint

@@ -10,7 +10,7 @@
 namespace glint {
 namespace {
 
-// Hundredths of a picture unit are finer than any screen.
+// Two decimals: a hundredth of a canvas unit is below the resolution of a screen.
 std::string unit(double value) { return number_text(value, 2); }
 
 std::string pair(std::string_view a, double x, std::string_view b, double y) {

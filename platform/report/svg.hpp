@@ -1,5 +1,5 @@
-// The few shapes that a diagram needs, written as an SVG picture. Coordinates are picture units
-// (CSS pixels), x to the right, y down.
+// Minimal SVG writer for plots: lines, polylines, rectangles, text. Coordinates are CSS pixels, x
+// to the right, y down.
 #pragma once
 
 #include <span>
@@ -23,7 +23,7 @@ struct TextStyle {
   std::string_view colour = "#222222";
   TextAnchor anchor = TextAnchor::start;
   bool bold = false;
-  bool upwards = false;  // turned a quarter to the left about its place
+  bool upwards = false;  // rotated by 90 degrees counterclockwise about its position
 };
 
 class SvgCanvas {
@@ -31,12 +31,11 @@ class SvgCanvas {
   SvgCanvas(double width, double height);
 
   void line(const Vector2& from, const Vector2& to, const Stroke& stroke);
-  // Broken where a point is not finite; `clip` names a rectangle made by clip_rectangle, or is
-  // empty.
+  // A non-finite point breaks the line. `clip`: name returned by clip_rectangle(), or empty.
   void polyline(std::span<const Vector2> points, const Stroke& stroke, std::string_view clip = {});
   void rectangle(const Vector2& corner, const Vector2& size, std::string_view fill, double opacity);
   void text(const Vector2& place, std::string_view words, const TextStyle& style = {});
-  // Declares a rectangle to clip polylines with; returns its name.
+  // Declares a clip rectangle for polylines; returns its name.
   std::string clip_rectangle(const Vector2& corner, const Vector2& size);
 
   [[nodiscard]] std::string finished() const { return body_ + "</svg>\n"; }
@@ -49,8 +48,8 @@ class SvgCanvas {
 // At most `decimals` digits after the point, without trailing zeros; "-" if not finite.
 [[nodiscard]] std::string number_text(double value, int decimals);
 
-// Writes to a temporary file beside it and renames, so that no half-written file is ever seen.
-// Throws InputError where the folder cannot be written.
+// Writes a temporary file beside `path` and renames it, so that readers never see a partial file.
+// Throws InputError if the folder cannot be written.
 void write_text_file(const std::string& path, std::string_view text);
 
 }  // namespace glint
