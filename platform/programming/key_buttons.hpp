@@ -1,10 +1,10 @@
-// Keys of a terminal as the pen's buttons.
+// Maps keys of a terminal to the pen's buttons.
 //
 //   space   draw: one press begins, the next ends; two presses within 0.3 s are a click: a waypoint
 //   d u f   delete_last, undo, finish
-// A terminal tells that a key went down, never that it came up: hence draw is switched, and the
-// others come up as they go down. A key that is held repeats itself 10 to 40 times a second, faster
-// than a finger does: of a repeated space the first press counts.
+// A terminal reports that a key went down, never that it came up. Therefore draw toggles, and the
+// other buttons are released as they are pressed. A held key repeats 10 to 40 times a second,
+// faster than a finger: of a repeated space only the first press counts.
 #pragma once
 
 #include <functional>
@@ -26,7 +26,7 @@ class KeyButtons {
 
   explicit KeyButtons(OnButton on_button);
 
-  // In the order of time. Any other key does nothing.
+  // Requires rising times. Other keys do nothing.
   void press(char key, Time time);
 
  private:

@@ -13,7 +13,7 @@ namespace glint {
 namespace {
 
 constexpr std::chrono::milliseconds k_look_again{20};
-constexpr std::size_t k_keys_max = 64;  // a wake-up
+constexpr std::size_t k_keys_max = 64;  // per wake-up
 
 }  // namespace
 
@@ -35,7 +35,7 @@ void KeyReader::read_once() {
   if (::poll(&waiting, 1, static_cast<int>(k_look_again.count())) <= 0) return;
   std::array<char, k_keys_max> keys{};
   const ssize_t count = ::read(descriptor_, keys.data(), keys.size());
-  // A terminal that was closed is always ready, with nothing to read.
+  // poll() always reports a closed terminal as ready, without data.
   if (count <= 0) {
     std::this_thread::sleep_for(k_look_again);
     return;

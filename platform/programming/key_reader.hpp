@@ -1,4 +1,4 @@
-// Reads a terminal's keys by a thread of its own and hands them on as buttons.
+// Thread that reads a terminal's keys and publishes them as button events.
 #pragma once
 
 #include <atomic>
@@ -12,10 +12,10 @@ namespace glint {
 
 class KeyReader {
  public:
-  // Of a KeyTerminal's descriptor. `now` stamps a key as it is read, which is at once; both are
-  // called from the reading thread.
+  // descriptor: of a KeyTerminal. `now`: clock that stamps a key when it is read. The reading
+  // thread calls both functions.
   KeyReader(int descriptor, std::function<Time()> now, KeyButtons::OnButton on_button);
-  ~KeyReader();  // ends the thread
+  ~KeyReader();  // stops the thread
   KeyReader(const KeyReader&) = delete;
   KeyReader& operator=(const KeyReader&) = delete;
 

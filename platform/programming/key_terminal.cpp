@@ -11,15 +11,16 @@
 namespace glint {
 namespace {
 
-// What ends a program by default.
+// Signals that end a program by default.
 constexpr int k_ending_signals[] = {SIGHUP,  SIGINT, SIGQUIT, SIGTERM, SIGABRT,
                                     SIGSEGV, SIGBUS, SIGFPE,  SIGILL};
 
-// For the handler, which is told nothing but the signal.
+// Global, since a signal handler receives only the signal number.
 int g_terminal = -1;
 termios g_before{};
 
-// Only calls that POSIX allows in a handler. What was typed for the run is not left to the shell.
+// Calls only async-signal-safe functions. Flushes the input, so that unread keys do not reach the
+// shell.
 void restore() {
   ::tcflush(g_terminal, TCIFLUSH);
   ::tcsetattr(g_terminal, TCSANOW, &g_before);
@@ -27,7 +28,7 @@ void restore() {
 
 void restore_and_end(int signal) {
   restore();
-  ::raise(signal);  // its default is back, and it is taken once this returns
+  ::raise(signal);  // default action, by SA_RESETHAND; delivered after return
 }
 
 }  // namespace

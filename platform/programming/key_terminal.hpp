@@ -1,15 +1,15 @@
-// A terminal that hands over each key as it is pressed, and does not show it, for as long as this
-// lives.
+// Puts a terminal into raw key mode, without echo, for the lifetime of the object.
 //
-// Afterwards it is as it was: at the end, and where a signal that nobody handles ends the program.
-// Ctrl-C goes on to interrupt; Ctrl-Z does nothing, for a run in real time cannot rest.
+// Restores the terminal's settings in the destructor and when a signal without another handler ends
+// the program. Ctrl-C still interrupts. Ctrl-Z does nothing: a real-time run cannot pause.
 #pragma once
 
 namespace glint {
 
 class KeyTerminal {
  public:
-  // One at a time. Throws InputError where `descriptor` is no terminal; `name` says what it is.
+  // At most one object at a time. Throws InputError if `descriptor` is no terminal; the message
+  // names it as `name`.
   KeyTerminal(int descriptor, const char* name);
   ~KeyTerminal();
   KeyTerminal(const KeyTerminal&) = delete;

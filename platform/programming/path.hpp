@@ -1,4 +1,4 @@
-// A path drawn with the pen, in the robot's frame: waypoints and strokes, one after the other.
+// Path drawn with the pen, in the robot's frame: a sequence of waypoints and strokes.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ enum class PathKind : std::uint8_t { waypoint, stroke };
 
 struct PathElement {
   PathKind kind = PathKind::waypoint;
-  std::vector<UncertainPose> points;  // T_robot_tip; a waypoint has one, a stroke two or more
+  std::vector<UncertainPose> points;  // T_robot_tip; waypoint: one, stroke: two or more
 };
 
 using DrawnPath = std::vector<PathElement>;

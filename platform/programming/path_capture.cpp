@@ -29,7 +29,7 @@ PathCapture::PathCapture(const CaptureSettings& settings) : settings_(settings) 
   points_.reserve(static_cast<std::size_t>(settings.points_max));
   elements_.reserve(elements);
   standing_.reserve(elements);
-  changes_.reserve(2 * elements);  // each is added once; it can be deleted once but for undos
+  changes_.reserve(2 * elements);  // each is added once, and deleted once apart from undos
 }
 
 void PathCapture::add(const ButtonEvent& event) {
@@ -112,7 +112,7 @@ void PathCapture::release(Time time) {
 }
 
 void PathCapture::begin_stroke() {
-  (void)resampler_.begin(settings_.stroke);  // its settings were checked at the start
+  (void)resampler_.begin(settings_.stroke);  // the constructor checked the settings
   first_point_ = static_cast<int>(points_.size());
   samples_ = 0;
   left_reach_ = cut_ = false;

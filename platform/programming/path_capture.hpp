@@ -1,14 +1,14 @@
-// Collects a path while the pen's button is held: a state machine of poses and button events, with
-// neither clock nor thread. The same input gives the same path.
+// Path recorder: a state machine over poses and button events that collects a path while the pen's
+// button is held. It has neither clock nor thread; the same input gives the same path.
 //
-//   draw held          a stroke: points a declared distance apart (kernels/path/resample_stroke)
-//   draw clicked       a waypoint where the tip was as the button went down
-//   delete_last, undo  take the last element away; take the last change back
-//   finish             whatever follows is only counted
+//   draw held          a stroke: points at a declared spacing (kernels/path/resample_stroke)
+//   draw clicked       a waypoint at the tip's position when the button went down
+//   delete_last, undo  deletes the last element; undoes the last change
+//   finish             later input is only counted
 //
-// A stroke goes on only by measured poses in the robot's frame. Where they stay away for longer
-// than gap_max it ends, and another begins with the next one: nobody knows the way between. All
-// memory is taken at the start; what does not fit is counted.
+// Only measured poses in the robot's frame extend a stroke. A gap longer than gap_max ends it, and
+// the next pose begins another, since the path in the gap is not measured. Memory is allocated in
+// the constructor; input beyond the capacity is counted.
 #pragma once
 
 #include <cstdint>
@@ -23,20 +23,20 @@ namespace glint {
 
 struct CaptureSettings {
   StrokeSettings stroke;
-  Duration click_max = milliseconds(300);  // held no longer, and the tip within the reach: a click
+  Duration click_max = milliseconds(300);  // limits of a click: duration, and distance of the tip
   double click_reach_m = 0.005;
-  int points_max = 1 << 16;  // of all elements, deleted ones too, for undo may bring them back
+  int points_max = 1 << 16;  // of all elements; includes deleted ones, for undo
   int elements_max = 4096;   // likewise
 };
 
 struct CaptureCounts {
   std::int64_t poses = 0;             // while draw was held
-  std::int64_t taken = 0;             // of these, into strokes
-  std::int64_t not_measured = 0;      // left out: predicted or lost
-  std::int64_t not_in_robot = 0;      // left out: the robot's frame was not known
-  std::int64_t not_usable = 0;        // left out: the stamp does not rise, a jump, no numbers
-  std::int64_t gaps = 0;              // strokes ended by poses that stayed away
-  std::int64_t presses_in_vain = 0;   // draw without a pose; delete_last or undo with nothing there
+  std::int64_t taken = 0;             // accepted into strokes
+  std::int64_t not_measured = 0;      // rejected: predicted or lost
+  std::int64_t not_in_robot = 0;      // rejected: not in the robot's frame
+  std::int64_t not_usable = 0;        // rejected: stamp not rising, a jump, not finite
+  std::int64_t gaps = 0;              // strokes ended by a gap in the poses
+  std::int64_t presses_in_vain = 0;   // draw without a pose; delete_last, undo without effect
   std::int64_t points_left_out = 0;   // beyond points_max
   std::int64_t strokes_left_out = 0;  // beyond elements_max
   std::int64_t after_finish = 0;      // poses and events
@@ -47,15 +47,15 @@ class PathCapture {
   // Throws InputError naming a setting that is out of range.
   explicit PathCapture(const CaptureSettings& settings);
 
-  // In the order of time; a pose and an event of one time: press, pose, release.
+  // Requires rising times. Order at equal times: press, pose, release.
   void add(const PoseSample& sample);
   void add(const ButtonEvent& event);
-  // As the finish button; ends a stroke that is under way.
+  // Same as the finish button. Ends a stroke in progress.
   void finish();
 
   [[nodiscard]] bool finished() const { return finished_; }
   [[nodiscard]] const CaptureCounts& counts() const { return counts_; }
-  // Elements that stand, in the order in which they were drawn; not a stroke that is under way.
+  // Elements that are not deleted, in the order of drawing, without a stroke in progress.
   [[nodiscard]] DrawnPath path() const;
 
  private:
@@ -80,19 +80,19 @@ class PathCapture {
   CaptureSettings settings_;
   StrokeResampler resampler_;
   std::vector<UncertainPose> points_;
-  std::vector<Element> elements_;  // all that ever were
-  std::vector<int> standing_;      // those that were not deleted
+  std::vector<Element> elements_;  // all elements, deleted ones too
+  std::vector<int> standing_;      // elements that are not deleted
   std::vector<Change> changes_;
   CaptureCounts counts_;
   bool held_ = false, finished_ = false;
   Time pressed_;
-  // Of the stroke under way.
+  // Of the stroke in progress.
   int first_point_ = 0;
   std::int64_t samples_ = 0;
   Vector3 began_ = Vector3::Zero();
   bool left_reach_ = false;
-  bool cut_ = false;            // points of it found no room
-  bool pieces_before_ = false;  // a gap ended one under the same press
+  bool cut_ = false;            // points of it exceeded the capacity
+  bool pieces_before_ = false;  // a gap ended a stroke of the same press
 };
 
 }  // namespace glint

@@ -6,7 +6,7 @@
 namespace glint {
 namespace {
 
-// The shortest text that reads back as the same number, whatever the locale.
+// Shortest text that reads back as the same number, independent of the locale.
 void put(std::string& line, double number) {
   std::array<char, 32> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;

@@ -1,4 +1,4 @@
-// When the pen's button was held, written by hand: "1.0..2.5,3.0..4.2".
+// Parses the intervals in which the pen's button was held: "1.0..2.5,3.0..4.2".
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace glint {
 
-// Seconds on the recording's clock (tick_s in `samples.csv`), FROM..TO, rising; as presses of draw
-// and their ends. Throws InputError naming what was found.
+// text: rising intervals FROM..TO in seconds on the recording's clock (tick_s in `samples.csv`).
+// Returns the press and release events of draw. Throws InputError that quotes the wrong text.
 [[nodiscard]] std::vector<ButtonEvent> press_times(const std::string& text);
 
 }  // namespace glint

@@ -34,7 +34,7 @@ std::uint8_t tool_number(const std::vector<std::string>& names, const std::strin
   throw InputError(recording + ": no tool '" + wanted + "'; expected one of: " + list);
 }
 
-// Of one time: down, pose, up.
+// Order at equal times: press, pose, release.
 bool before_pose(const ButtonEvent& event, Time tick) {
   return event.pressed ? event.time <= tick : event.time < tick;
 }

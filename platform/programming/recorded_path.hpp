@@ -1,5 +1,5 @@
-// The path in a recording: its tool's poses and the button's events, put in the order of their
-// time.
+// Extracts the path from a recording: merges the poses of a tool and the button events in time
+// order.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@
 namespace glint {
 
 struct RecordedPathOptions {
-  std::string tool;                  // its name; empty: the recording's first
-  std::vector<ButtonEvent> presses;  // in place of the recording's events; empty: those
+  std::string tool;                  // the tool's name; empty: the first in the recording
+  std::vector<ButtonEvent> presses;  // replace the recording's events; empty: use those
   CaptureSettings capture;
   ReadTolerance tolerance;
 };
@@ -22,11 +22,11 @@ struct RecordedPath {
   CaptureCounts counts;
   std::string tool;
   std::int64_t events = 0;
-  Duration unix_offset;    // added to a point's time it gives time since 1970 (UTC)
-  RecordingLosses losses;  // only where the tolerance allows them
+  Duration unix_offset;    // plus a point's time: time since 1970 (UTC)
+  RecordingLosses losses;  // only if the tolerance allows losses
 };
 
-// Throws InputError: no recording, no such tool, no event at all, or nothing that could be taken.
+// Throws InputError: no recording, no such tool, no event, or no accepted pose.
 [[nodiscard]] RecordedPath recorded_path(const std::string& recording,
                                          const RecordedPathOptions& options);
 

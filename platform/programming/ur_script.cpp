@@ -12,7 +12,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_digits = 6;  // micrometres and microradians: far below any pose's sigma
+constexpr int k_digits = 6;  // micrometres, microradians: far below a pose's standard deviation
 constexpr double k_step = 1e-6;
 
 struct Move {
@@ -75,8 +75,8 @@ double way_between(const Move& a, const Move& b) {
   return (a.to->pose.translation - b.to->pose.translation).norm();
 }
 
-// Rounded down, so that two blends never meet for what their digits add; places are rounded, too,
-// by up to a step and a half on the way.
+// Rounded down, so that the rounding of two blends cannot make them overlap. Positions are rounded
+// too, by up to 1.5 steps along the path.
 double blend_at(const std::vector<Move>& moves, std::size_t i, double most) {
   if (moves[i].stops || i == 0 || i + 1 == moves.size()) return 0;
   const double half =
