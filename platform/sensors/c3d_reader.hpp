@@ -1,4 +1,4 @@
-// As much of a C3D file as marker trajectories need: 3D points in floating point, little-endian.
+// Reader of C3D files for marker trajectories only: 3D points in floating point, little-endian.
 // Source: The C3D File Format, User Guide (Motion Lab Systems 2008), chapters "The header section",
 // "The parameter section" and "Storing 3D point data".
 #pragma once
@@ -19,7 +19,7 @@ namespace glint {
 struct C3dTrial {
   double rate_hz = 0;
   std::vector<std::string> labels;
-  // frames[f][p]: not finite where the point is missing.
+  // frames[f][p], not finite if the point is missing.
   std::vector<std::vector<Vector3>> frames;
 
   [[nodiscard]] int index_of(const std::string& label) const {
@@ -35,7 +35,7 @@ class C3dFile {
   explicit C3dFile(const std::string& path)
       : bytes_(read_file(path, k_data_bytes_max, "a C3D file")) {}
 
-  // No frames where the file is not of this kind.
+  // Returns no frames for other kinds of files.
   [[nodiscard]] C3dTrial read() const {
     C3dTrial trial;
     if (bytes_.size() < 1024 || byte(1) != 0x50) return trial;
@@ -43,7 +43,7 @@ class C3dFile {
     const std::size_t analog = word(4);
     if (points == 0 || word(8) < word(6)) return trial;
     const std::size_t frames = word(8) - word(6) + 1u;
-    if (number(12) >= 0) return trial;  // a positive scale means integers
+    if (number(12) >= 0) return trial;  // a positive scale: integers
     const std::size_t data = (word(16) - 1u) * k_block;
     trial.rate_hz = number(20);
     trial.labels = labels(points);
@@ -74,7 +74,7 @@ class C3dFile {
     return static_cast<double>(std::bit_cast<float>(bits));
   }
 
-  // The parameter POINT:LABELS, all points' names in one block of equally long texts.
+  // Reads POINT:LABELS: the names of all points in one block of texts of equal length.
   [[nodiscard]] std::vector<std::string> labels(std::size_t points) const {
     std::vector<std::string> result;
     std::map<int, std::string> groups;

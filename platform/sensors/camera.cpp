@@ -18,21 +18,22 @@ Camera hololens1_short_throw() {
   camera.model.lens = Lens::brown;
   camera.model.width = 448;
   camera.model.height = 450;
-  // No calibration of this camera was ever published: a focal length like its successor's and a
-  // mild barrel distortion stand in. Use a device's own wherever a number matters.
+  // No calibration of this camera is published. Placeholder: focal length of its successor and a
+  // mild barrel distortion. Use a device's own calibration wherever accuracy matters.
   camera.model.fx = camera.model.fy = 253.0;
   camera.model.cx = 224.0;
   camera.model.cy = 225.0;
   camera.model.distortion = {-0.09, 0.02, 0.0005, -0.0003, 0, 0, 0, 0};
-  camera.model.field_tangent_max = 1.4;  // the frame's corners lie at 1.26
+  camera.model.field_tangent_max = 1.4;  // the frame's corners are at 1.26
   camera.depth.kind = DepthKind::radial;
   camera.depth.unit_m = 0.001;
   camera.depth.invalid_from = 4090;  // HoloLensForCV: from here on the depth is invalid
   camera.depth.wrap_range_m = 0;
-  // Eight bits clip far below what spoils a pixel's depth; the sensor itself then writes none.
+  // 8 bits saturate far below the level that corrupts a pixel's depth; the sensor then writes no
+  // depth.
   camera.depth.saturated_from = 0xFFFF;
   camera.reflectivity_bits = 8;
-  camera.threshold = 250;  // the seed's
+  camera.threshold = 250;  // Puljiz et al.
   camera.period = Duration{33'333'333};
   camera.exposure = milliseconds(2);
   camera.transport = milliseconds(8);
@@ -46,7 +47,8 @@ Camera hololens2_ahat() {
   camera.model.width = 512;
   camera.model.height = 512;
   // Calibration of a HoloLens 2 published by lihaowei1999/IRToolTrackingWithHololens2 (1a3905e),
-  // MIT; fitted over its 209,594 rays, 0.062 px rms an axis, 0.28 px at most. Units differ by 5 px.
+  // MIT; fitted to its 209,594 rays, residual 0.062 px rms per axis, at most 0.28 px. Units differ
+  // by 5 px.
   camera.model.fx = 253.247009763;
   camera.model.fy = 253.582053183;
   camera.model.cx = 258.754402348;
@@ -60,9 +62,9 @@ Camera hololens2_ahat() {
   camera.depth.wrap_range_m = 1.055;  // hl2ss: "alias" 1055 of the device's calibration
   camera.depth.saturated_from = 0xFFFF;
   camera.reflectivity_bits = 16;
-  // HoloLens2-IRTracking binarises here. A real office seen by another time-of-flight camera stays
-  // below: 99.99 % of its pixels under 1115, the brightest 1286; retro-reflective markers far
-  // above.
+  // HoloLens2-IRTracking binarises at this value. A real office, seen by another time-of-flight
+  // camera, is below: 99.99 % of its pixels under 1115, maximum 1286. Retro-reflective markers are
+  // far above.
   camera.threshold = 1280;
   camera.period = Duration{22'222'222};
   camera.exposure = milliseconds(2);
@@ -72,7 +74,7 @@ Camera hololens2_ahat() {
 
 namespace {
 
-// Neither lens nor threshold: none was published that holds for another device.
+// Without lens and threshold: none is published that holds for another device.
 Camera bare_camera(std::string name, int width, int height, DepthKind depth) {
   Camera camera;
   camera.name = std::move(name);
@@ -94,8 +96,8 @@ Camera hololens2_long_throw() {
   return camera;
 }
 
-// Microsoft, Azure Kinect DK hardware specifications: 12.8 ms of exposure, operating range; wide
-// and unbinned 20.3 ms and 15 frames/s.
+// Source: Microsoft, Azure Kinect DK hardware specifications: exposure 12.8 ms, operating range;
+// wide unbinned: 20.3 ms and 15 frames/s.
 Camera azure_kinect(std::string name, int width, int height, double from_m, double to_m) {
   Camera camera = bare_camera(std::move(name), width, height, DepthKind::z);
   camera.exposure = microseconds(12'800);
@@ -111,8 +113,8 @@ Camera azure_kinect_wfov() {
   return camera;
 }
 
-// Its short range: radial depth (ml_depth_camera.h), 0.2 to 0.9 m. The headset has floats of
-// metres; here depth has 16 bits of millimetres.
+// Short range: radial depth (ml_depth_camera.h), 0.2 to 0.9 m. The headset stores floats in metres;
+// here depth has 16 bits in millimetres.
 Camera magic_leap2() {
   Camera camera = bare_camera("magic_leap2", 544, 480, DepthKind::radial);
   camera.period = Duration{16'666'667};
@@ -166,8 +168,8 @@ std::vector<float> floats_of(std::string_view bytes) {
   return values;
 }
 
-// hl2ss: planes of x and y at z = 1, then extrinsics and what an undistorted picture needs. A pixel
-// that the lens does not map has none, or zeros.
+// hl2ss: planes of x and y at z = 1, then the extrinsics and data of the undistorted image. Pixels
+// that the lens does not map have non-finite values or zeros.
 std::vector<float> rays_of_planes(const std::vector<float>& values, std::size_t pixels) {
   std::vector<float> rays(3 * pixels, 0.0f);
   for (std::size_t i = 0; i < pixels; ++i) {
@@ -195,7 +197,7 @@ std::vector<float> rays_of_npy(const std::string& path, const CameraModel& model
                    " x 3, a ray for each pixel of " + name);
 }
 
-// By what the file is: an array of NumPy's, or by its size.
+// Selects the format by content (NumPy magic) or by size.
 std::vector<float> rays_of_file(const std::string& path, const CameraModel& model,
                                 const std::string& name) {
   const std::string bytes = read_file(path, k_ray_table_bytes_max, "a table of rays");
@@ -213,7 +215,7 @@ std::vector<float> rays_of_file(const std::string& path, const CameraModel& mode
                    std::to_string(pixels) + " pixels of " + name);
 }
 
-// Where the search in a table begins: about the ray nearest the optical axis.
+// Initial guess for the search in a ray table: pinhole at the ray nearest to the optical axis.
 void set_nearest_pinhole(CameraModel& model, const std::vector<float>& rays) {
   std::size_t middle = 0;
   for (std::size_t i = 0; i < pixels_of(model); ++i) {

@@ -1,4 +1,4 @@
-// Owns the pixels that a Frame borrows.
+// Owner of the pixels that a Frame references.
 #pragma once
 
 #include <cstdint>

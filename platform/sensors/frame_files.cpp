@@ -13,7 +13,7 @@ namespace {
 constexpr int k_side = 512;
 constexpr std::size_t k_pixels = std::size_t{k_side} * k_side;
 
-// The frame published with analogdevicesinc/ToF (dcd0bed): its two planes are out of step.
+// The frame published with analogdevicesinc/ToF (dcd0bed): its two planes are misaligned.
 constexpr int k_adi_brightness_shift = 32;
 constexpr std::size_t k_adi_pixel_bytes = 5;
 

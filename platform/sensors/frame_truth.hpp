@@ -1,4 +1,4 @@
-// What a frame truly showed, where a source has it beside its frames.
+// Ground truth of a frame, if its source provides it.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 namespace glint {
 
 struct FrameTruth {
-  Time mid_exposure;  // the true one; the stamp may differ
+  Time mid_exposure;  // the true time; the stamp may differ
   Pose T_world_camera;
   std::vector<Pose> T_world_tool;
-  std::vector<std::uint8_t> visible_mask;  // each tool; bit i: its marker i is truly visible
+  std::vector<std::uint8_t> visible_mask;  // per tool; bit i: its marker i is visible
 };
 
 }  // namespace glint

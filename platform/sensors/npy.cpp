@@ -12,8 +12,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-// NumPy's format: "\x93NUMPY", version major and minor, length of the header (u16, from version 2
-// on u32), then a Python dictionary with descr, fortran_order and shape.
+// NumPy's format: "\x93NUMPY", version major and minor, header length (u16; u32 from version 2),
+// then a Python dictionary with descr, fortran_order and shape.
 constexpr char k_magic[] = "\x93NUMPY";
 constexpr std::size_t k_magic_length = 6;
 constexpr std::size_t k_npy_bytes_max = 256 << 20;
@@ -45,7 +45,7 @@ std::vector<std::size_t> shape_of(const std::string& text) {
 }
 
 struct NpyFile {
-  std::string kind, bytes;  // descr; the whole file
+  std::string kind, bytes;  // descr; the complete file
   std::size_t data_at = 0;
   std::vector<std::size_t> shape;
 };
@@ -79,12 +79,12 @@ NpyFile read_npy(const std::string& path) {
   return out;
 }
 
-// How many values of this size the shape asks for: as many as the file has.
+// Number of values of this size in the shape. Throws InputError unless the file has as many.
 std::size_t count_of(const NpyFile& file, std::size_t value_bytes, const std::string& path) {
   const std::size_t found = file.bytes.size() - file.data_at;
   std::size_t count = file.shape.empty() ? 0 : 1;
   for (const std::size_t n : file.shape) {
-    count = n == 0 || count > found / n ? found + 1 : count * n;  // more than there can be
+    count = n == 0 || count > found / n ? found + 1 : count * n;  // above any possible count
   }
   if (count == 0 || found / value_bytes != count || found % value_bytes != 0) {
     throw InputError(path + ":byte " + std::to_string(file.data_at) + ": " + std::to_string(found) +
@@ -131,7 +131,7 @@ std::string npy_float32_bytes(const NpyArray& array) {
   std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (";
   for (const std::size_t n : array.shape) header += std::to_string(n) + ", ";
   header += ")}";
-  // NumPy ends the header with a line feed so that the data begin at a multiple of 64.
+  // The header ends with a line feed so that the data begin at a multiple of 64.
   header.append(64 - (10 + header.size() + 1) % 64, ' ');
   header += '\n';
   std::string bytes(k_magic, k_magic_length);

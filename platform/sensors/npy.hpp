@@ -1,4 +1,4 @@
-// Arrays as NumPy saves them, little-endian and in C order.
+// Reader and writer of NumPy arrays (.npy), little-endian and in C order.
 #pragma once
 
 #include <cstddef>
@@ -12,19 +12,19 @@ struct NpyArray {
   std::vector<float> values;
 };
 
-// Throws InputError naming the file, the place and what was expected.
+// Throws InputError that names the file, the position and the expectation.
 [[nodiscard]] NpyArray read_npy_float32(const std::string& path);
 
 struct NpyNumbers {
   std::vector<std::size_t> shape;
   std::vector<double> values;
-  bool integer = false;  // as they stand in the file
+  bool integer = false;  // integers in the file
 };
 
-// The same for float32, float64 and unsigned integers of 8 and 16 bit.
+// Same for float32, float64 and unsigned integers of 8 and 16 bit.
 [[nodiscard]] NpyNumbers read_npy_numbers(const std::string& path);
 
-// The file that read_npy_float32 reads back.
+// Returns the bytes of a file for read_npy_float32.
 [[nodiscard]] std::string npy_float32_bytes(const NpyArray& array);
 
 }  // namespace glint

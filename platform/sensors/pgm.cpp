@@ -6,12 +6,12 @@ namespace glint {
 namespace {
 
 constexpr std::uint64_t k_pixels_max = 64'000'000;
-constexpr std::size_t k_pgm_bytes_max = 2 * k_pixels_max + 4096;  // and a head with comments
+constexpr std::size_t k_pgm_bytes_max = 2 * k_pixels_max + 4096;  // plus a header with comments
 
 struct Reader {
   const std::string& path;
   std::string_view bytes;
-  std::size_t at = 2;  // behind "P5"
+  std::size_t at = 2;  // after "P5"
 
   [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
     throw InputError(path + ":byte " + std::to_string(at) + ": " + found + "; expected " +
@@ -86,7 +86,7 @@ Picture pgm_of(std::string_view bytes, const std::string& path, const PgmLimits&
   out.values.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     std::uint16_t value = 0;
-    for (std::size_t k = 0; k < size; ++k) {  // the high byte comes first
+    for (std::size_t k = 0; k < size; ++k) {  // high byte first
       value = static_cast<std::uint16_t>(
           value << 8 | static_cast<std::uint8_t>(bytes[reader.at + size * i + k]));
     }

@@ -1,4 +1,4 @@
-// Pictures in files: binary PGM (P5), and PNG by libspng.
+// Readers and writers of image files: binary PGM (P5), and PNG by libspng.
 #pragma once
 
 #include <cstdint>
@@ -11,39 +11,40 @@ namespace glint {
 struct Picture {
   int width = 0;
   int height = 0;
-  int channels = 1;  // 1 grey; 3 red, green, blue; 4 with transparency, where asked for
-  int bits = 8;      // a value: 8 or 16
-  std::vector<std::uint16_t> values;  // row by row, a pixel's channels beside each other
+  int channels = 1;                   // 1 grey; 3 red, green, blue; 4 with alpha, if requested
+  int bits = 8;                       // per value: 8 or 16
+  std::vector<std::uint16_t> values;  // row by row, channels of a pixel interleaved
 };
 
 constexpr int k_picture_side_max = 16'384;
 
-// What a PGM may hold.
+// Limits on a PGM.
 struct PgmLimits {
   int width = k_picture_side_max;
   int height = k_picture_side_max;
   int bits_min = 8;
 };
 
-// At most k_picture_side_max pixels a side and 64 million in all. A PGM's values are not scaled by
-// its maxval. A PNG's palette becomes colours, 1 to 4 bits become 8, transparency is dropped unless
-// `transparency`. Throw InputError naming the file, the place, what was found and expected.
+// At most k_picture_side_max pixels per side and 64 million in total. Values of a PGM are not
+// scaled by its maxval. A PNG's palette is expanded to colours, 1 to 4 bits become 8, alpha is
+// dropped unless `transparency`. Throws InputError that states the file, the position, found and
+// expected.
 [[nodiscard]] Picture read_pgm(const std::string& path, const PgmLimits& limits = {});
 [[nodiscard]] Picture read_png(const std::string& path, const std::string& expected);
-// The same of a file's bytes in memory; `path` is for messages.
+// Same for a file's bytes in memory; `path` is for messages.
 [[nodiscard]] Picture pgm_of(std::string_view bytes, const std::string& path,
                              const PgmLimits& limits = {});
 [[nodiscard]] Picture png_of(std::string_view bytes, const std::string& path,
                              const std::string& expected, bool transparency = false);
-// Either, by how it begins.
+// Reads either format, selected by the first bytes.
 [[nodiscard]] Picture read_picture(const std::string& path);
 
-// Writes a PNG with 8 bits a value; `values`: width * height * channels of them, row by row.
-// Throws InputError naming the file if it cannot be written; `expected` ends the message.
+// Writes a PNG with 8 bits per value. values: width * height * channels, row by row. Throws
+// InputError that names the file if it cannot be written; `expected` ends the message.
 void write_png(const std::string& path, int width, int height, int channels,
                const std::uint8_t* values, const std::string& expected);
 
-// Throws InputError: more pixels than are read, at `place` of the file.
+// Throws InputError if the image exceeds the limits; `place` is the position in the file.
 void check_picture_size(const std::string& path, std::size_t place, std::uint64_t width,
                         std::uint64_t height);
 

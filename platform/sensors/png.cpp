@@ -18,7 +18,7 @@ using Context = std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)>;
 
 constexpr std::string_view k_signature = "\x89PNG\r\n\x1A\n";
 constexpr std::size_t k_width_at = 16, k_height_at = 20;  // in the first chunk, IHDR
-constexpr std::size_t k_chunk_bytes_max = 1 << 20, k_chunks_bytes_max = 16 << 20;  // beside pixels
+constexpr std::size_t k_chunk_bytes_max = 1 << 20, k_chunks_bytes_max = 16 << 20;  // without pixels
 constexpr std::size_t k_png_bytes_max = 256 << 20;
 constexpr std::uint64_t k_deflate_ratio_max = 1032;  // zlib's manual, "Maximum Compression Factor"
 
@@ -28,7 +28,7 @@ std::uint32_t big_endian(const char* at) {
   return value;
 }
 
-// libspng's output format for what a file holds: grey stays grey, all else has four channels.
+// libspng's output format: grey stays grey, everything else gets four channels.
 int format_of(const spng_ihdr& header) {
   if (header.color_type == SPNG_COLOR_TYPE_GRAYSCALE) {
     return header.bit_depth == 16 ? SPNG_FMT_PNG : SPNG_FMT_G8;
@@ -36,7 +36,7 @@ int format_of(const spng_ihdr& header) {
   return header.bit_depth == 16 ? SPNG_FMT_RGBA16 : SPNG_FMT_RGBA8;
 }
 
-// `bytes` of the decoded picture, in this machine's order, to the picture's channels.
+// Converts `bytes` of the decoded image, in native byte order, to the image's channels.
 void fill(Picture& picture, const std::vector<std::uint8_t>& bytes) {
   const std::size_t stored = picture.channels == 1 ? 1 : 4;
   const std::size_t size = picture.bits == 16 ? 2 : 1;
@@ -77,7 +77,7 @@ Picture png_of(std::string_view file, const std::string& path, const std::string
   const bool grey = header.color_type == SPNG_COLOR_TYPE_GRAYSCALE;
   if (error == 0) error = spng_decoded_image_size(context.get(), format, &size);
   if (error != 0) fail(std::string("no picture: ") + spng_strerror(error));
-  // What follows takes memory for every pixel: a short file that names many is refused before.
+  // Decoding allocates memory for every pixel: refuse a short file that declares many pixels.
   if (std::uint64_t{header.width} * header.height * header.bit_depth / 8 >
       k_deflate_ratio_max * file.size()) {
     fail(std::to_string(file.size()) + " bytes, too few for " + std::to_string(header.width) +

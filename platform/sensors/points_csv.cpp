@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view k_heading = "time_s,x_m,y_m,z_m";
 constexpr double k_time_max_s = 9e9;        // int64 nanoseconds end at 9.2e9 s
-constexpr double k_coordinate_max_m = 1e4;  // beyond it the file is in another unit
+constexpr double k_coordinate_max_m = 1e4;  // larger values have another unit
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view blank = " \t\r";
@@ -126,8 +126,8 @@ Tool as_points(Tool tool) {
 CorrespondSettings settings_for_points() {
   CorrespondSettings settings;
   settings.focal_px = 0;
-  settings.range_sigma_m = 0.0005;  // a motion-capture system's marker in a room, an axis
-  settings.delta_min_m = 0.002;     // what a user's own tool file is good for
+  settings.range_sigma_m = 0.0005;  // a motion-capture marker in a room, per axis
+  settings.delta_min_m = 0.002;     // accuracy of a user's own tool file
   settings.max_rms_m = 0.002;
   return settings;
 }

@@ -16,7 +16,7 @@ namespace {
 constexpr const char* k_tum = "t x y z qx qy qz qw, separated by blanks";
 constexpr const char* k_euroc = "ns,px,py,pz,qw,qx,qy,qz, separated by commas";
 
-// One line of numbers, complaining with file:line.
+// Parser of one line of numbers; throws InputError with file:line.
 class Line {
  public:
   Line(std::string_view text, const std::string& where, bool commas)
@@ -49,11 +49,11 @@ class Line {
     return value;
   }
 
-  // Seconds as text, or whole nanoseconds.
+  // Seconds as text, or integer nanoseconds.
   [[nodiscard]] std::int64_t stamp() {
     if (!commas_) {
       const double seconds = number();
-      // Half of what int64 nanoseconds hold: two stamps are subtracted.
+      // Half of the range of int64 nanoseconds: the difference of two stamps fits.
       if (!(std::abs(seconds) < 4e9)) fail("a time stamp beyond 4e9 s");
       return static_cast<std::int64_t>(std::floor(seconds * 1e9 + 0.5));
     }
@@ -93,7 +93,7 @@ StampedPose parse(std::string_view text, const std::string& where, bool commas) 
 
 constexpr Duration k_gap = milliseconds(100);
 
-// Time within the recording: forth, then back, then forth again.
+// Maps time into the recording: forward, then backward, then forward again.
 Time mirrored(Time time, Duration length) {
   const std::int64_t period = 2 * length.nanoseconds;
   std::int64_t inside = time.nanoseconds % period;
@@ -161,7 +161,7 @@ Pose interpolated(const Trajectory& trajectory, Time time) {
   const Duration span = b.time - a.time;
   Pose pose = interpolate(a, b, inside);
   if (span > k_gap || low == 0 || high + 1 == samples.size()) return pose;
-  // Cubic Hermite with the neighbours' slopes.
+  // Cubic Hermite interpolation with the slopes at both ends.
   const double h = span.seconds();
   const double u = (inside - a.time).seconds() / h;
   const Vector3 out = h * slope(samples[low - 1], a, b);
