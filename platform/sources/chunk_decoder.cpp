@@ -6,7 +6,7 @@
 namespace glint {
 namespace {
 
-// Each call makes progress or ends, as LZ4F_decompress() documents.
+// LZ4F_decompress() documents that each call makes progress or ends.
 bool decode_lz4(std::span<const std::uint8_t> from, std::span<std::uint8_t> to) {
   LZ4F_dctx* context = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION))) return false;

@@ -1,4 +1,4 @@
-// Chunks of MCAP files that other programs compressed: zstd, and LZ4 frames.
+// Decompresses chunks of MCAP files written by other programs: zstd and LZ4 frames.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,8 @@
 
 namespace glint {
 
-// A ChunkDecoder (platform/record/mcap_reader.hpp).
+// Implements ChunkDecoder (platform/record/mcap_reader.hpp). Returns false unless `to` is filled
+// exactly.
 [[nodiscard]] bool decode_chunk(std::string_view compression, std::span<const std::uint8_t> from,
                                 std::span<std::uint8_t> to);
 

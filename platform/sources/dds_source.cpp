@@ -21,11 +21,11 @@ namespace {
 
 constexpr int k_images_kept = 16;       // a third of a second of AHAT, 0.5 MB each
 constexpr int k_transforms_kept = 100;  // as tf2_ros
-constexpr int k_takes_max = 256;        // rounds over the topics before the clock is looked at
+constexpr int k_takes_max = 256;        // rounds over the topics per reading of the clock
 constexpr Duration k_lens_wait = milliseconds(10'000);
 constexpr Duration k_lens_poll = milliseconds(10);
 
-// Of one message: its bytes lie in one piece.
+// Serialised bytes of one message, contiguous.
 struct Packed {
   ddsi_serdata* data = nullptr;
   ddsrt_iovec_t bytes{};
@@ -42,7 +42,7 @@ struct Packed {
   }
 };
 
-// Whether there was one.
+// Takes the next message; returns false if there is none.
 bool take_packed(dds_entity_t reader, Packed& packed, dds_sample_info_t& info) {
   return dds_takecdr(reader, &packed.data, 1, &info, DDS_ANY_STATE) == 1;
 }
@@ -113,7 +113,7 @@ DdsSource::DdsSource(std::shared_ptr<Participant> participant, const Cell& cell,
   thread_ = std::thread([this] { run(); });
 }
 
-// A reader that asks for best effort has reliable publishers too.
+// A best-effort reader also matches reliable publishers.
 void DdsSource::add(Use use, const std::string& topic, bool reliable) {
   const bool is_image = use == Use::reflectivity || use == Use::depth;
   const TopicType type = is_image           ? image_type()
@@ -142,8 +142,8 @@ void DdsSource::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-// By Cyclone's thread, after each message. A reader that is full overwrites its oldest one, which
-// Cyclone counts nowhere.
+// Called on Cyclone's thread after each message. A full reader overwrites its oldest message, and
+// Cyclone does not count it.
 void DdsSource::on_message(dds_entity_t /*reader*/, void* argument) noexcept {
   Input& input = *static_cast<Input*>(argument);
   const bool is_image = input.use == Use::reflectivity || input.use == Use::depth;
@@ -171,7 +171,7 @@ bool DdsSource::take(Input& input) {
   Packed packed;
   dds_sample_info_t info;
   if (!take_packed(input.reader, packed, info)) {
-    input.waiting = 0;  // a publisher's end counted there, too
+    input.waiting = 0;  // `waiting` also counted a publisher's end
     return false;
   }
   if (!info.valid_data) return true;

@@ -1,9 +1,9 @@
-// Live frames over DDS as ROS 2's camera drivers publish them: an image topic each for reflectivity
-// and depth, CameraInfo, and the head pose by tf or a PoseStamped topic. A thread with the usual
-// scheduling takes the messages as bytes; RosFrames makes frames of them.
+// Live source of frames over DDS, as published by ROS 2 camera drivers: an image topic each for
+// reflectivity and depth, CameraInfo, and the head pose by tf or a PoseStamped topic. A thread with
+// default scheduling receives the messages as bytes; RosFrames converts them to frames.
 //
-// Cyclone takes heap for what it receives, in its own threads, and k_images_kept images of each
-// topic wait in it at most.
+// Cyclone allocates heap for received messages, in its own threads. Its queue holds at most
+// k_images_kept images of each topic.
 #pragma once
 
 #include <dds/dds.h>
@@ -26,8 +26,9 @@ namespace glint {
 
 class DdsSource final : public LiveSource {
  public:
-  // `cell.source`: dds. Waits for a CameraInfo where the cell names no lens. Throws InputError for
-  // a topic that has no name, and as Participant does; MissingDevice: no CameraInfo.
+  // Requires `cell.source` of kind dds. Waits for a CameraInfo if the cell names no lens. Throws
+  // InputError for an empty or invalid topic, and as Participant does; MissingDevice if no
+  // CameraInfo arrives.
   [[nodiscard]] static std::unique_ptr<DdsSource> open(Cell& cell, LiveSettings live);
   ~DdsSource() override;
   DdsSource(const DdsSource&) = delete;
@@ -37,7 +38,7 @@ class DdsSource final : public LiveSource {
 
  private:
   enum class Use : std::uint8_t { reflectivity, depth, pose, moving_transforms, fixed_transforms };
-  // A topic that is read.
+  // A subscribed topic.
   struct Input {
     Input(Use is_for, Release& posts) : use(is_for), is_there(posts) {}
     Use use;

@@ -37,8 +37,8 @@ FileSource::FileSource(std::unique_ptr<FrameReader> reader, const Camera& camera
   if (const std::string wrong = misfit(first.frame.pixels); !wrong.empty()) {
     throw InputError(reader_->text() + ": the first frame has " + wrong);
   }
-  // A first stamp within a second of 0 counts from the session's start, as a simulator's does.
-  // Otherwise the first frame arrives one nominal gap after it.
+  // If the first stamp is within a second of 0, stamps count from the session's start, as in a
+  // simulator. Otherwise the first frame arrives one nominal gap after the start.
   const Time begin = first.frame.mid_exposure;
   if (begin < Time{} || begin - Time{} > k_gap_counted) {
     const Duration lead{camera.period.nanoseconds - camera.transport.nanoseconds -
@@ -94,7 +94,7 @@ bool FileSource::read_usable(Slot& slot) {
   return false;
 }
 
-// What is wrong with a frame's planes; empty: they are this camera's.
+// Returns the mismatch of a frame's planes with the camera; empty if they match.
 std::string FileSource::misfit(const FrameBuffer& pixels) const {
   const int width = camera_.model.width, height = camera_.model.height;
   const std::string expected = "; expected " + size_text(width, height) + " pixels with " +
@@ -140,7 +140,7 @@ bool FileSource::wait(ArrivedFrame& arrived) {
   late_since_ns_ = INT64_MAX;
   const Slot& slot = slot_of(delivered_);
   if (slot.end) {
-    is_read_.post();  // whoever asks again gets the same answer
+    is_read_.post();  // further calls return the same
     return false;
   }
   Time arrival = slot.arrival;
@@ -150,7 +150,7 @@ bool FileSource::wait(ArrivedFrame& arrived) {
       ++late_frames_;
       arrival = now;  // the last byte is in memory only now
     }
-    // A refusal to sleep stops the tick loop, and with it the run.
+    // If sleeping fails, the tick loop stops, and with it the run.
     (void)sleep_until(clock_.epoch + (arrival - Time{}));
   }
   newest_delivered_ = arrival;

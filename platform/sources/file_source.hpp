@@ -1,5 +1,5 @@
-// Recorded frames as a source: a thread reads ahead into slots and orders the stamps; wait() hands
-// each frame over at its time (live) or at once (in order).
+// Source of recorded frames: a thread reads ahead into slots and orders the time stamps; wait()
+// returns each frame at its time (live) or at once (in order).
 #pragma once
 
 #include <atomic>
@@ -20,8 +20,8 @@ namespace glint {
 
 class FileSource final : public FrameSource {
  public:
-  // Starts to read. `duration`: frames that arrive later in the session are left out; 0: none is.
-  // Throws InputError if the first frame cannot be read, or is not of `camera`'s size and bits, or
+  // Starts reading. duration: drops frames that arrive later in the session; 0: drops none. Throws
+  // InputError if the first frame cannot be read, does not have the size and bits of `camera`, or
   // has no depth.
   FileSource(std::unique_ptr<FrameReader> reader, const Camera& camera, Duration duration = {});
   ~FileSource() override;
@@ -36,7 +36,7 @@ class FileSource final : public FrameSource {
   }
   [[nodiscard]] int late_frames() const noexcept override { return late_frames_; }
   [[nodiscard]] std::optional<Duration> unix_offset() const noexcept override;
-  // Ends the reading.
+  // Stops reading.
   [[nodiscard]] SourceReport report() override;
 
  private:
@@ -44,7 +44,7 @@ class FileSource final : public FrameSource {
     ReadFrame frame;
     Time arrival;
     std::uint64_t sequence = 0;
-    bool end = false;  // no frame: the file ends here
+    bool end = false;  // no frame: end of the file
   };
 
   void read_all() noexcept;
@@ -59,16 +59,16 @@ class FileSource final : public FrameSource {
   Duration duration_;
   SourceClock clock_;
   std::vector<Slot> slots_;
-  Release is_free_, is_read_;  // once for each slot
+  Release is_free_, is_read_;  // once per slot
   std::size_t delivered_ = 0;
   std::atomic<std::size_t> read_{0};
   std::atomic<bool> stop_{false};
   std::atomic<int> late_frames_{0};
   std::atomic<std::int64_t> late_since_ns_{INT64_MAX};
   Time newest_delivered_;  // its arrival
-  // Of the reading thread, and of report() after the end.
+  // Accessed by the reading thread, and by report() after its end.
   StampGate gate_;
-  Duration origin_;  // of the session's time, by the stamps' clock
+  Duration origin_;  // of session time, on the stamps' clock
   Time newest_arrival_;
   std::uint64_t next_sequence_ = 0, without_pose_ = 0, poses_refused_ = 0, misfits_ = 0;
   std::string first_misfit_, ended_by_;

@@ -61,7 +61,7 @@ bool ends_with(const std::string& text, std::string_view end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-// `metres`: of a raw count, for an array of floats.
+// metres: depth of one raw count, for an array of floats.
 PixelPlane read_array(const std::string& path, double metres) {
   const NpyNumbers array = read_npy_numbers(path);
   if (array.shape.size() != 2 || array.shape[0] > k_picture_side_max ||

@@ -1,11 +1,11 @@
-// Frames as a folder of pictures: frames.csv and the files that it names.
+// Reader of frames from a folder of image files, listed in frames.csv.
 //
-// First line: the columns' names, comma separated, in any order. Then a row a frame.
+// First line: comma-separated column names, in any order. Then one row per frame.
 //   time_ns      mid-exposure, ns, integer, of any clock
-//   reflectivity PGM (P5), PNG or NPY (u8, u16); 8 bits a pixel or more, as the camera's
+//   reflectivity PGM (P5), PNG or NPY (u8, u16); 8 bits per pixel or more, as the camera's
 //   depth        the same with 16 bits, in the camera's raw unit; NPY of floats: metres
 //   arrival_ns   optional: last byte in memory, same clock
-//   sequence     optional: the device's number of the frame
+//   sequence     optional: the device's frame number
 //   x_m y_m z_m qx qy qz qw   optional: T_world_camera at mid-exposure; empty: no head pose
 // Paths are relative to the folder. A row that cannot be read is counted and skipped.
 #pragma once
@@ -21,8 +21,8 @@ namespace glint {
 
 class FolderFrames final : public FrameReader {
  public:
-  // Throws InputError: no frames.csv, a first line without the three columns that are needed, or
-  // with a name that is none of the above.
+  // Throws InputError: no frames.csv, a first line without the three required columns, or with an
+  // unknown name.
   FolderFrames(const std::string& folder, const Camera& camera);
 
   [[nodiscard]] bool next(ReadFrame& frame) override;
@@ -38,8 +38,8 @@ class FolderFrames final : public FrameReader {
 
   std::string folder_, file_, text_;
   Camera camera_;
-  std::vector<int> column_;  // by place in a row: which of the known columns
-  std::size_t at_ = 0;       // of text_
+  std::vector<int> column_;  // known column of each field in a row
+  std::size_t at_ = 0;       // offset in text_
   int line_ = 0;
   std::uint64_t unreadable_ = 0;
   std::string first_unreadable_;

@@ -1,5 +1,5 @@
-// Frames one after the other out of files: what each recorded format implements. FileSource
-// (file_source.hpp) makes a source of it.
+// Interface of a reader of recorded frames, implemented by each file format. FileSource
+// (file_source.hpp) turns it into a source.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@
 
 namespace glint {
 
-// One frame by its own clock.
+// One frame, with times of the file's own clock.
 struct ReadFrame {
   FrameBuffer pixels;
   Time mid_exposure;
-  Duration stamp_sigma;                   // of it, beside the cell's; 0: the format states none
-  std::optional<Time> arrival;            // last byte in memory; nothing: as the camera declares
-  std::optional<std::uint64_t> sequence;  // nothing: counted by the source
-  HeadPose head;                          // not valid: the format has none for this frame
+  Duration stamp_sigma;                   // standard deviation, beside the cell's; 0: not stated
+  std::optional<Time> arrival;            // last byte in memory; empty: as the camera declares
+  std::optional<std::uint64_t> sequence;  // empty: counted by the source
+  HeadPose head;                          // not valid: none for this frame
 };
 
 using ReaderCounts = std::vector<std::pair<std::string, std::uint64_t>>;  // by name
@@ -30,26 +30,26 @@ class FrameReader {
  public:
   virtual ~FrameReader() = default;
 
-  // Overwrites all fields of `frame`; false: there are no more. Throws InputError for what ends the
-  // reading. A frame that cannot be read is counted and skipped.
+  // Overwrites all fields of `frame`; returns false at the end. Counts and skips a frame that
+  // cannot be read. Throws InputError if reading cannot continue.
   [[nodiscard]] virtual bool next(ReadFrame& frame) = 0;
 
-  // Frames skipped so far, and why the first of them was: path, place, found, expected.
+  // Number of skipped frames so far, and the cause of the first: path, position, found, expected.
   [[nodiscard]] virtual std::uint64_t unreadable() const { return 0; }
   [[nodiscard]] virtual std::string first_unreadable() const { return {}; }
 
-  // What else was left out, of this format's own kinds.
+  // Further counts of skipped data, with kinds of this format.
   [[nodiscard]] virtual ReaderCounts counts() const { return {}; }
 
-  // The lens that the frames came through, if it is recorded with them.
+  // The lens recorded with the frames, if any.
   [[nodiscard]] virtual std::optional<SourceLens> lens() const { return std::nullopt; }
 
-  // What the file lacks, with its path; empty: nothing. After next() returned false.
+  // Missing data of the file, with its path; empty: none. Valid after next() returned false.
   [[nodiscard]] virtual std::string missing() const { return {}; }
 
-  // For the table: "recording out/run.mcap, level roi: ...".
+  // Text for the table: "recording out/run.mcap, level roi: ...".
   [[nodiscard]] virtual std::string text() const = 0;
-  // Added to a stamp it gives Unix time; nothing: the stamps' clock has no known epoch.
+  // Plus a stamp: Unix time. Empty: the stamps' clock has no known epoch.
   [[nodiscard]] virtual std::optional<Duration> unix_offset() const { return std::nullopt; }
 };
 

@@ -1,4 +1,4 @@
-// Whether a head pose from outside can be one.
+// Validity check of a head pose from an external source.
 #pragma once
 
 #include <cmath>
@@ -7,9 +7,8 @@
 
 namespace glint {
 
-// Clears a pose that no headset has: not a rotation, not a number, or beyond 10 km, where it is in
-// another unit. Makes its quaternion unit where it was printed or rounded; a recorded one keeps its
-// bits.
+// Clears an invalid pose: not a rotation, not finite, or beyond 10 km, which indicates another
+// unit. Normalises a rounded quaternion; keeps the bits of a recorded one.
 inline void check_head_pose(HeadPose& head) {
   constexpr double k_position_max_m = 1e4;
   if (!head.valid) return;

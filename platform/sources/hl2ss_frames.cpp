@@ -21,12 +21,12 @@ namespace {
 constexpr std::string_view k_magic = "HL2SSV23";
 constexpr std::uint16_t k_port_ahat = 3804, k_port_long_throw = 3805;
 constexpr std::uint8_t k_profile_raw = 255, k_profile_z_same = 0;
-constexpr std::uint64_t k_packet_heading = 12;  // stamp, bytes of the payload
+constexpr std::uint64_t k_packet_heading = 12;  // stamp, size of the payload
 constexpr std::uint64_t k_pose_bytes = 64;
 constexpr std::uint64_t k_ahat_heading = 8, k_sensor_ticks = 8;
 constexpr std::uint64_t k_packet_bytes_max = 64 << 20;
 
-// 16 floats for row vectors: p' = p M.
+// Reads 16 floats of a matrix for row vectors: p' = p M.
 MatrixNumbers matrix_at(const std::uint8_t* from) {
   std::array<float, 16> floats;
   std::memcpy(floats.data(), from, sizeof floats);
@@ -60,7 +60,7 @@ void Hl2ssFrames::read_beginning() {
     file_.refuse(k_magic.size(), "the stream of port " + std::to_string(port),
                  "3804 (depth AHAT) or 3805 (depth long throw)");
   }
-  // mode, divisor; AHAT: profile of z and of ab, level, u32 bit rate, options; else a u32.
+  // mode, divisor; AHAT: profiles of z and of ab, level, u32 bit rate, options; otherwise a u32.
   const std::uint64_t configuration = long_throw_ ? 6 : 10;
   const std::uint64_t begin = at_;
   if (begin > file_.size() || file_.size() - begin < configuration) {
@@ -192,7 +192,7 @@ void Hl2ssFrames::read_packet(std::uint64_t at, std::uint32_t bytes, ReadFrame& 
   fill_pixels(plane_of(planes.data() + plane_bytes, "ab"), std::move(depth), camera_, frame.pixels);
 }
 
-// Rig to world; without the extrinsics it is not the camera's.
+// The file has T_world_rig; the camera's pose also requires the extrinsics.
 void Hl2ssFrames::put_head_pose(std::uint64_t at, ReadFrame& frame) const {
   if (!T_rig_camera_) return;
   Bytes bytes;

@@ -1,7 +1,7 @@
-// The frames of a recording of hl2ss (version 23): depth AHAT without compression, or long throw.
+// Reader of hl2ss recordings (version 23): depth AHAT without compression, or long throw.
 //
-// Layout: "HL2SSV23", u16 port, u32 length and as many bytes of the user's, the configuration that
-// was sent to the device, then packets as on the wire. Little endian. Source: hl2ss 9a70fad.
+// Layout: "HL2SSV23", u16 port, u32 length and that many bytes of user data, the configuration sent
+// to the device, then packets as on the wire. Little endian. Source: hl2ss 9a70fad.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ namespace glint {
 
 class Hl2ssFrames final : public FrameReader {
  public:
-  // `source.calibration`: of the same device, as its server sends it; without it there is no head
-  // pose, which the recording has of the rig alone. Throws InputError: another file or version,
-  // another stream, or one that was compressed.
+  // `source.calibration`: calibration of the same device, as its server sends it. Without it there
+  // is no head pose, since the recording contains only the rig's. Throws InputError: another file
+  // or version, another stream, or a compressed one.
   Hl2ssFrames(const SourceSettings& source, const Camera& camera);
 
   [[nodiscard]] bool next(ReadFrame& frame) override;
@@ -42,7 +42,7 @@ class Hl2ssFrames final : public FrameReader {
   bool long_throw_ = false;
   bool with_pose_ = false;
   std::optional<Pose> T_rig_camera_;
-  std::uint64_t at_ = 0;  // of the next packet
+  std::uint64_t at_ = 0;  // offset of the next packet
   std::uint64_t empty_ = 0, unreadable_ = 0;
   std::string first_unreadable_, missing_;
   Bytes packet_;

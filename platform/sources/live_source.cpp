@@ -42,7 +42,7 @@ bool LiveSource::wait(ArrivedFrame& arrived) {
   for (;;) {
     const Time now = monotonic_now();
     if (is_over(now)) {
-      ended_ = true;  // what comes from now on is not missed
+      ended_ = true;  // later frames do not count as dropped
       return false;
     }
     if (is_read_.wait_until(now + k_live_poll)) break;

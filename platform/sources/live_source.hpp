@@ -1,5 +1,5 @@
-// What all live sources have in common: slots that a reading thread fills and the tracker empties,
-// and the map from the stamps' clock to the session's.
+// Base class of live sources: slots filled by a reading thread and emptied by the tracker, and the
+// map from the stamps' clock to session time.
 #pragma once
 
 #include <atomic>
@@ -16,30 +16,30 @@
 
 namespace glint {
 
-inline constexpr std::size_t k_live_frames = 8;  // that wait for the tracker
-// Until the end of a run is noticed.
+inline constexpr std::size_t k_live_frames = 8;  // capacity of frames that wait for the tracker
+// Period of checks for the end of a run.
 inline constexpr Duration k_live_poll = milliseconds(50);
 
 struct LiveSettings {
   Duration duration;                        // of the run; 0: until it is stopped
-  const std::atomic<bool>* stop = nullptr;  // set: the run ends
-  std::int64_t frames = 0;                  // the run ends after so many; 0: it does not
+  const std::atomic<bool>* stop = nullptr;  // true: ends the run
+  std::int64_t frames = 0;                  // ends the run after this number; 0: no limit
 };
 
 class LiveSource : public FrameSource {
  public:
   LiveSource(const Camera& camera, LiveSettings settings);
 
-  // Throws InputError: no live clock.
+  // Throws InputError if the clock is not live.
   void start(const SourceClock& clock) override;
   [[nodiscard]] bool wait(ArrivedFrame& arrived) override;
   void give_back(const ArrivedFrame& /*arrived*/) noexcept override { ++given_back_; }
   [[nodiscard]] Duration duration() const noexcept override { return settings_.duration; }
   [[nodiscard]] double delivered_part() const noexcept override;
 
-  // All that follows is of the reading thread, and of report() after its end.
+  // The rest is for the reading thread, and for report() after its end.
 
-  // The pixels of a frame, of the camera's size.
+  // Pixels of a frame, of the camera's size.
   struct Slot {
     FrameBuffer pixels;
     Time mid_exposure, arrival;
@@ -47,22 +47,23 @@ class LiveSource : public FrameSource {
     HeadPose head;
   };
   [[nodiscard]] const Camera& camera() const { return camera_; }
-  // Another producer may have another clock.
+  // Call when a producer connects: its clock may differ.
   void restart_clock();
-  // Whether a stamp comes after `newest`, which it then is; counted where not. One that lies far
-  // before it may be of a clock that was set: the map decides.
+  // If the stamp is newer than `newest`, stores it there and returns true; otherwise counts it. A
+  // stamp far before `newest` may be of a clock that was set back: it is accepted here and the
+  // clock map decides.
   [[nodiscard]] bool ascends(Time stamp, Time& newest);
-  // A frame's mid-exposure by the session's clock; nothing: the stamp is refused and counted, or
-  // lies before the session.
+  // Returns the mid-exposure in session time; empty if the stamp is refused (counted) or before the
+  // session.
   [[nodiscard]] std::optional<Time> exposure_of(Time stamp, Time arrival);
-  // For the next frame; null: all are with the tracker, and drop() counts the frame.
+  // Returns the slot for the next frame; null if the tracker holds all. drop() counts a lost frame.
   [[nodiscard]] Slot* room();
   void drop() { dropped_ += ended_ ? 0 : 1; }
-  // Hands over the slot of room(). `arrival`: monotonic. A head pose that no headset has is cleared
-  // and counted.
+  // Publishes the slot of room(). arrival: monotonic clock. An invalid head pose is cleared and
+  // counted.
   void publish(Time mid_exposure, Time arrival, const HeadPose& head);
   [[nodiscard]] std::uint64_t published() const { return written_; }
-  // What was counted here, and what was lost.
+  // Adds the counts and the failures of this class to the report.
   void add_to(SourceReport& report) const;
 
  private:

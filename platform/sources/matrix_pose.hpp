@@ -1,4 +1,4 @@
-// Rigid transforms out of 4x4 matrices in files.
+// Converts 4x4 matrices from files to rigid transforms.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@ namespace glint {
 
 using MatrixNumbers = std::array<double, 16>;
 
-// Row by row, for column vectors: the translation is the last column. Nothing: no rigid transform
+// Row-major, for column vectors: the translation is the last column. Empty if not a rigid transform
 // within the precision of floats.
 [[nodiscard]] inline std::optional<Pose> pose_of_matrix(const MatrixNumbers& m) {
   constexpr double k_orthogonal = 1e-3;

@@ -1,4 +1,4 @@
-// The kinds of live frames by name. A new kind is one line here and one in the CMake list.
+// Factory of live sources by kind. A new kind adds one line here and one in the CMake list.
 #pragma once
 
 #include <memory>
@@ -9,12 +9,12 @@
 
 namespace glint {
 
-// "dds, shm".
+// Returns "dds, shm".
 [[nodiscard]] std::string live_kinds();
 
-// What `[source]` names; null: none of these kinds. The cell takes the lens that comes with the
-// frames where it names none. Throws InputError: a run that is not in real time, no lens, and what
-// the kind throws.
+// Opens the live source named by `[source]`; null for other kinds. The cell takes the lens of the
+// frames if it names none. Throws InputError: a run that is not in real time, no lens, and the
+// errors of the kind.
 [[nodiscard]] std::unique_ptr<LiveSource> open_live_source(Cell& cell, LiveSettings live);
 
 }  // namespace glint

@@ -38,7 +38,7 @@ bool is_mcap(const std::string& path) {
   return !fs::is_directory(path) && begins_with(path, magic);
 }
 
-// A file that is damaged is Glint's own until its reader states otherwise.
+// Treats a damaged file as Glint's own, so that its reader reports the damage.
 bool is_of_another_program(const std::string& path) {
   try {
     return !McapReader(path, McapEnding::optional).metadata().contains(k_opening_metadata);

@@ -1,4 +1,4 @@
-// The kinds of recorded frames by name. A new kind is one line here and one in the CMake list.
+// Factory of recorded sources by kind. A new kind adds one line here and one in the CMake list.
 #pragma once
 
 #include <memory>
@@ -11,17 +11,16 @@
 
 namespace glint {
 
-// "folder, hl2ss_file, ...".
+// Returns "folder, hl2ss_file, ...".
 [[nodiscard]] std::string recorded_kinds();
 
-// The kind of what stands at a path; empty: none of them.
+// Returns the kind of the file or folder at `path`; empty if unknown.
 [[nodiscard]] std::string kind_at(const std::string& path);
 
-// What `[source]` names, for frames of the cell's camera; null for the simulator. `live.duration`
-// holds for recorded frames, too. The cell takes the lens that is recorded with the frames where it
-// names none. Throws InputError: an unknown
-// kind, no path, no lens, a live kind for a run in order, and what the kind's reader and FileSource
-// throw.
+// Opens the source named by `[source]`, for frames of the cell's camera; null for the simulator.
+// `live.duration` also limits recorded frames. The cell takes the lens recorded with the frames if
+// it names none. Throws InputError: an unknown kind, no path, no lens, a live kind for a run in
+// order, and the errors of the kind's reader and of FileSource.
 [[nodiscard]] std::unique_ptr<FrameSource> open_source(Cell& cell, ReadTolerance tolerance = {},
                                                        LiveSettings live = {});
 

@@ -1,4 +1,4 @@
-// Planes of reflectivity and depth as files and messages have them, made into a camera's frame.
+// Converts planes of reflectivity and depth from files and messages to a camera's frame.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,10 @@ struct PixelPlane {
   std::string name;                   // of its file or topic, for messages
 };
 
-// The raw count nearest to a depth, metres; 0, "none", for what no count can state.
+// Returns the raw count nearest to a depth in metres; 0 (none) outside of the representable range.
 [[nodiscard]] std::uint16_t raw_depth(double metres, double unit_m);
 
-// Throws InputError: planes of two sizes, or a reflectivity above what the camera's bits hold.
+// Throws InputError: planes of different size, or reflectivity beyond the camera's bits.
 void fill_pixels(PixelPlane reflectivity, PixelPlane depth, const Camera& camera,
                  FrameBuffer& pixels);
 

@@ -1,4 +1,4 @@
-// The frames of one of Glint's recordings (MCAP, levels full and roi).
+// Reader of frames from Glint's own recordings (MCAP, levels full and roi).
 #pragma once
 
 #include "platform/record/recording_reader.hpp"
@@ -8,7 +8,7 @@ namespace glint {
 
 class RecordingFrames final : public FrameReader {
  public:
-  // Throws InputError for what is no recording, or holds no frames (levels blobs and outputs).
+  // Throws InputError if the file is no recording or has no frames (levels blobs and outputs).
   explicit RecordingFrames(const std::string& path, ReadTolerance tolerance = {});
 
   [[nodiscard]] bool next(ReadFrame& frame) override;
@@ -20,7 +20,7 @@ class RecordingFrames final : public FrameReader {
  private:
   std::string path_;
   mutable RecordingReader reader_;
-  HeadPose head_;  // stands in front of its frame
+  HeadPose head_;  // precedes its frame
 };
 
 }  // namespace glint

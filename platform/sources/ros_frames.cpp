@@ -10,7 +10,7 @@
 namespace glint {
 namespace {
 
-constexpr std::size_t k_live_images_waiting_max = 8;  // without a partner, a topic
+constexpr std::size_t k_live_images_waiting_max = 8;  // without a partner, per topic
 constexpr std::size_t k_complete_max = 4;
 constexpr std::size_t k_frame_name_max = 255;
 
@@ -27,7 +27,7 @@ RosFrames::RosFrames(LiveSource& frames, const SourceSettings& source)
       world_(source.world_frame) {
   streams_[0].topic = source.reflectivity_topic;
   streams_[1].topic = source.depth_topic;
-  // All that wait, and one of each topic in work.
+  // All waiting images, and one per topic in progress.
   spare_.resize(2 * (k_live_images_waiting_max + k_complete_max + 2));
   for (Image& image : spare_) {
     image.frame.reserve(k_frame_name_max);
@@ -38,7 +38,7 @@ RosFrames::RosFrames(LiveSource& frames, const SourceSettings& source)
   world_.reserve(k_frame_name_max);
 }
 
-// One publisher a topic at a time. Another one that follows it has another clock, maybe.
+// Accepts one publisher per topic at a time. Its successor may have another clock.
 bool RosFrames::is_publisher(Stream& stream, ImageKind kind, std::uint64_t publisher,
                              Time arrival) {
   if (stream.publisher != publisher) {
@@ -129,7 +129,8 @@ std::string_view RosFrames::camera_of(const Pair& pair) const {
   return pose_topic_.empty() ? std::string_view(pair.reflectivity.frame) : pose_topic_;
 }
 
-// Its transforms end before it, and not long before it.
+// Returns true if the newest transform is before the frame, by at most k_transform_gap_max: a later
+// one may follow.
 bool RosFrames::may_get_pose(const Pair& pair) const {
   if (world_.empty()) return false;
   const std::optional<Time> until = transforms_.known_until(world_, camera_of(pair));
@@ -181,7 +182,7 @@ void RosFrames::take_transforms(std::span<const std::uint8_t> message, bool fixe
   add_ros_transforms(message, fixed, transforms_);
 }
 
-// The world is the frame of the first pose, unless it is named.
+// The frame of the first pose is the world, unless the cell names it.
 void RosFrames::take_pose(std::span<const std::uint8_t> message) {
   const std::string_view frame = add_ros_pose(message, pose_topic_, transforms_);
   if (frame.empty()) ++poses_broken_;

@@ -1,8 +1,8 @@
-// ROS 2's messages as they arrive, made into a live source's frames: images are checked, paired by
-// their stamps, given their head pose and handed over in order.
+// Converts ROS 2 messages to frames of a live source: checks images, pairs them by time stamp, adds
+// the head pose and publishes the frames in order.
 //
-// No heap after the constructor for a message that is taken, but for a transform's first (see
-// TransformTree); a refusal takes some for its text.
+// No heap after the constructor for accepted messages, except for a transform's first (see
+// TransformTree). A refusal allocates its text.
 #pragma once
 
 #include <cstddef>
@@ -20,29 +20,29 @@
 
 namespace glint {
 
-// A frame whose transforms are on their way waits for them, at most so many nominal gaps.
+// Maximum wait of a frame for its transforms, in nominal gaps.
 inline constexpr int k_pose_wait_gaps = 2;
-// An image of another publisher is taken once the topic's own has been silent for this long: more
-// than a camera's longest gap, less than another process takes to start.
+// Accepts another publisher after the topic's own is silent for this long: longer than a camera's
+// longest gap, shorter than the start of another process.
 inline constexpr Duration k_publisher_silent = milliseconds(300);
 
 class RosFrames {
  public:
-  // `source`: its topics and world_frame. The head pose is T_world_camera: of the pose topic, or of
-  // tf from the world_frame to the images' frame; there is none where neither is named.
+  // source: topics and world_frame. The head pose T_world_camera is from the pose topic, or from tf
+  // between world_frame and the images' frame; none if neither is named.
   RosFrames(LiveSource& frames, const SourceSettings& source);
 
-  // `publisher`: any number of its own. `arrival`: monotonic.
+  // publisher: any unique number. arrival: monotonic clock.
   void take_image(std::span<const std::uint8_t> message, ImageKind kind, std::uint64_t publisher,
                   Time arrival);
   void take_transforms(std::span<const std::uint8_t> message, bool fixed);
   void take_pose(std::span<const std::uint8_t> message);
-  // A message that is refused unread: how, and what was expected.
+  // Counts a message that is refused unread. why: found and expected.
   void refuse(const std::string& why);
 
-  // Hands over the frames that wait for nothing more.
+  // Publishes the oldest frames as long as each has its head pose, cannot get one, or is due.
   void hand_over(Time now);
-  // When hand_over() is due though nothing arrives; far away: never.
+  // Time at which hand_over() is due without a new message; INT64_MAX if no frame waits.
   [[nodiscard]] Time due() const;
   [[nodiscard]] std::uint64_t publishers() const { return publishers_; }
   void add_to(SourceReport& report) const;
@@ -50,7 +50,7 @@ class RosFrames {
  private:
   struct Image {
     Time stamp, arrival;
-    std::string frame;                  // with room for k_frame_name_max
+    std::string frame;                  // reserves k_frame_name_max
     std::vector<std::uint16_t> values;  // of the camera's size
   };
   struct Stream {
@@ -77,7 +77,7 @@ class RosFrames {
   std::vector<Image> spare_;
   std::vector<Pair> complete_;  // wait for their head pose, oldest first
   TransformTree transforms_{TransformHistory::newest};
-  std::string pose_topic_, world_;  // empty: none, and not known
+  std::string pose_topic_, world_;  // empty: none; unknown
   std::uint64_t publishers_ = 0, foreign_ = 0, refused_ = 0, unpaired_ = 0, poses_late_ = 0,
                 poses_broken_ = 0;
   std::string first_refusal_;

@@ -17,7 +17,7 @@
 namespace glint {
 namespace {
 
-constexpr std::size_t k_distortion_max = 64;  // numbers in a CameraInfo
+constexpr std::size_t k_distortion_max = 64;  // coefficients in a CameraInfo
 
 [[noreturn]] void fail(const std::string& topic, const std::string& found,
                        const std::string& expected) {
@@ -33,7 +33,7 @@ RosHeader header_of(CdrReader& from) {
 
 struct Encoding {
   std::string_view name;
-  std::size_t bytes;  // of a pixel
+  std::size_t bytes;  // per pixel
   bool metres;
 };
 constexpr Encoding k_encodings[] = {{"mono8", 1, false},
@@ -56,8 +56,8 @@ double distorted_radius(double r, const std::array<double, 8>& d) {
          (1 + r2 * (d[5] + r2 * (d[6] + r2 * d[7])));
 }
 
-// The tangent up to which the distortion grows with the angle, and no further than the picture's
-// farthest corner: beyond, the polynomials mean nothing.
+// Returns the tangent of the field angle up to which the distorted radius increases, limited to the
+// image's farthest corner. Beyond it the polynomials are invalid.
 double field_tangent_of(const std::array<double, 8>& d, double corner) {
   constexpr double step = 1e-3, farthest = 10;
   double r = 0, radius = 0;

@@ -1,4 +1,4 @@
-// ROS 2's images and lenses by their messages' bytes: sensor_msgs/Image and CameraInfo.
+// Parser of ROS 2 messages with images and lenses: sensor_msgs/Image and CameraInfo.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +16,11 @@ struct RosHeader {
   std::string frame;
 };
 
-// Of any message that begins with one. Throws InputError for bytes that are too short.
+// For any message that begins with a header. Throws InputError if the bytes are too short.
 [[nodiscard]] RosHeader ros_header_of(std::span<const std::uint8_t> message,
                                       const std::string& topic);
 
-// An image as it lies in its message, which it borrows.
+// View of an image in its message; does not own the bytes.
 struct RosImageView {
   Time stamp;
   std::string_view frame, encoding;
@@ -30,11 +30,11 @@ struct RosImageView {
   std::span<const std::uint8_t> rows;
 };
 
-// Of mono8, 8UC1, mono16, 16UC1 or 32FC1; takes no heap. Throws InputError: another encoding, rows
-// shorter than the width, bytes that are not whole.
+// Accepts mono8, 8UC1, mono16, 16UC1 or 32FC1; allocates no heap. Throws InputError: another
+// encoding, rows shorter than the width, incomplete bytes.
 [[nodiscard]] RosImageView ros_image_view(std::span<const std::uint8_t> message,
                                           const std::string& topic);
-// Row by row, width x height values; of 32FC1, in metres, the raw count that has `unit_m`.
+// Writes width x height values row by row; for 32FC1 (metres) the raw count in `unit_m`.
 void read_values(const RosImageView& image, double unit_m, std::span<std::uint16_t> values);
 
 struct RosImage {
@@ -42,15 +42,15 @@ struct RosImage {
   PixelPlane plane;
 };
 
-// The same with values of its own.
+// Same, with its own values.
 [[nodiscard]] RosImage ros_image_of(std::span<const std::uint8_t> message, double unit_m,
                                     const std::string& topic);
 
-// The CameraInfo that belongs to an image topic by ROS's custom: /ir/image, /ir/camera_info.
+// Returns the CameraInfo topic of an image topic by ROS's convention: /ir/image, /ir/camera_info.
 [[nodiscard]] std::string camera_info_beside(const std::string& topic);
 
-// The file of `glint calibrate camera` that a CameraInfo amounts to. ROS has pixel centres at whole
-// numbers, Glint at half ones. Throws InputError: another distortion model than plumb_bob and
+// Converts a CameraInfo to the text of a file of `glint calibrate camera`. ROS has pixel centres at
+// integers, Glint at integers + 0.5. Throws InputError: a distortion model other than plumb_bob and
 // rational_polynomial, no calibration, binning or a region of interest.
 [[nodiscard]] std::string lens_text_of_camera_info(std::span<const std::uint8_t> message,
                                                    const std::string& topic);

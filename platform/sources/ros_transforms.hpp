@@ -1,4 +1,4 @@
-// ROS 2's transforms and poses by their messages' bytes: tf2_msgs/TFMessage, PoseStamped.
+// Parser of ROS 2 messages with transforms and poses: tf2_msgs/TFMessage, PoseStamped.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,11 @@
 
 namespace glint {
 
-// What is not whole ends a message; the transforms before it hold. `fixed`: of tf_static.
+// Adds transforms up to the first incomplete one. fixed: from tf_static.
 void add_ros_transforms(std::span<const std::uint8_t> message, bool fixed, TransformTree& to);
 
-// The pose of `child` in the message's frame, which it returns; empty: a message that is not whole.
+// Adds the pose of `child` in the message's frame and returns that frame; empty for an incomplete
+// message.
 std::string_view add_ros_pose(std::span<const std::uint8_t> message, std::string_view child,
                               TransformTree& to);
 

@@ -13,7 +13,7 @@
 namespace glint {
 namespace {
 
-constexpr std::size_t k_waiting_max = 16;  // images without a partner, a topic
+constexpr std::size_t k_waiting_max = 16;  // images without a partner, per topic
 constexpr std::int64_t k_unix_from_ns = 1'000'000'000'000'000'000;  // 2001: smaller is no Unix time
 
 constexpr const char* k_image_type = "sensor_msgs/msg/Image";
@@ -35,7 +35,7 @@ std::vector<std::string> files_of(const std::string& path) {
   return files;
 }
 
-// The frame of a pose topic's camera, for the tree of transforms.
+// Name of a pose topic's camera frame in the transform tree.
 std::string camera_of(const std::string& topic) { return "the camera of " + topic; }
 
 Time logged(const McapMessage& message) {
@@ -123,7 +123,7 @@ void RosbagFrames::scan(const McapMessage& message) {
   }
 }
 
-// Named ones, or: the only one with "depth" in its name, and the only other one.
+// Default: the only topic with "depth" in its name, and the only other one.
 void RosbagFrames::choose_topics() {
   std::string &bright = source_.reflectivity_topic, &depth = source_.depth_topic;
   const auto only = [&](auto&& wanted) {
@@ -215,7 +215,7 @@ bool RosbagFrames::next(ReadFrame& frame) {
   return false;
 }
 
-// Whether the image has a partner.
+// Returns true if the image has a partner; otherwise it waits.
 bool RosbagFrames::pair_up(Image arrived, ImageKind kind, ReadFrame& frame) {
   const Time stamp = arrived.image.header.stamp;
   std::optional<Image> partner = pairs_.partner_of(kind, stamp);
@@ -233,8 +233,9 @@ Duration RosbagFrames::least_delay() const {
                   images_.at(source_.depth_topic).least_delay);
 }
 
-// Whether stamps and log times are of two clocks: no delay is less than 0, and none of a camera's
-// that works is always longer than its transport and a frame.
+// Returns true if stamps and log times are of different clocks: a delay is negative, or the
+// smallest delay exceeds the declared one by more than a frame period, impossible for a working
+// camera.
 bool RosbagFrames::clocks_differ() const {
   const Duration least = least_delay();
   return least < Duration{} || least > declared_delay() + camera_.period;

@@ -1,6 +1,7 @@
-// The frames of a ROS 2 bag (MCAP) of another program: two image topics, paired by their stamps.
+// Reader of frames from a ROS 2 bag (MCAP) of another program: two image topics, paired by time
+// stamp.
 //
-// The bag is read twice: for transforms and lenses, then for its images.
+// Reads the bag twice: first transforms and lenses, then images.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +24,7 @@ namespace glint {
 class RosbagFrames final : public FrameReader {
  public:
   // `source.path`: an MCAP file, or a folder of them in the order of their numbers. Throws
-  // InputError: no such topic, or none named where the bag leaves a choice; it lists those there
-  // are.
+  // InputError that lists the topics: no such topic, or none named and the choice is ambiguous.
   RosbagFrames(const SourceSettings& source, const Camera& camera, ReadTolerance tolerance);
 
   [[nodiscard]] bool next(ReadFrame& frame) override;
@@ -70,7 +70,7 @@ class RosbagFrames final : public FrameReader {
   std::unique_ptr<McapReader> file_;
   std::map<std::string, ImageTopic> images_;        // by topic
   std::map<std::string, Bytes> infos_;              // the first CameraInfo of each topic
-  std::map<std::string, std::string> pose_frames_;  // of PoseStamped topics: their frame
+  std::map<std::string, std::string> pose_frames_;  // frame of each PoseStamped topic
   TransformTree transforms_;
   std::string world_, camera_frame_;  // empty: no head pose
   StampPairs<Image> pairs_;

@@ -34,7 +34,7 @@ sim::Scenario scenario_of(const Cell& cell, const Cell& drawn) {
   device.simulator = cell.simulator;
   device.simulator.drawn.clear();
   sim::Scenario scenario = scenario_of(device);
-  // A tool's axes are those of its file, as its markers lie.
+  // A tool's axes are those of its file, aligned by a rigid fit of the markers.
   for (std::size_t i = 0; i < scenario.tools.size(); ++i) {
     const Tool& stated = cell.tools.items[i];
     sim::ToolBody& body = scenario.tools[i];

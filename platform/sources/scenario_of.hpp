@@ -1,4 +1,4 @@
-// The simulator's scenario that a cell asks for.
+// Builds the simulator's scenario from a cell.
 #pragma once
 
 #include "platform/cells/cell.hpp"
@@ -6,11 +6,11 @@
 
 namespace glint {
 
-// Throws InputError for a trajectory or background file that cannot be used.
+// Throws InputError for an unusable trajectory or background file.
 [[nodiscard]] sim::Scenario scenario_of(const Cell& cell);
 
-// The device and the tools that another cell's statements draw, of which `cell` states what their
-// calibrations found: each tool's axes and tip are where `cell` has them. Throws InputError: a tool
+// Builds the scenario with the device and tools of `drawn` as ground truth; `cell` states the
+// results of their calibrations. Tool axes and tips are those of `cell`. Throws InputError: a tool
 // with another number of markers.
 [[nodiscard]] sim::Scenario scenario_of(const Cell& cell, const Cell& drawn);
 

@@ -22,11 +22,11 @@
 namespace glint {
 namespace {
 
-constexpr std::uint32_t k_slots_max = 64;  // of a producer
+constexpr std::uint32_t k_slots_max = 64;  // per producer
 
 constexpr Duration k_hello_within = milliseconds(1000);
 
-constexpr std::int64_t k_stamp_max_ns = 4'000'000'000'000'000'000;  // differences of two fit
+constexpr std::int64_t k_stamp_max_ns = 4'000'000'000'000'000'000;  // the difference of two fits
 
 class Descriptor {
  public:
@@ -83,7 +83,8 @@ Descriptor seqpacket() {
   return Descriptor(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
 }
 
-// Of a process that has ended; one that lives is refused, and so is what is no socket.
+// Removes the socket of a process that has ended. Throws InputError for the socket of a running
+// process and for another kind of file.
 void remove_stale(const std::string& path, const sockaddr_un& address) {
   struct stat state {};
   if (::lstat(path.c_str(), &state) != 0) return;
@@ -97,7 +98,7 @@ void remove_stale(const std::string& path, const sockaddr_un& address) {
   ::unlink(path.c_str());
 }
 
-// The descriptor that came with a message; it belongs to the caller.
+// Returns the descriptor sent with a message, -1 if none; the caller closes it.
 int descriptor_in(msghdr& message) {
   for (cmsghdr* head = CMSG_FIRSTHDR(&message); head != nullptr;
        head = CMSG_NXTHDR(&message, head)) {
@@ -114,7 +115,7 @@ int descriptor_in(msghdr& message) {
 
 struct ShmSource::Producer {
   Descriptor socket;
-  std::optional<Mapping> memory;  // nothing: before its hello
+  std::optional<Mapping> memory;  // empty: before its hello
   Time connected;
   std::uint32_t slots = 0;
   std::uint64_t slot_bytes = 0;
@@ -177,7 +178,7 @@ void ShmSource::refuse_producer(const std::string& why, int socket) {
   if (first_refusal_.empty()) first_refusal_ = reply.refused;
 }
 
-// A hello first, frames after it; whatever else ends the connection.
+// Expects one hello, then frames; any other message ends the connection.
 void ShmSource::read_message(std::optional<Producer>& producer) {
   alignas(8) char bytes[256];
   alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))];
@@ -247,7 +248,7 @@ void ShmSource::read_message(std::optional<Producer>& producer) {
   newest_stamp_ = {INT64_MIN};
 }
 
-// False: the producer wrote meanwhile.
+// Returns false if the producer wrote during the copy (sequence lock).
 bool ShmSource::copy_pixels(const Producer& producer, std::uint32_t slot, Slot& to) const {
   const char* const from = producer.memory->data() + slot * producer.slot_bytes;
   const auto* const writes = reinterpret_cast<const std::uint64_t*>(from);

@@ -1,6 +1,6 @@
-// Live frames of another process through shared memory: a Unix socket passes the memory and, for
-// each frame, the number of its slot (glint_frames.h, for producers). A thread copies the frame and
-// hands it over.
+// Live source of frames from another process through shared memory. A Unix socket passes the memory
+// and each frame's slot number (glint_frames.h, for producers). A thread copies the frame and
+// publishes it.
 #pragma once
 
 #include <atomic>
@@ -15,7 +15,7 @@ namespace glint {
 
 class ShmSource final : public LiveSource {
  public:
-  // Listens at `path`. Throws InputError: no socket can be made there, or another process has it.
+  // Listens at `path`. Throws InputError if the socket cannot be created or another process has it.
   ShmSource(const std::string& path, const Camera& camera, LiveSettings settings);
   ~ShmSource() override;
   ShmSource(const ShmSource&) = delete;
@@ -24,7 +24,7 @@ class ShmSource final : public LiveSource {
   [[nodiscard]] SourceReport report() override;
 
  private:
-  // A producer that is connected.
+  // A connected producer.
   struct Producer;
 
   void run() noexcept;
@@ -38,7 +38,7 @@ class ShmSource final : public LiveSource {
   std::string path_;
   int listener_ = -1;
   std::atomic<bool> stop_{false};
-  // Of the reading thread, and of report() after the end.
+  // Accessed by the reading thread, and by report() after its end.
   Time newest_stamp_;
   std::uint64_t connected_ = 0, refused_ = 0, torn_ = 0, skipped_ = 0, malformed_ = 0;
   std::string first_refusal_;

@@ -18,8 +18,8 @@ constexpr auto k_poll = std::chrono::microseconds(200);
 constexpr auto k_fill_poll = std::chrono::milliseconds(5);
 constexpr auto k_fill_limit = std::chrono::seconds(30);
 constexpr int k_slots_min = 24;               // half a second at 45 Hz, 1 MB each for AHAT
-constexpr double k_least_ahead_s = 4;         // of frames; a run this short is rendered whole
-constexpr double k_memory_part = 0.25;        // of what is available
+constexpr double k_least_ahead_s = 4;         // of frames; a shorter run is rendered completely
+constexpr double k_memory_part = 0.25;        // of the available memory
 constexpr double k_memory_bytes_max = 1.0e9;  // 21 s of AHAT at 45 Hz
 constexpr unsigned k_renderers_max = 2;
 
@@ -46,7 +46,7 @@ int slots_for(const sim::Simulator& simulator, bool live) {
   return std::max(k_slots_min, std::min(fit, simulator.frame_count()));
 }
 
-// More threads get more of a machine that others keep busy.
+// More threads get a larger share of a loaded machine.
 unsigned renderers() {
   return std::clamp(std::thread::hardware_concurrency(), 1u, k_renderers_max);
 }
@@ -67,7 +67,7 @@ SimulatedSource::~SimulatedSource() {
   for (std::thread& renderer : renderers_) renderer.join();
 }
 
-// A refusal to sleep stops the tick loop, and with it the run.
+// If sleeping fails, the tick loop stops, and with it the run.
 void SimulatedSource::sleep_until(Time time) const {
   if (clock_.live) (void)glint::sleep_until(clock_.epoch + (time - Time{}));
 }
@@ -85,17 +85,17 @@ void SimulatedSource::render_all() {
   }
 }
 
-// The frames are handed over in their order, whichever renderer is done first.
+// Publishes the frames in order, independent of which renderer finishes first.
 void SimulatedSource::put(int number, sim::SimFrame& frame) {
   Slot& slot = slot_of(number);
   std::swap(slot.pixels, frame.pixels);
   slot.mid_exposure = frame.mid_exposure;
   slot.sequence = frame.sequence;
   slot.head = frame.head;
-  truths_[static_cast<std::size_t>(number)] = frame.truth;  // here, for it allocates
+  truths_[static_cast<std::size_t>(number)] = frame.truth;  // allocates: not under the lock
   const std::lock_guard lock(order_);
   slot.rendered = true;
-  // At most as many as there are renderers: the others' frames wait in front.
+  // At most as many iterations as there are renderers: the other frames wait for earlier ones.
   while (rendered_count_ < simulator_.frame_count() && slot_of(rendered_count_).rendered) {
     slot_of(rendered_count_).rendered = false;
     ++rendered_count_;
@@ -122,7 +122,7 @@ void SimulatedSource::prepare(const std::function<bool(int, int)>& go_on) {
     if (rendered >= wanted || taken > k_fill_limit || (go_on && !go_on(rendered, wanted))) break;
     std::this_thread::sleep_for(k_fill_poll);
   }
-  // From here on each frame that is given back makes room for one.
+  // From here on each returned frame makes room for one.
   ahead_max_ = std::clamp(rendered_count_.load(), std::min(k_slots_min, ahead_max_.load()),
                           ahead_max_.load());
 }
@@ -130,7 +130,7 @@ void SimulatedSource::prepare(const std::function<bool(int, int)>& go_on) {
 bool SimulatedSource::wait(ArrivedFrame& arrived) {
   const int number = delivered_;
   if (number == simulator_.frame_count()) {
-    late_since_ns_ = INT64_MAX;  // nothing is due any more
+    late_since_ns_ = INT64_MAX;  // no further frame is due
     return false;
   }
   Time arrival = simulator_.timing(number).arrival;

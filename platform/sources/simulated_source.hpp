@@ -1,5 +1,5 @@
-// Simulated frames that arrive when a camera's would. Threads of its own render ahead into a ring
-// of slots, so that a frame's pixels are in memory before the moment they are due.
+// Source of simulated frames with the arrival times of a camera. Its own threads render ahead into
+// a ring of slots, so that a frame's pixels are in memory before it is due.
 #pragma once
 
 #include <atomic>
@@ -16,23 +16,23 @@
 namespace glint {
 
 struct SimulatedSourceSettings {
-  bool live = false;    // render as far ahead as fill() finds necessary
-  Duration frame_time;  // the source needs so long for each frame from when it is due: a slow one
+  bool live = false;    // render ahead as far as prepare() requires
+  Duration frame_time;  // emulates a slow source: time per frame from its due time
 };
 
 class SimulatedSource final : public FrameSource {
  public:
-  // Starts to render.
+  // Starts rendering.
   explicit SimulatedSource(const sim::Simulator& simulator, SimulatedSourceSettings settings = {});
   ~SimulatedSource() override;
   SimulatedSource(const SimulatedSource&) = delete;
   SimulatedSource& operator=(const SimulatedSource&) = delete;
 
-  // Blocks until so many frames wait that the rest will be rendered in time even if the machine
-  // becomes half as fast; a short run is rendered whole. At most k_fill_limit, and as far as memory
-  // goes.
+  // Blocks until the rendered frames suffice for the rest to be rendered in time at half of the
+  // present speed; a short run is rendered completely. Limits: k_fill_limit and the available
+  // memory.
   void prepare(const std::function<bool(int, int)>& go_on) override;
-  // In order, frames are stamped with their simulated arrival.
+  // Without a live clock, frames are stamped with their simulated arrival.
   void start(const SourceClock& clock) override { clock_ = clock; }
 
   [[nodiscard]] bool wait(ArrivedFrame& arrived) override;
@@ -41,7 +41,7 @@ class SimulatedSource final : public FrameSource {
     return now.nanoseconds >= late_since_ns_.load(std::memory_order_relaxed);
   }
 
-  // Frames that were not rendered by the time they were due: the machine was too slow.
+  // Number of frames rendered after their due time: the machine was too slow.
   [[nodiscard]] int late_frames() const noexcept override { return late_frames_; }
   [[nodiscard]] std::size_t frame_count() const noexcept override { return truths_.size(); }
   [[nodiscard]] Duration duration() const noexcept override {
@@ -54,13 +54,13 @@ class SimulatedSource final : public FrameSource {
   }
 
  private:
-  // Until its frame was given back a slot belongs to the frame group.
+  // A slot belongs to the frame group until its frame is given back.
   struct Slot {
     FrameBuffer pixels;
     Time mid_exposure;
     std::uint32_t sequence = 0;
     HeadPose head;
-    bool rendered = false;  // by `order_`
+    bool rendered = false;  // protected by `order_`
   };
 
   void render_all();
@@ -76,14 +76,14 @@ class SimulatedSource final : public FrameSource {
   SourceClock clock_;
   std::vector<Slot> slots_;
   std::vector<FrameTruth> truths_;
-  std::mutex order_;  // of the renderers alone
+  std::mutex order_;  // shared by the renderers only
   std::atomic<int> next_{0}, rendered_count_{0}, delivered_{0}, given_back_{0};
   std::atomic<int> ahead_max_;                          // frames rendered and not given back
-  std::atomic<std::int64_t> late_since_ns_{INT64_MAX};  // when the first of the late ones was due
+  std::atomic<std::int64_t> late_since_ns_{INT64_MAX};  // due time of the first late frame
   std::atomic<bool> stop_{false};
   std::atomic<int> late_frames_{0};
-  Time ready_;           // when a slow source was done with the last frame
-  Release is_rendered_;  // once for each frame, in their order
+  Time ready_;           // end of a slow source's last frame
+  Release is_rendered_;  // once per frame, in order
   std::vector<std::thread> renderers_;
 };
 

@@ -1,10 +1,10 @@
-// Orders the stamps of recorded frames: real files have doubled, backward and far-off ones, gaps,
-// and clocks that restart.
+// Orders the time stamps of recorded frames: real files have doubled, backward and far-off stamps,
+// gaps, and clocks that restart.
 //
-// A stamp is taken if it is newer than the last taken one by less than k_leap_max. Others are
-// counted and skipped, as are stamps beyond k_stamp_max. After k_restart_stamps skipped ones in a
-// row that ascend among themselves, the device's clock has restarted: the time goes on one nominal
-// gap after the last taken frame.
+// Accepts a stamp if it is newer than the last accepted one by at most k_leap_max. Counts and skips
+// others, and stamps beyond k_stamp_max. After k_restart_stamps skipped stamps in a row that ascend
+// among themselves, the device's clock has restarted: time continues one nominal gap after the last
+// accepted frame.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@
 namespace glint {
 
 inline constexpr Duration k_gap_counted = milliseconds(1000);    // several times any frame gap
-inline constexpr Duration k_leap_max = milliseconds(3'600'000);  // a pause of one recording
-inline constexpr Time k_stamp_max{4'000'000'000'000'000'000};    // differences of two fit
-inline constexpr int k_restart_stamps = 8;  // as CheckFrame's resynchronisation
+inline constexpr Duration k_leap_max = milliseconds(3'600'000);  // a pause within one recording
+inline constexpr Time k_stamp_max{4'000'000'000'000'000'000};    // the difference of two fits
+inline constexpr int k_restart_stamps = 8;  // as the resynchronisation of CheckFrame
 
 struct StampCounts {
   std::uint64_t doubled = 0, backward = 0, leaps = 0;  // skipped
-  std::uint64_t gaps = 0, restarts = 0;                // taken
+  std::uint64_t gaps = 0, restarts = 0;                // accepted
   Duration longest_gap;
 };
 
@@ -28,7 +28,8 @@ class StampGate {
  public:
   explicit StampGate(Duration nominal_gap) : nominal_gap_(nominal_gap) {}
 
-  // Whether the frame is taken. If so, `offset()` added to its stamp ascends over all taken frames.
+  // Returns whether the frame is accepted. If so, its stamp plus offset() ascends over all accepted
+  // frames.
   [[nodiscard]] bool take(Time stamp);
 
   [[nodiscard]] Duration offset() const { return offset_; }
@@ -41,8 +42,8 @@ class StampGate {
   Duration offset_;
   StampCounts counts_;
   bool any_ = false;
-  Time newest_;   // of the taken, by the device's clock
-  Time skipped_;  // of the newest skipped
+  Time newest_;   // last accepted, device clock
+  Time skipped_;  // last skipped
   int skipped_in_row_ = 0;
 };
 

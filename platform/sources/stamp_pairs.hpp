@@ -1,5 +1,5 @@
-// Pairs the images of two topics by their stamps: an image waits for the one of the other topic
-// that is nearest in time.
+// Pairs the images of two topics by time stamp: an image waits for the one of the other topic that
+// is nearest in time.
 #pragma once
 
 #include <algorithm>
@@ -15,17 +15,18 @@ namespace glint {
 
 enum class ImageKind : std::uint8_t { reflectivity, depth };
 
-// No heap after the constructor, unless an Image takes some when it is moved.
+// No heap after the constructor, unless moving an Image allocates.
 template <class Image>
 class StampPairs {
  public:
-  // Two are a pair if their stamps differ by at most `apart_max`; `waiting_max` of a topic wait.
+  // apart_max: largest difference of stamps of a pair. waiting_max: capacity of waiting images per
+  // topic.
   StampPairs(Duration apart_max, std::size_t waiting_max)
       : apart_max_(apart_max), waiting_max_(waiting_max) {
     for (auto& waiting : waiting_) waiting.reserve(waiting_max + 1);
   }
 
-  // The waiting image that makes a pair with one of this kind; it no longer waits.
+  // Removes and returns the waiting image that pairs with one of this kind; empty if none.
   [[nodiscard]] std::optional<Image> partner_of(ImageKind kind, Time stamp) {
     std::vector<Waiting>& others =
         waiting_of(kind == ImageKind::depth ? ImageKind::reflectivity : ImageKind::depth);
@@ -42,7 +43,7 @@ class StampPairs {
     return partner;
   }
 
-  // Lets an image wait; the one that has waited longest, if there is no room for both.
+  // Stores an image; beyond the capacity removes and returns the oldest one.
   [[nodiscard]] std::optional<Image> wait(ImageKind kind, Time stamp, Image image) {
     waiting_of(kind).push_back({stamp, std::move(image)});
     return waiting(kind) > waiting_max_ ? pop(kind) : std::nullopt;
@@ -51,7 +52,7 @@ class StampPairs {
   [[nodiscard]] std::size_t waiting(ImageKind kind) const {
     return waiting_[static_cast<std::size_t>(kind)].size();
   }
-  // The one that has waited longest.
+  // Removes and returns the oldest one.
   [[nodiscard]] std::optional<Image> pop(ImageKind kind) {
     std::vector<Waiting>& own = waiting_of(kind);
     if (own.empty()) return {};

@@ -33,7 +33,7 @@ bool is_there(const std::string& prefix) {
   return fs::exists(prefix + ".tar") || fs::is_directory(prefix);
 }
 
-// "<digits>.pgm" or "<digits>_ab.pgm", in any folder.
+// Parses "<digits>.pgm" or "<digits>_ab.pgm", in any folder.
 std::optional<std::uint64_t> stamp_of(std::string_view name, bool& is_reflectivity) {
   name = name.substr(name.rfind('/') + 1);
   std::uint64_t stamp = 0;
@@ -44,8 +44,8 @@ std::optional<std::uint64_t> stamp_of(std::string_view name, bool& is_reflectivi
   return stamp;
 }
 
-// The numbers of comma- or blank-separated text; fewer than `numbers` where it ends early or holds
-// something else.
+// Parses comma- or blank-separated numbers. Returns their count, less than the size of `numbers` if
+// the text ends early or has other content.
 std::size_t read_numbers(std::string_view text, std::span<double> numbers) {
   std::size_t count = 0;
   while (count < numbers.size()) {
@@ -116,7 +116,7 @@ void StreamRecorderFrames::list_folder() {
   }
 }
 
-// Without extrinsics the rig's pose is not the camera's.
+// The files have the rig's pose; the camera's pose also requires the extrinsics.
 void StreamRecorderFrames::read_poses() {
   const std::string extrinsics = prefix_ + "_extrinsics.txt", poses = prefix_ + "_rig2world.txt";
   for (const std::string& file : {extrinsics, poses}) {

@@ -1,5 +1,5 @@
-// The frames of a capture of HoloLens2ForCV's StreamRecorder (Microsoft, 2072055): a folder with
-// `Depth AHaT.tar` or `Depth Long Throw.tar`, or the folder of that name that was unpacked from it.
+// Reader of frames from a capture of HoloLens2ForCV's StreamRecorder (Microsoft, 2072055): a folder
+// with `Depth AHaT.tar` or `Depth Long Throw.tar`, or the unpacked folder of that name.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace glint {
 
 class StreamRecorderFrames final : public FrameReader {
  public:
-  // Throws InputError: no capture of a depth camera there, or none of `camera`'s size.
+  // Throws InputError: no capture of a depth camera, or none of the size of `camera`.
   StreamRecorderFrames(const std::string& folder, const Camera& camera);
 
   [[nodiscard]] bool next(ReadFrame& frame) override;

@@ -9,7 +9,7 @@ namespace glint {
 namespace {
 
 constexpr std::uint64_t k_block = 512;
-// Of a header's fields: offset and length.
+// Header fields: offset and length.
 constexpr std::size_t k_name_length = 100, k_size = 124, k_size_length = 12;
 constexpr std::size_t k_sum = 148, k_sum_length = 8, k_type = 156, k_prefix = 345,
                       k_prefix_length = 155;
@@ -20,7 +20,7 @@ std::string text_at(const Bytes& header, std::size_t offset, std::size_t length)
   return {from, ::strnlen(from, length)};
 }
 
-// Octal digits between blanks and an end.
+// Parses octal digits, surrounded by blanks and terminated by NUL or blank.
 std::optional<std::uint64_t> octal_at(const Bytes& header, std::size_t offset, std::size_t length) {
   std::uint64_t value = 0;
   bool any = false;
@@ -37,7 +37,7 @@ std::optional<std::uint64_t> octal_at(const Bytes& header, std::size_t offset, s
   return any ? std::optional(value) : std::nullopt;
 }
 
-// Of all bytes, its own field taken for blanks.
+// Checks the header's sum of all bytes, with blanks in place of the sum's own field.
 bool sum_holds(const Bytes& header) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < header.size(); ++i) {
@@ -83,7 +83,7 @@ std::vector<TarEntry> tar_entries(const InputFile& archive, std::uint64_t& cut_b
       }
     }
     const std::uint64_t whole = contents + (*bytes + k_block - 1) / k_block * k_block;
-    if (whole > archive.size()) return entries;  // the last file's padding alone is missing
+    if (whole > archive.size()) return entries;  // only the padding of the last file is missing
     at = whole;
   }
   cut_bytes = archive.size() - at;

@@ -1,4 +1,4 @@
-// The files inside a tar archive (POSIX ustar, GNU long names), by their places in it.
+// Lists the files in a tar archive (POSIX ustar, GNU long names), with offset and size.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ struct TarEntry {
 
 inline constexpr std::size_t k_tar_entries_max = 2'000'000;
 
-// The regular files, in the archive's order. An archive that was cut short ends at its last whole
-// file; `cut_bytes` are those behind it. Throws InputError: path, byte, found, expected.
+// Returns the regular files in the archive's order. A truncated archive ends at its last complete
+// file; `cut_bytes` receives the bytes after it. Throws InputError: path, byte, found, expected.
 [[nodiscard]] std::vector<TarEntry> tar_entries(const InputFile& archive, std::uint64_t& cut_bytes);
 
 }  // namespace glint

@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_depth_max = 64;  // links from a frame to its root: a loop ends here
+constexpr int k_depth_max = 64;  // links from a frame to its root; bounds a loop
 
 bool is_rigid(const Pose& pose) {
   return std::abs(pose.rotation.squaredNorm() - 1) < 1e-2 && pose.translation.allFinite();
@@ -88,8 +88,8 @@ std::optional<Pose> TransformTree::pose_of(const Link& link, Time time) {
   const auto before = after - 1;
   const Duration gap = after->time - before->time;
   if (gap > k_transform_gap_max) return std::nullopt;
-  // Between neighbours the normalised mean is the geodesic to a third-order term of their angle,
-  // and takes no function whose last bit differs between machines.
+  // Between neighbours the normalised linear mean equals SLERP up to a third-order term of their
+  // angle. It uses no function whose last bit differs between machines.
   const double part = (time - before->time).seconds() / gap.seconds();
   Pose pose;
   pose.translation =
@@ -118,7 +118,7 @@ std::optional<Pose> TransformTree::in_root(std::string_view frame, Time time) co
 
 std::optional<Pose> TransformTree::at(std::string_view to, std::string_view from, Time time) const {
   if (root(to) != root(from)) return std::nullopt;
-  // A link above `to` cancels: where it has no pose at this time, its absence must not matter.
+  // Links above `to` cancel, so a missing pose in them has no effect.
   std::string_view meets = from;
   Pose T_meets_from;
   for (int i = 0; i < k_depth_max && meets != to; ++i) {

@@ -1,4 +1,4 @@
-// Frames and the transforms between them over time, as tf has them.
+// Transform tree of coordinate frames over time, as tf.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@
 
 namespace glint {
 
-inline constexpr std::size_t k_transforms_max = 4'000'000;  // kept, 300 MB
-// Of a tree that has no end: the newest of each link, half a second at 1 kHz, and so many links.
+inline constexpr std::size_t k_transforms_max = 4'000'000;  // stored, 300 MB
+// Limits of TransformHistory::newest: transforms per link (half a second at 1 kHz), and links.
 inline constexpr std::size_t k_live_transforms = 1024, k_live_links = 256;
 inline constexpr Duration k_transform_gap_max = milliseconds(500);  // interpolated over
 
@@ -26,19 +26,21 @@ class TransformTree {
  public:
   explicit TransformTree(TransformHistory history = TransformHistory::whole) : history_(history) {}
 
-  // T_parent_child, in any order of their times. A frame keeps its first parent. What is no rigid
-  // transform is counted and left out. Of a whole history throws InputError beyond
-  // k_transforms_max; of the newest only a link's first transform, and one out of order, take heap,
-  // and a link begins anew where its clock was set back by more than k_transform_gap_max.
+  // Adds T_parent_child; times may be in any order. A frame keeps its first parent. Counts and
+  // skips a transform that is not rigid or has another parent. With a whole history throws
+  // InputError beyond k_transforms_max. With the newest history, heap is allocated only by a link's
+  // first transform and by one out of order; a link restarts if its clock is set back by more than
+  // k_transform_gap_max.
   void add(std::string_view parent, std::string_view child, Time time, const Pose& pose,
            bool fixed);
 
-  // The frame that stands above all others of this one; itself where it has no parent.
+  // Returns the root of this frame's tree; the frame itself if it has no parent.
   [[nodiscard]] std::string root_of(std::string_view frame) const;
   [[nodiscard]] bool has(std::string_view frame) const;
-  // T_to_from at this time, interpolated; nothing: no chain, or nothing near enough in time.
+  // Returns T_to_from at this time, interpolated; empty without a chain or without transforms near
+  // enough in time.
   [[nodiscard]] std::optional<Pose> at(std::string_view to, std::string_view from, Time time) const;
-  // Up to when at() has all of their transforms; nothing: no chain.
+  // Latest time at which at() has all transforms of the chain; empty without a chain.
   [[nodiscard]] std::optional<Time> known_until(std::string_view to, std::string_view from) const;
   [[nodiscard]] std::size_t refused() const { return refused_; }
 
@@ -56,7 +58,7 @@ class TransformTree {
   static void sort(const Link& link);
   [[nodiscard]] static std::optional<Pose> pose_of(const Link& link, Time time);
   [[nodiscard]] std::string_view root(std::string_view frame) const;
-  // From `frame` up: T_root_frame; nothing where a link has no pose then.
+  // Chains from `frame` to its root: T_root_frame; empty if a link has no pose at this time.
   [[nodiscard]] std::optional<Pose> in_root(std::string_view frame, Time time) const;
 
   TransformHistory history_;
