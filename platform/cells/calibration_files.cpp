@@ -18,7 +18,7 @@ namespace {
   throw InputError(file + ":" + std::to_string(line) + ": " + what);
 }
 
-// The one table of a file that the cell is after; its other tables and keys are not looked at.
+// One required table of a file; ignores other tables and keys.
 struct Section {
   const NamedFile& file;
   std::string name;
@@ -34,7 +34,7 @@ struct Section {
   }
   [[nodiscard]] TomlReader reader() const { return {*table, file.path, name + "."}; }
 
-  // A number that has no value of its own to fall back to.
+  // Reads a required number, without a default.
   [[nodiscard]] double needed(TomlReader& reader, const char* key, double low, double high) const {
     require(key, "a number");
     return reader.real(key, 0, low, high);
@@ -53,7 +53,7 @@ struct Section {
   }
 };
 
-// [from, to], within what there can be.
+// Reads [from, to] within 0 and `most`.
 ValidRange range_of(const Section& section, TomlReader& reader, const char* key, double most) {
   const std::vector<double> ends = section.needed(reader, key, 2);
   if (ends[0] >= 0 && ends[1] > ends[0] && ends[1] <= most) return {ends[0], ends[1]};
@@ -62,13 +62,13 @@ ValidRange range_of(const Section& section, TomlReader& reader, const char* key,
                std::to_string(static_cast<int>(most)));
 }
 
-// The larger the angle, the smaller its cosine.
+// Cosine decreases with the angle, so the ends swap.
 ValidRange cosines_of(const ValidRange& degrees) {
   const auto cosine = [](double angle) { return sine_cosine(angle * k_radians_per_degree).cosine; };
   return {cosine(degrees.to), cosine(degrees.from)};
 }
 
-// Two standard deviations that a file states beside its table; nothing where it states neither.
+// Reads two standard deviations at the top level; empty if the file states neither.
 std::optional<std::array<double, 2>> two_sigmas(const NamedFile& file, const char* first,
                                                 const char* second) {
   const toml::table root = parse_toml(file.text, file.path);
@@ -86,9 +86,9 @@ std::optional<std::array<double, 2>> two_sigmas(const NamedFile& file, const cha
   return {{sigma(first), sigma(second)}};
 }
 
-// What an offset and a slope leave of an error with a period over the range, of 1 mm: Foix, Alenya,
-// Torras, "Lock-in Time-of-Flight (ToF) Cameras: A Survey", IEEE Sensors Journal 11 (2011),
-// section II.
+// Residual of a periodic range error of 1 mm after a fit of offset and slope. Source: Foix, Alenya,
+// Torras, "Lock-in Time-of-Flight (ToF) Cameras: A Survey", IEEE Sensors Journal 11 (2011), section
+// II.
 constexpr double k_range_shape_m = 0.0007;
 
 Vector3 vector_of(const std::vector<double>& values) { return {values[0], values[1], values[2]}; }

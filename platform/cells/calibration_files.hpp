@@ -1,7 +1,7 @@
-// The files of `glint calibrate` that a cell may name, read into what the cell makes of them.
+// Readers of the `glint calibrate` files that a cell names: lens, depth bias, motion, correction.
 //
-// Each reader reads one table of the file; other tables and keys are for the user. Throws
-// InputError: file:line: table.key, what was found, what was expected.
+// Each function reads one table of the file and ignores other tables and keys. Throws InputError:
+// file:line: table.key, found, expected.
 #pragma once
 
 #include <string>
@@ -16,25 +16,25 @@
 
 namespace glint {
 
-// [depth_bias]: of the markers in use.
+// [depth_bias]: valid for the markers in use.
 [[nodiscard]] DepthBias depth_bias_of(const NamedFile& file);
-// Of the same file: the bias's standard deviations, where it states them.
+// Same file: standard deviations of the bias, if stated.
 void read_range_uncertainty(const NamedFile& file, CameraUncertainty& uncertainty);
 
-// [camera]: another lens for a camera of the same picture size.
+// [camera]: lens parameters. Requires the image size of `camera`.
 [[nodiscard]] CameraModel lens_of(const NamedFile& file, const CameraModel& camera);
 
-// What standard deviations of a bias's offset and of its slope leave open of all ranges, with the
-// focal length by which they were measured, and the error over the range that neither follows.
+// Sets the range uncertainty from the standard deviations of a bias's offset and slope, of the
+// focal length by which they were measured, and of the range error that neither models.
 void state_range_uncertainty(double offset_sigma_m, double slope_sigma,
                              CameraUncertainty& uncertainty);
-// Of [camera]'s file: what it states of the principal point and the focal length.
+// File of [camera]: standard deviations of principal point and focal length, if stated.
 void read_lens_uncertainty(const NamedFile& file, CameraUncertainty& uncertainty);
 
-// [motion]: noise and damping; the rest is as built in.
+// [motion]: process noise and damping; the rest has the built-in values.
 [[nodiscard]] MotionSettings motion_of(const NamedFile& file);
 
-// [correction]: a mean error and where it holds.
+// [correction]: mean error and its region of validity.
 [[nodiscard]] BiasCorrection correction_of(const NamedFile& file);
 
 }  // namespace glint

@@ -40,7 +40,7 @@ Quaternion from_fixed_axes(const std::vector<double>& degrees) {
   return about(2) * about(1) * about(0);
 }
 
-// [section] file = ".."; null where there is none.
+// Reads [section] file = ".."; returns null if absent.
 const NamedFile* CellParser::named_by(TomlReader& root, const std::string& section) {
   const toml::table* table = root.table(section.c_str());
   if (table == nullptr) return nullptr;
@@ -203,7 +203,7 @@ void CellParser::read_tools(TomlReader& root) {
     cell.tools.items[static_cast<std::size_t>(cell.tools.count++)] =
         built_in ? *built_in : load_tool(resolved(name, "tools"));
   }
-  // Topics, frames and columns are named after the tool.
+  // Topics, frames and columns are named after the tool, so names must be unique.
   for (int t = 1; t < cell.tools.count; ++t) {
     for (int other = 0; other < t; ++other) {
       const std::string name = cell.tools.items[static_cast<std::size_t>(t)].name.data();
@@ -261,7 +261,7 @@ Limits limits_of(const Cell& cell) {
   limits.reflectivity_bytes = (cell.camera.reflectivity_bits + 7) / 8;
   limits.lens_steps = camera.lens == Lens::lut ? k_lens_steps_max : 0;
   limits.ray_steps = cell.ray_steps;
-  limits.tools = std::max(cell.budget.tools, cell.tools.count);  // some join after reading
+  limits.tools = std::max(cell.budget.tools, cell.tools.count);  // some are added after reading
   limits.markers_per_tool = 3;
   for (int t = 0; t < cell.tools.count; ++t) {
     limits.markers_per_tool = std::max(limits.markers_per_tool,

@@ -20,7 +20,7 @@ constexpr const char* k_lens_key = "camera.file";
   throw InputError(cell.file + ":" + std::to_string(line) + ": camera" + what);
 }
 
-// A table of its own, or the file that has it.
+// Reads a table in the cell, or the named file that contains it.
 void read_depth_bias(TomlReader& reader, Cell& cell, const CellFileReader& files) {
   if (reader.is_text("depth_bias")) {
     const std::string path = reader.text("depth_bias", "");
@@ -40,7 +40,7 @@ void read_size(TomlReader& reader, Camera& camera) {
   camera.model.height = side("height", camera.model.height, k_height_max);
 }
 
-// An absent key leaves the preset's bits.
+// If the key is absent, the result is bit-identical to the preset.
 double metres_of(TomlReader& reader, const char* key, double preset, double low, double high) {
   const double preset_mm = preset * 1e3, mm = reader.real(key, preset_mm, low, high);
   return mm == preset_mm ? preset : mm * 1e-3;
@@ -53,7 +53,7 @@ Duration duration_of(TomlReader& reader, const char* key, Duration preset, doubl
   return ms == preset_ms ? preset : from_ms(ms);
 }
 
-// The uncertainty of a device's own lens, smaller than another unit's: pixels, and a ratio.
+// Uncertainty of a device's own lens, smaller than that of another unit: pixels, and a ratio.
 constexpr double k_own_principal_point_px = 0.5, k_own_focal_scale = 0.001;
 
 void use_own_lens(Cell& cell) {
@@ -62,7 +62,7 @@ void use_own_lens(Cell& cell) {
   cell.camera.uncertainty.focal_scale = k_own_focal_scale;
 }
 
-// A table of its own, or the file that has it.
+// Reads a table in the cell, or the named file that contains it.
 void read_uncertainty(TomlReader& camera, Cell& cell, const CellFileReader& files) {
   std::optional<NamedFile> file;
   toml::table root;
@@ -133,7 +133,7 @@ void read_sensor(TomlReader& reader, Cell& cell) {
   const int top = camera.reflectivity_bits == 8 ? 255 : 65535;
   camera.threshold =
       static_cast<std::uint16_t>(reader.integer("threshold", camera.threshold, 0, top - 1));
-  if (camera.threshold >= top) {  // the preset's, of more bits
+  if (camera.threshold >= top) {  // of a preset with more bits
     complain(cell, reader.line_of("reflectivity_bits"),
              ".threshold: " + std::to_string(camera.threshold) + "; expected less than " +
                  std::to_string(top) + " for 8 bits");

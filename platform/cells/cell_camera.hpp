@@ -1,4 +1,4 @@
-// [camera] of a cell: a preset, what differs from it, and the lens.
+// Reader of [camera] of a cell: a preset, overrides of its values, and the lens.
 #pragma once
 
 #include "platform/cells/cell.hpp"
@@ -7,7 +7,7 @@
 
 namespace glint {
 
-// Throws InputError: file:line: key, what was found, what was expected.
+// Throws InputError: file:line: key, found, expected.
 void read_camera(const toml::table* table, Cell& cell, const CellFileReader& files);
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-// The section [can] of a cell file: the bus that poses go to, and the frame that buttons come by.
+// Reader of [can] of a cell: bus for the output poses, and frame of the input buttons.
 #pragma once
 
 #include "platform/cells/cell.hpp"
@@ -6,8 +6,8 @@
 
 namespace glint {
 
-// Its tools are read: each has 16 identifiers of its own. Throws InputError, also where the
-// buttons' identifier is one that Glint itself sends with; null: the defaults stand.
+// Requires the tools: each uses 16 identifiers. table: null keeps the defaults. Throws InputError,
+// also if Glint itself sends the identifier of the buttons.
 void read_can(const toml::table* table, Cell& cell);
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-// The files that a cell names: opened from disk, or taken from the recording that carries them.
+// Access to the files named by a cell: from disk, or from a recording that contains them.
 #pragma once
 
 #include <string>
@@ -11,10 +11,11 @@ struct CellFileReader {
   Cell& cell;
   const CellFiles* carried;  // null: from disk
 
-  // ${NAME} becomes the environment's NAME; a relative path starts at the cell file's folder. As
-  // written where a recording carries the file. Throws InputError: no such NAME.
+  // Replaces ${NAME} by the environment variable; relative paths start at the cell file's folder.
+  // Returns the path unchanged if a recording contains the file. Throws InputError: unknown
+  // variable.
   [[nodiscard]] std::string resolved(const std::string& path, const std::string& key) const;
-  // Adds a file of `glint calibrate` to cell.named_files. Throws InputError: absent.
+  // Adds a file of `glint calibrate` to cell.named_files. Throws InputError if it is absent.
   const NamedFile& named_file(const std::string& path, const std::string& key) const;
   [[nodiscard]] bool carries(const std::string& key) const {
     return carried != nullptr && carried->named.contains(key);

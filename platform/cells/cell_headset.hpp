@@ -1,5 +1,4 @@
-// The parts of a cell file that say how the headset knows where it is: by itself, and by a body
-// that does not move.
+// Readers of the headset's localisation in a cell: its own noise, and a static reference tool.
 #pragma once
 
 #include "platform/cells/cell.hpp"
@@ -7,10 +6,10 @@
 
 namespace glint {
 
-// reference = "NAME": one of the tools that were read before.
+// reference = "NAME": requires one of the tools read before.
 void read_reference(TomlReader& root, Cell& cell);
 
-// [headset]: how far its own localisation is off; null: as kernels/motion/head_anchor.hpp has it.
+// [headset]: noise of its own localisation. null: defaults of kernels/motion/head_anchor.hpp.
 void read_headset(const toml::table* table, Cell& cell);
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-// The parts of a cell file that say what runs beneath tracking: mapping, slice by slice.
+// Readers of [background] and [mapping] of a cell: the slices of mapping below tracking.
 #pragma once
 
 #include <functional>
@@ -9,12 +9,12 @@
 
 namespace glint {
 
-// Either may be null: then there is no such group; what is mapped has slices as built in. `path`
-// resolves a path that a key names.
+// Either table may be null. Both null: no background group. Only mapping: default slices. `path`
+// resolves the path of a key.
 using ResolvedPath = std::function<std::string(const std::string& path, const std::string& key)>;
 void read_background(const toml::table* background, const toml::table* mapping,
                      const ResolvedPath& path, Cell& cell);
-// When the robot was read, too: one that is followed stands in the world.
+// Call after the robot is read. Throws InputError unless a tracked robot has a pose in the world.
 void check_followed_robot(const toml::table* mapping, const Cell& cell);
 
 }  // namespace glint

@@ -30,7 +30,7 @@ void read_rates(const toml::table* table, Cell& cell) {
   reader.done();
 }
 
-// A deadline beyond the next release would need a second buffer of everything.
+// A deadline beyond the next release would require a second buffer of all data.
 void read_deadlines(const toml::table* table, Cell& cell) {
   static const toml::table k_empty;
   TomlReader reader(table != nullptr ? *table : k_empty, cell.file, "deadlines.");
@@ -69,10 +69,11 @@ void read_budget(const toml::table* table, Cell& cell) {
   BudgetSettings& budget = cell.budget;
   const int listed = cell.tools.count;
   budget.tools = static_cast<int>(reader.integer("tools", listed, 1, k_tools_max));
-  // As many strays as there are markers; the blobs that a budget leaves out may be a tool's.
+  // As many stray reflections as markers; without a budget for them, blobs of a tool may be
+  // dropped.
   const int usual = std::clamp(2 * markers_of(cell.tools), budget.blobs, k_blobs_max);
   budget.blobs = static_cast<int>(reader.integer("blobs", usual, 8, k_blobs_max));
-  // All of them in one band; a marker of 6 mm radius has eight rows at 0.3 m from an AHAT camera.
+  // All blobs in one band; a marker of 6 mm radius has eight rows at 0.3 m from an AHAT camera.
   const int usual_runs = std::clamp(8 * budget.blobs, budget.runs_per_band, k_runs_per_band_max);
   budget.runs_per_band =
       static_cast<int>(reader.integer("runs_per_band", usual_runs, 64, k_runs_per_band_max));

@@ -1,5 +1,4 @@
-// The parts of a cell file that say when things are done, and how large the problem may be that is
-// done then.
+// Readers of rates, deadlines, overrun policies and problem size of a cell.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +12,7 @@ namespace glint {
   return {static_cast<std::int64_t>(ms * 1e6 + 0.5)};
 }
 
-// Each may be null: then all is as built in. The camera and the tools were read before.
+// A null table keeps the defaults. Requires camera and tools.
 void read_rates(const toml::table* table, Cell& cell);
 void read_deadlines(const toml::table* table, Cell& cell);  // after the rates
 void read_overrun(const toml::table* table, Cell& cell);

@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-// From the smaller angle to the larger one.
+// Callers pass the larger cosine first, for rising angles.
 double degrees(double cosine) {
   return k_degrees_per_radian * std::acos(std::clamp(cosine, -1.0, 1.0));
 }

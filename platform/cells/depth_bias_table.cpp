@@ -15,7 +15,7 @@ DepthBias depth_bias_of(const toml::table& table, const std::string& file,
   bias.dim_m = 1e-3 * reader.real("dim_mm", 0, -100, 100);
   const auto range_mm = reader.reals("range_mm", 2);
   reader.done();
-  // Without the ranges it was measured at it is worth nothing.
+  // A bias is valid only in the ranges of its measurement, so they are required.
   if (!range_mm || !((*range_mm)[0] >= 0 && (*range_mm)[1] > (*range_mm)[0])) {
     const auto line = range_mm ? reader.line_of("range_mm") : table.source().begin.line;
     throw InputError(file + ":" + std::to_string(line) + ": " + section + "range_mm is " +

@@ -1,4 +1,4 @@
-// The table [depth_bias] of a cell, of a file of `glint calibrate depth`, or of a tool.
+// Reader and writer of [depth_bias] in a cell, a file of `glint calibrate depth`, or a tool.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace glint {
 
-// section: the keys' prefix in messages. Throws InputError: file:line: key, what was found, what
-// was expected; also where the ranges that it was measured at are missing.
+// section: prefix of the keys in messages. Throws InputError: file:line: key, found, expected; also
+// if the ranges of the measurement are missing.
 [[nodiscard]] DepthBias depth_bias_of(const toml::table& table, const std::string& file,
                                       const std::string& section);
 
-// As such a table, without its header; "" for a bias that was not measured.
+// Returns the table without its header; "" for a bias that is not measured.
 [[nodiscard]] std::string depth_bias_text(const DepthBias& bias);
 
 }  // namespace glint

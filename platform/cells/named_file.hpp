@@ -1,16 +1,16 @@
-// A file of `glint calibrate` that a cell names, as it was read.
+// Contents of a `glint calibrate` file named by a cell.
 #pragma once
 
 #include <string>
 
 namespace glint {
 
-// Where a cell may name one.
+// Keys of a cell that may name a file.
 inline constexpr const char* k_named_keys[] = {
     "camera.file", "camera.depth_bias", "camera.uncertainty", "motion.file", "correction.file"};
 
 struct NamedFile {
-  std::string key;   // one of these; a recording carries the text under it
+  std::string key;   // one of these; key of the text in a recording
   std::string path;  // for messages
   std::string text;
 };

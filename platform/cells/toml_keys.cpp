@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::size_t k_end = std::string_view::npos;
 
-// Behind the string that begins at `at` with a quote; the end of its line where it is not closed,
-// which the parser refuses.
+// Returns the position after the string that begins at `at` with a quote. Returns the end of the
+// line for an unterminated string, which the parser refuses.
 std::size_t behind_string(std::string_view text, std::size_t at) {
   const char quote = text[at];
   const bool basic = quote == '"';

@@ -1,4 +1,4 @@
-// Bounds how deep the tables of a TOML text are nested, before it is parsed.
+// Limits the nesting of TOML tables before the text is parsed.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,10 @@
 namespace glint {
 
 // toml++ makes a table of every part of a.b.c, without a limit, and destroys them by recursion: a
-// megabyte of "a." overflows the stack. Its nested arrays and inline tables it limits itself.
+// megabyte of "a." overflows the stack. It limits nested arrays and inline tables itself.
 inline constexpr std::size_t k_toml_key_parts_max = 64;
 
-// Throws InputError: file:line, where a key has more parts. Dots in strings and comments are none.
+// Throws InputError with file:line if a key has more parts. Ignores dots in strings and comments.
 void check_key_parts(std::string_view text, const std::string& file);
 
 }  // namespace glint

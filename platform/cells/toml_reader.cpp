@@ -45,8 +45,8 @@ bool breaks_the_parser(std::string_view text) {
   return false;
 }
 
-// The first line with which the text from its beginning breaks the parser: from there on it always
-// does, since the parser reads forwards.
+// Returns the first line that violates the parser's assertions, by bisection: the parser reads
+// forwards, so every longer prefix violates them too.
 std::size_t line_that_breaks(const std::string& text) {
   std::vector<std::size_t> ends;  // of lines
   for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) {

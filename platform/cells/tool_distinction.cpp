@@ -10,11 +10,11 @@
 namespace glint {
 namespace {
 
-// Squared distances that differ by less, in sigmas squared, are the same: of a symmetric tool's
-// equal exchanges rounding does not choose.
+// Squared distances that differ by less, in sigma squared, are equal, so that rounding does not
+// select among the equal exchanges of a symmetric tool.
 constexpr double k_alike = 1e-6;
 
-// As propose_labelings() asks for without a prediction.
+// As required by propose_labelings() without a prediction.
 int markers_needed(const Tool& tool) {
   return std::clamp(CorrespondSettings{}.min_markers_without_prior, 3,
                     std::max(3, tool.marker_count));
@@ -36,7 +36,7 @@ class LikenessSearch {
 
   void run() { name_from(0, 0.0); }
 
-  // Without the tools' numbers.
+  // `seen` and `other` are not set.
   [[nodiscard]] Likeness best() const {
     Likeness best = best_;
     best.search_full = full_;
@@ -51,7 +51,7 @@ class LikenessSearch {
     return !full_;
   }
 
-  // By how much the sides to the markers named so far differ, squared.
+  // Sum of squared differences of the sides to the markers assigned so far.
   [[nodiscard]] double side_differences_m2(int marker, int name) const {
     double sum = 0;
     for (int j = 0; j < marker; ++j) {
@@ -64,7 +64,7 @@ class LikenessSearch {
     return sum;
   }
 
-  // As deep as a tool has markers.
+  // Recursion depth: at most the number of markers.
   void name_from(int marker, double differences_m2) {
     if (named_ == wanted_) {
       judge();
@@ -104,7 +104,7 @@ class LikenessSearch {
     return true;
   }
 
-  // The tracker's rigid fit refuses the others.
+  // The tracker's rigid fit refuses other sets.
   [[nodiscard]] bool fixes_a_pose() const {
     std::array<Vector3, k_markers_per_tool_max> model;
     std::size_t count = 0;
@@ -121,7 +121,7 @@ class LikenessSearch {
   int wanted_;
   double variance_m2_;
   std::int64_t steps_max_;
-  double below_m2_ = 0;  // only what leaves less is of interest
+  double below_m2_ = 0;  // bound: only smaller residuals are of interest
   TakenFor names_{};
   unsigned used_ = 0;
   int named_ = 0;
@@ -154,7 +154,7 @@ double squares_left_m2(const Tool& seen, const Tool& other, const TakenFor& take
     cross += y * x.transpose();
     squares += x.squaredNorm() + y.squaredNorm();
   }
-  // Markers on a line are no special case here, as they are to the tracker's own fit.
+  // Collinear markers are no special case here, as in the tracker's own fit.
   const Vector3 w = Eigen::JacobiSVD<Matrix3>(cross).singularValues();
   const double third = cross.determinant() < 0 ? -w.z() : w.z();
   return std::max(0.0, squares - 2 * (w.x() + w.y() + third));

@@ -12,7 +12,7 @@ struct Entry {
   std::string value;
   int line = 0;
 };
-// "section/key", both in small letters.
+// "section/key", both in lower case.
 using Entries = std::map<std::string, Entry>;
 
 std::string_view trimmed(std::string_view text) {

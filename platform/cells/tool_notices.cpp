@@ -16,7 +16,7 @@ const Tool& tool_at(const ToolSet& tools, int t) {
   return tools.items[static_cast<std::size_t>(t)];
 }
 
-// Rounded down: what is below a limit never reads as the limit.
+// Rounds down, so that a value below a limit is never printed as the limit.
 std::string sigmas(double distance) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1f", std::floor(distance * 10) / 10);
@@ -53,7 +53,7 @@ struct Teller {
     return "tools " + named(likeness.seen) + " and " + named(likeness.other);
   }
 
-  // Markers are counted from 1, in their file's order.
+  // Markers count from 1, in the order of their file.
   static std::string likeness_of(const Likeness& likeness) {
     const bool own = likeness.seen == likeness.other;
     std::vector<int> from, to;

@@ -1,4 +1,4 @@
-// What a user is told of tools that this sensor may confuse, in the words of a cell file.
+// Warnings about tools of a cell that the sensor may confuse.
 #pragma once
 
 #include <optional>
@@ -9,11 +9,11 @@
 
 namespace glint {
 
-// Within one sigma a frame cannot tell: no cell with such tools is taken.
+// Within one sigma a frame cannot distinguish the labelings: such a cell is refused.
 inline constexpr double k_refused_sigmas = 1.0;
 
-// The shortest way, in whole millimetres along an axis of its frame, to move one marker of the
-// later tool so that this labeling lies beyond the limit; another one may then be the nearest.
+// Shortest displacement, in whole millimetres along an axis of its frame, of one marker of the
+// later tool that moves this labeling beyond the limit. Another labeling may then be the nearest.
 struct MarkerMove {
   int tool = 0, marker = 0, axis = 0;
   int mm = 0;  // negative: against the axis
@@ -21,9 +21,9 @@ struct MarkerMove {
 [[nodiscard]] std::optional<MarkerMove> move_apart(const ToolSet& tools, const Likeness& likeness,
                                                    const DistinctionSettings& settings);
 
-// A line for each two tools that are confused, or each tool with its own exchange; none where all
-// are at least limit_sigmas apart. `files` as the cell names them; `place` is the cell's file:line.
-// Throws InputError where a wrong labeling lies within k_refused_sigmas.
+// Returns one line per pair of confusable tools, or per tool with its own exchange; none if all are
+// at least limit_sigmas apart. files: as the cell names them. place: file:line of the cell. Throws
+// InputError if a wrong labeling is within k_refused_sigmas.
 [[nodiscard]] std::vector<std::string> tool_notices(const ToolSet& tools,
                                                     const std::vector<std::string>& files,
                                                     const std::string& place,

@@ -20,7 +20,7 @@ std::string place_of(const std::string& path, const toml::node& node) {
   return path + ":" + std::to_string(node.source().begin.line);
 }
 
-// A number within +-limit, or InputError.
+// Returns a number within [low, high], or throws InputError.
 double number_at(const toml::node& node, const std::string& what, double low, double high,
                  const std::string& path) {
   std::ostringstream expected;
@@ -90,7 +90,7 @@ MarkerShape shape_in(const toml::table& table, const std::string& path) {
                    "\"; expected \"sphere\" or \"disc\"");
 }
 
-// Of other markers than the camera's own bias was measured on.
+// Bias of markers other than those of the camera's own bias.
 DepthBias bias_in(const toml::table& table, const std::string& path) {
   const toml::node* node = table.get("depth_bias");
   if (node == nullptr) return {};

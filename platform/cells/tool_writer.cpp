@@ -15,7 +15,7 @@ std::string point_mm(const Vector3& point_m) {
   return text;
 }
 
-// A text in quotes, as TOML's basic strings are.
+// Text in quotes, as a basic string of TOML.
 std::string quoted(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {

@@ -1,4 +1,4 @@
-// A tool as the TOML file that load_tool reads back.
+// Writer of a tool as a TOML file that load_tool reads.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace glint {
 
-// Numbers to a tenth of a micrometre; every line of `comment` stands behind a # above.
+// Writes numbers to 0.1 um, and each line of `comment` after a # at the top.
 [[nodiscard]] std::string tool_toml_text(const Tool& tool, std::string_view comment);
 
-// Its name with every character but letters, digits, - and _ replaced by _.
+// Returns the tool's name; other characters than letters, digits, - and _ become _.
 [[nodiscard]] std::string file_name_of(const Tool& tool);
 
 }  // namespace glint
