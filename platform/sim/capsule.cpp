@@ -18,8 +18,8 @@ double clamped(double x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
 
 }  // namespace
 
-// The tube is a quadratic in the range once the axis' part is taken out of ray and centre; where
-// its hit lies beyond an end, that end's ball decides.
+// Solves the quadratic of an infinite cylinder, with the axial components of ray and centre
+// removed. If the hit is beyond an end, the sphere of that end applies.
 Hit trace(const Capsule& capsule, const Vector3& ray) {
   const Vector3 axis = capsule.b - capsule.a;
   const double length2 = axis.squaredNorm();
@@ -47,8 +47,9 @@ Hit trace(const Capsule& capsule, const Vector3& ray) {
   return first.range_m < second.range_m ? first : second;
 }
 
-// Alternating projection onto the two segments from their best unclamped pair: exact when one
-// clamp decides, and within the capsule's radius otherwise, which is all a preselection needs.
+// Alternating projection onto the two segments, from the closest pair of the infinite lines. Exact
+// if one clamp is active; otherwise the error is within the capsule's radius, sufficient for a
+// preselection.
 double axis_distance(const Capsule& capsule, const Vector3& end) {
   const Vector3 axis = capsule.b - capsule.a;
   const double length2 = axis.squaredNorm(), end2 = end.squaredNorm();

@@ -1,4 +1,4 @@
-// Rays against thick lines.
+// Ray-capsule intersection.
 #pragma once
 
 #include "kernels/geometry.hpp"
@@ -7,15 +7,16 @@
 namespace glint::sim {
 
 struct Hit {
-  double range_m = 0;  // along the unit ray; 0: none
-  double cosine = 0;   // between the surface's normal and the way back
+  double range_m = 0;  // along the unit ray; 0: no hit
+  double cosine = 0;   // of the angle between the normal and the reversed ray
   [[nodiscard]] explicit operator bool() const { return range_m > 0; }
 };
 
-// From the origin along a unit ray, the nearest point ahead. An origin inside has no hit.
+// Returns the nearest hit of a unit ray from the origin. No hit if the origin is inside.
 [[nodiscard]] Hit trace(const Capsule& capsule, const Vector3& unit_ray);
 
-// The least distance between the segment from the origin to `end` and the capsule's axis.
+// Returns the smallest distance between the capsule's axis and the segment from the origin to
+// `end`.
 [[nodiscard]] double axis_distance(const Capsule& capsule, const Vector3& end);
 
 [[nodiscard]] Capsule transformed(const Pose& T_a_b, const Capsule& in_b);

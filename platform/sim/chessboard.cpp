@@ -10,15 +10,15 @@
 namespace glint::sim {
 namespace {
 
-constexpr double k_border_squares = 2;  // from the outer corners to the board's edge
+constexpr double k_border_squares = 2;  // from the outer corners to the edge
 
-// Integral from 0 to x of a square wave that is 1 in [0, 1), -1 in [1, 2) and so on.
+// Integral from 0 to x of a square wave: 1 in [0, 1), -1 in [1, 2), periodic.
 double wave_integral(double x) {
   const double inside = x - 2 * std::floor(x / 2);
   return inside < 1 ? inside : 2 - inside;
 }
 
-// The wave's mean over x +- half.
+// Mean of the wave over x +- half.
 double wave_mean(double x, double half) {
   return (wave_integral(x + half) - wave_integral(x - half)) / (2 * half);
 }
@@ -73,7 +73,7 @@ void ChessboardDrawer::draw(const Chessboard& board, const Pose& T_camera_board,
   const Vector3 normal = T_camera_board.rotation * Vector3::UnitZ();
   const double height_m = normal.dot(T_camera_board.translation);
   const Pose T_board_camera = T_camera_board.inverse();
-  // In squares; beside the plane: nothing.
+  // Intersection with the target's plane in units of squares; returns 0 without intersection.
   const auto place = [&](const Vector3& ray, Vector2& at) {
     const double along = normal.dot(ray);
     if (!(along * height_m > 0)) return 0.0;
@@ -94,7 +94,7 @@ void ChessboardDrawer::draw(const Chessboard& board, const Pose& T_camera_board,
         continue;
       if (place(rays_[i + 1], right) == 0 || place(rays_[below], down) == 0) continue;
       const Vector2 half = 0.5 * ((right - at).cwiseAbs() + (down - at).cwiseAbs());
-      // Around the squares the border is white.
+      // The border around the squares is white.
       const bool edge = at.x() < -1 || at.y() < -1 || at.x() > board.columns || at.y() > board.rows;
       const double checks = edge ? 1 : -wave_mean(at.x(), half.x()) * wave_mean(at.y(), half.y());
       const double counts = 0.5 * (board.white_signal + board.black_signal) +

@@ -1,10 +1,9 @@
-// A chessboard before the camera, as the device's own lens shows it: what `glint calibrate camera`
-// takes.
+// Renders a chessboard as seen through the device's own lens, for `glint calibrate camera`.
 //
-// What:     the board's brightness at each pixel's ray, averaged over the pixel's footprint on the
-//           board, so that corners lie where the lens puts them to a hundredth of a pixel.
-// Cost:     one plane and two averages a pixel.
-// Accuracy: the footprint is taken for a rectangle along the board's sides.
+// What:     evaluates the target's brightness at each pixel's ray and averages it over the pixel's
+//           footprint on the target, so that corners agree with their projections to 0.01 px.
+// Cost:     one plane and two averages per pixel.
+// Accuracy: approximates the footprint by a rectangle along the target's sides.
 #pragma once
 
 #include <vector>
@@ -17,15 +16,15 @@
 namespace glint::sim {
 
 struct Chessboard {
-  int columns = 9, rows = 6;  // inner corners; none: there is no board
+  int columns = 9, rows = 6;  // inner corners; none: no target
   double spacing_m = 0.025;
   double white_signal = 3000, black_signal = 300;  // counts at 0.5 m
-  MotionPointer motion;                            // T_world_board: the first corner, z away
+  MotionPointer motion;  // T_world_board: origin at the first corner, z points away
 };
 
 class ChessboardDrawer {
  public:
-  // Computes the ray of each pixel by the device's own lens.
+  // Computes the ray of each pixel with the device's own lens.
   ChessboardDrawer(const CameraModel& model, const DeviceErrors& device);
   void draw(const Chessboard& board, const Pose& T_camera_board, Planes& planes) const;
 
@@ -34,7 +33,7 @@ class ChessboardDrawer {
   std::vector<Vector3> rays_;  // zero: none
 };
 
-// Over the whole lens, near and far, tilted to all sides.
+// Motion over the complete field of view, at near and far range, with tilts in all directions.
 [[nodiscard]] MotionPointer board_motion(const Pose& T_world_camera, const Chessboard& board,
                                          std::uint64_t seed);
 

@@ -14,11 +14,11 @@ namespace {
 
 constexpr int k_markers = 5;
 constexpr double k_marker_radius_m = 0.005;
-constexpr double k_marker_gap_m = 0.028;  // centre to centre: blobs stay apart from most sides
+constexpr double k_marker_gap_m = 0.028;  // between centres: most views separate the blobs
 const Vector3 k_tool_box_m{0.09, 0.09, 0.05};
 constexpr int k_draws_max = 10'000;
 
-// Four columns and four rows that AHAT's lens sees as a whole, from the middle outwards.
+// Four columns and four rows inside the field of view of AHAT, from the centre outwards.
 constexpr double k_pitch_m = 0.15;
 constexpr double k_distance_m = 0.55;
 
@@ -38,7 +38,7 @@ Tool drawn_tool(int number, std::uint64_t seed) {
     const Vector3 place = in_box(key, draw, k_tool_box_m);
     bool apart = true;
     for (int i = 0; i < tool.marker_count; ++i) {
-      // Side by side, not one behind the other: both are to be seen.
+      // Lateral distance, since both must be visible from the front.
       const Vector3 away = place - tool.markers_m[static_cast<std::size_t>(i)];
       apart = apart && away.head<2>().norm() >= k_marker_gap_m;
     }

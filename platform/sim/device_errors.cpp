@@ -11,11 +11,12 @@ namespace {
 constexpr double k_turn = 2 * std::numbers::pi;
 constexpr int k_oscillations = 6;
 constexpr int k_lens_waves = 4;
-constexpr double k_lens_wave_px = 350;  // mean length
+constexpr double k_lens_wave_px = 350;  // mean wavelength
 
 double sine(double radians) { return sine_cosine(radians).sine; }
 
-// Variance 1 over long times; a part starts where it likes.
+// Correlated error: sum of sines with random phases and stratified log-uniform frequencies.
+// Variance 1 over long times.
 double slow_error(const RandomKey& key, std::uint64_t part, double seconds) {
   const double span = logarithm(k_fastest_hz / k_slowest_hz);
   double sum = 0;
@@ -28,7 +29,7 @@ double slow_error(const RandomKey& key, std::uint64_t part, double seconds) {
   return sum * std::sqrt(2.0 / k_oscillations);
 }
 
-// Variance 1 over the image.
+// Smooth lens residual: sum of random plane waves. Variance 1 over the image.
 double lens_field(const RandomKey& key, std::uint64_t axis, const Vector2& pixel) {
   double sum = 0;
   for (std::uint64_t k = 0; k < k_lens_waves; ++k) {

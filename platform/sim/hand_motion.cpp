@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t k_waves = 5;
 
-// Three axes, each a sum of waves whose amplitude falls with their frequency, as a hand's does.
+// Three axes, each a sum of sines with amplitude inversely proportional to frequency, as for a
+// hand.
 class Wander {
  public:
   Wander(const RandomKey& key, double rms, double slowest_hz, double fastest_hz) {

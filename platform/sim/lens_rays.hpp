@@ -1,4 +1,4 @@
-// The camera's unit rays, one a pixel, looked up once and used for every frame.
+// Table of the camera's unit rays per pixel, computed once for all frames.
 #pragma once
 
 #include <cstdint>
@@ -20,19 +20,19 @@ class LensRays {
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] bool has_ray(int x, int y) const { return mask_[at(x, y)] != 0; }
-  // All bits set where the lens maps the pixel, none elsewhere; for integer arithmetic.
+  // All bits set if the lens maps the pixel, otherwise 0; mask for integer arithmetic.
   [[nodiscard]] const std::uint16_t* mask_row(int y) const { return mask_.data() + at(0, y); }
-  // z of the unit ray: radial range to depth along the axis.
+  // z of the unit ray: converts radial range to depth along the axis.
   [[nodiscard]] const float* z_row(int y) const { return z_.data() + at(0, y); }
   [[nodiscard]] Vector3 ray(int x, int y) const {
     const Ray& r = rays_[at(x, y)];
     return {double{r.x}, double{r.y}, double{r.z}};
   }
 
-  // How the ray changes from one pixel to the next, to the right and down, at this pixel.
+  // Derivative of the ray per pixel, to the right and down.
   struct Slopes {
     Vector3 right, down;
-    [[nodiscard]] double finest_rad() const;  // angle of a pixel, the smaller of the two
+    [[nodiscard]] double finest_rad() const;  // smaller angle of a pixel
     [[nodiscard]] double coarsest_rad() const;
   };
   [[nodiscard]] Slopes slopes(int x, int y) const;

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double k_step_s = k_localisation_step.seconds();
 
-// Standard deviation 1 in the long run, correlation exp(-dt / time) between steps.
+// First-order Gauss-Markov process: stationary standard deviation 1, correlation exp(-dt / time)
+// between steps.
 struct ReturningWalk {
   RandomKey key;
   double keep = 0, renew = 1;

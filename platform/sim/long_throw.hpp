@@ -1,11 +1,12 @@
-// Depth pictures of a simulated headset's mapping camera, with a robot in them that the tracking
-// camera's frames do not show.
+// Depth images of a simulated headset's mapping camera, with a robot that the tracking camera's
+// frames do not contain.
 //
-// What:     the scenario's room, pen, hands, and a robot's triangles, as depth along the axis of
-//           a pinhole of 80 x 72 pixels that looks as the tracking camera does, with noise.
-// Accuracy: the room's as the simulator draws it, the robot's to float's rounding.
-// Source:   HoloLens 2's long-throw mode, every fourth pixel of its 320 x 288 on each side; focal
-//           length and noise are declared here.
+// What:     renders the scenario's room, pen, hands, and a robot's triangles as depth along the
+//           axis of a pinhole camera of 80 x 72 pixels, with the pose of the tracking camera and
+//           with noise.
+// Accuracy: the room's is that of the simulator; the robot's is limited by float rounding.
+// Source:   HoloLens 2's long-throw mode, every fourth pixel of its 320 x 288 in both directions;
+//           focal length and noise are declared here.
 #pragma once
 
 #include <vector>
@@ -17,17 +18,17 @@
 
 namespace glint {
 
-// 77 degrees from side to side.
+// Horizontal field of view 77 degrees.
 inline constexpr Pinhole k_long_throw{80, 72, 50, 50, 40, 36};
 inline constexpr double k_long_throw_sigma_m = 0.002;
 
 class LongThrow {
  public:
-  // The robot's triangles stand in its base's frame. The simulator outlives this.
+  // Triangles of the robot are in its base frame. The simulator must outlive this object.
   LongThrow(const sim::Simulator& simulator, PosedSurface robot, const Pose& T_world_robot);
 
-  // Of the simulator's frame `i`, at its true mid-exposure: metres, row by row. `frame` becomes
-  // that frame's description; its head pose is where the headset takes itself to be.
+  // Returns the depth of the simulator's frame `i` at its true mid-exposure: metres, row by row.
+  // `frame` receives the description of that frame, with the head pose estimated by the headset.
   [[nodiscard]] std::vector<float> depth(int i, sim::SimFrame& frame);
 
  private:

@@ -1,4 +1,4 @@
-// Where a body is at any time: a pure function, so that frames may be rendered in any order.
+// Motion of a body: pose as a pure function of time, so that frames can be rendered in any order.
 #pragma once
 
 #include <memory>
@@ -16,13 +16,13 @@ class Motion {
 
 using MotionPointer = std::shared_ptr<const Motion>;
 
-// At rest.
+// Constant pose.
 [[nodiscard]] MotionPointer fixed_motion(const Pose& pose);
 
-// T_parent_child(t) = parent(t) * child(t): e.g. a pen whose motion is given in the camera's frame.
+// T_parent_child(t) = parent(t) * child(t), e.g. for a pen with its motion in the camera's frame.
 [[nodiscard]] MotionPointer attached_motion(MotionPointer parent, MotionPointer child);
 
-// 0 before begin, 1 after begin + length, smooth to the second derivative between.
+// Quintic step: 0 before begin, 1 after begin + length, continuous second derivative.
 [[nodiscard]] double smooth_step(double seconds, double begin, double length);
 
 }  // namespace glint::sim

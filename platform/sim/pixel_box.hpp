@@ -1,4 +1,4 @@
-// A rectangle of pixels, half open.
+// Half-open rectangle of pixels.
 #pragma once
 
 #include "kernels/geometry.hpp"
@@ -31,7 +31,7 @@ struct PixelBox {
   }
 };
 
-// The angle of the pixel at this place, or of the nearest one in the frame.
+// Angle of the pixel at this position, or of the nearest one in the frame.
 [[nodiscard]] inline double finest_pixel_rad(const LensRays& rays, const Vector2& pixel) {
   const double x = pixel.x() < 0 ? 0 : pixel.x() > rays.width() - 1 ? rays.width() - 1 : pixel.x();
   const double y = pixel.y() < 0                   ? 0

@@ -1,4 +1,4 @@
-// A recorded motion, placed into the simulated world.
+// Places a recorded motion in the simulated world.
 #pragma once
 
 #include "kernels/geometry.hpp"
@@ -7,8 +7,8 @@
 
 namespace glint::sim {
 
-// The recording's deviations from its own middle (centre of its box, mean orientation), scaled, in
-// the axes of that mean orientation; `anchor` is that middle's pose.
+// Deviations from the recording's centre (centre of its box, mean orientation), scaled, in the axes
+// of the mean orientation. `anchor` is the pose of the centre.
 struct Placement {
   Pose anchor;
   double position_scale = 1;
@@ -17,7 +17,7 @@ struct Placement {
 
 [[nodiscard]] MotionPointer placed_motion(Trajectory trajectory, const Placement& placement);
 
-// The scale that makes the largest half side of the recording's box this long.
+// Returns the scale that makes the largest half side of the recording's box equal to half_extent_m.
 [[nodiscard]] double scale_to_half_extent(const Trajectory& trajectory, double half_extent_m);
 
 }  // namespace glint::sim

@@ -1,4 +1,4 @@
-// The perfect picture before the sensor sees it.
+// Noise-free image of signal and range, input of the sensor model.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@ namespace glint::sim {
 
 struct Planes {
   int width = 0, height = 0;
-  std::vector<float> signal;   // counts, unclipped
-  std::vector<float> range_m;  // radial, unwrapped; 0: nothing comes back
+  std::vector<float> signal;   // counts, not clipped
+  std::vector<float> range_m;  // radial, not wrapped; 0: no return
 
   void resize(int w, int h) {
     width = w;

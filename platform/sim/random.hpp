@@ -1,9 +1,8 @@
-// Random numbers by counter: the value depends on (seed, stream, index) alone, so that any frame
-// can be rendered first, by any thread, on any machine, with the same bytes.
+// Counter-based random numbers: a value depends only on (seed, stream, index). Frames can be
+// rendered in any order, by any thread, on any machine, with the same bytes.
 //
 // Source: SplitMix64's finalizer (Steele, Lea, Flood 2014, Fast splittable pseudorandom number
-//         generators, figure 16), applied to each key in turn; normal values by Box and Muller
-//         1958.
+// generators, figure 16), applied to each key in turn; normal values by Box and Muller 1958.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +12,7 @@
 
 namespace glint::sim {
 
-// What a stream of random numbers is for; each has its own.
+// Purpose of a random stream; streams are independent.
 enum class Stream : std::uint64_t {
   noise_table = 1,
   row_offset = 2,
@@ -43,7 +42,7 @@ enum class Stream : std::uint64_t {
 struct RandomKey {
   std::uint64_t seed = 0;
   Stream stream = Stream::noise_table;
-  std::uint64_t instance = 0;  // e.g. which tool
+  std::uint64_t instance = 0;  // e.g. index of a tool
 
   [[nodiscard]] constexpr std::uint64_t bits(std::uint64_t index) const {
     const std::uint64_t key = mixed(mixed(seed) ^ static_cast<std::uint64_t>(stream));
@@ -51,15 +50,15 @@ struct RandomKey {
   }
 };
 
-// In (0, 1), never the ends.
+// Uniform in (0, 1), without the ends.
 [[nodiscard]] double uniform(const RandomKey& key, std::uint64_t index);
 
-// Mean 0, standard deviation 1; |value| < 8.6.
+// Standard normal; |value| < 8.6.
 [[nodiscard]] double gaussian(const RandomKey& key, std::uint64_t index);
 [[nodiscard]] Vector3 gaussian_vector(const RandomKey& key, std::uint64_t index);
 
-// count normal values, at least 2, whose own mean is 0 and standard deviation 1: used over and
-// over, they would otherwise make every frame too bright by the same amount.
+// Returns `count` normal values (at least 2) with sample mean 0 and sample standard deviation 1.
+// The table is reused, so its own mean would bias every frame by the same amount.
 [[nodiscard]] std::vector<float> gaussian_table(const RandomKey& key, int count);
 
 }  // namespace glint::sim

@@ -10,22 +10,22 @@ namespace glint::sim {
 namespace {
 
 constexpr int k_hiders_max = 32;
-constexpr int k_hidden_samples = 4;  // inside, where something may hide it
+constexpr int k_hidden_samples = 4;  // inside, if an occluder may hide it
 
 // Sums over the rays of one pixel.
 struct Light {
-  double rays = 0;    // that meet the reflector, were nothing in the way
-  double open = 0;    // of them, not hidden
-  double signal = 0;  // summed over open
-  double range = 0;   // summed over open, weighted by signal
+  double rays = 0;    // hit the reflector, without occlusion
+  double open = 0;    // of these, not occluded
+  double signal = 0;  // sum over open
+  double range = 0;   // sum over open, weighted by signal
 };
 
 struct Traced {
-  double range = 0, signal = 0;  // range 0: missed
+  double range = 0, signal = 0;  // range 0: no hit
 };
 
-// How far a unit ray's point nearest to the reflector is inside its rim, metres (negative:
-// outside). `footprint` is the size in metres over which a pixel spreads this there.
+// inside: distance in metres of the ray's point nearest to the reflector from its edge, positive
+// inside. footprint: size of a pixel at that point, metres.
 struct Rim {
   double inside = 0, footprint = 0;
 };

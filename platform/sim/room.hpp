@@ -1,4 +1,4 @@
-// What stands behind the pen: a drawn room that the head moves through, or one real frame.
+// Background of the scene: a synthetic room, or one real frame.
 #pragma once
 
 #include <vector>
@@ -9,10 +9,10 @@
 
 namespace glint::sim {
 
-// Aligned with the world's axes (x ahead, y left, z up). Seen from inside it is a room.
+// Box aligned with the world's axes (x ahead, y left, z up). From inside it is a room.
 struct Box {
   Vector3 low = Vector3::Zero(), high = Vector3::Zero();  // metres
-  double albedo = 0.5;                                    // of SignalSettings::wall
+  double albedo = 0.5;                                    // relative to SignalSettings::wall
 };
 
 struct Room {
@@ -20,19 +20,19 @@ struct Room {
   std::vector<Box> furniture;
 };
 
-// A table below the pen, a cabinet, a screen.
+// Returns a room with a table below the pen, a cabinet and a screen.
 [[nodiscard]] Room furnished_room();
 
-// One frame for all time, in the camera's pixels: reflectivity in counts, radial range in metres, 0
-// where there is none. Empty: the room is drawn instead.
+// One frame for all times, in the camera's pixels: reflectivity in counts, radial range in metres,
+// 0 without range. Empty: the room is rendered instead.
 struct BackgroundFrame {
   std::vector<float> reflectivity;
   std::vector<float> range_m;
   [[nodiscard]] bool empty() const { return reflectivity.empty(); }
 };
 
-// The frame's reflectivity as it stands; its depth by the camera's DepthSettings, never unwrapped.
-// Throws InputError if the frame has another size than the camera, or no depth.
+// Keeps the frame's reflectivity; converts its depth by the camera's DepthSettings, without
+// unwrapping. Throws InputError if the frame's size differs from the camera's, or without depth.
 [[nodiscard]] BackgroundFrame background_from_frame(const FrameBuffer& frame, const Camera& camera);
 
 }  // namespace glint::sim

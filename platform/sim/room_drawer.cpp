@@ -11,9 +11,9 @@ struct Seen {
   double cosine = 0;
 };
 
-double shade(int face) { return 0.7 + 0.06 * face; }  // so that two walls differ
+double shade(int face) { return 0.7 + 0.06 * face; }  // makes the walls differ
 
-// Slabs: the ray is between the two planes of each axis from `entry` to `leave`.
+// Slab method: the ray is between the two planes of each axis from `entry` to `leave`.
 void trace_box(const Box& box, const Vector3& origin, const Vector3& ray, Seen& seen) {
   double entry = -1e9, leave = 1e9;
   int entry_face = 0, leave_face = 0;
@@ -40,7 +40,7 @@ void trace_box(const Box& box, const Vector3& origin, const Vector3& ray, Seen& 
   seen = {range, box.albedo * shade(2 * axis + side), std::abs(ray[axis])};
 }
 
-// Beyond the lens: the ray of the nearest place towards its middle that has one.
+// Outside of the lens's field: the ray of the nearest valid position towards the centre.
 Vector3 nearest_ray(const CameraModel& model, const Vector2& pixel) {
   constexpr int k_steps = 64;
   const Vector2 middle(model.cx, model.cy);

@@ -1,5 +1,5 @@
-// Draws the room: traced at every k_room_step_px-th pixel, linear between, so that it follows the
-// head at little cost. Edges of furniture are bevelled by that step.
+// Renders the room: ray-traces every k_room_step_px-th pixel and interpolates linearly, to follow
+// the head at low cost. Edges of furniture are bevelled by that step.
 #pragma once
 
 #include <array>
@@ -17,11 +17,11 @@ inline constexpr std::size_t k_room_columns_max = k_width_max / k_room_step_px +
 class RoomDrawer {
  public:
   explicit RoomDrawer(const CameraModel& model);
-  // wall_signal: counts of albedo 1 at 0.5 m, head on.
+  // wall_signal: counts of albedo 1 at 0.5 m, normal incidence.
   void draw(const Room& room, const Pose& T_world_camera, double wall_signal, Planes& planes) const;
 
  private:
-  // Signals, then ranges, of one row of traced pixels.
+  // Writes the signals, then the ranges, of one row of traced pixels.
   void trace_row(const Room& room, const Pose& T_world_camera, double wall_signal, int row,
                  std::array<float, 2 * k_room_columns_max>& out) const;
   void fill_row(const std::array<float, 2 * k_room_columns_max>& upper,

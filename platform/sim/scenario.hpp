@@ -1,4 +1,4 @@
-// Everything that a simulated run consists of, as plain declared values.
+// Scenario: all parameters of a simulated run, as plain declared values.
 #pragma once
 
 #include <cstdint>
@@ -17,30 +17,30 @@
 
 namespace glint::sim {
 
-// A thick line: the pen's shaft, a finger, a forearm.
+// Capsule: the pen's shaft, a finger, a forearm.
 struct Capsule {
   Vector3 a = Vector3::Zero(), b = Vector3::Zero();  // metres
   double radius_m = 0;
   double signal = 0;  // counts at 0.5 m
 };
 
-// A tool and what moves with it, in the tool's frame.
+// A tool and the parts that move with it, in the tool's frame.
 struct ToolBody {
   Tool tool;
   MotionPointer motion;                    // T_world_tool
-  Vector3 disc_normal = Vector3::UnitX();  // flat discs: their normal; both faces reflect
-  std::vector<Capsule> parts;              // shaft, hand: they hide markers
+  Vector3 disc_normal = Vector3::UnitX();  // normal of flat discs; both faces reflect
+  std::vector<Capsule> parts;              // shaft, hand: they occlude markers
 };
 
-// Bright things that are no tool: lamps, tape. They stand in the world.
+// Bright objects that are no tool: lamps, tape. Fixed in the world.
 struct Clutter {
   Vector3 position_m = Vector3::Zero();
-  Vector3 normal = Vector3::Zero();  // a disc's; zero: a sphere
+  Vector3 normal = Vector3::Zero();  // of a disc; zero: a sphere
   double radius_m = 0.005;
   double signal = 8000;  // counts at 0.5 m
 };
 
-// A hand between camera and tool: a ball that comes from the side, on the line to the tool.
+// A hand between camera and tool: a sphere that enters from the side, on the line to the tool.
 struct OcclusionEvent {
   Interval during;
   int tool = 0;
@@ -48,7 +48,7 @@ struct OcclusionEvent {
   double share_of_range = 0.6;
 };
 
-// The tool leaves: moved by `away` (world) within the interval, with way_s of way out and back.
+// The tool leaves: displaced by away_m (world) within the interval, with way_s for each transition.
 struct AwayEvent {
   Interval during;
   int tool = 0;
@@ -58,7 +58,7 @@ struct AwayEvent {
 
 struct Scenario {
   Camera camera;
-  std::vector<ToolBody> tools;  // k_tools_max at most
+  std::vector<ToolBody> tools;  // at most k_tools_max
   MotionPointer head;           // T_world_camera
   std::uint64_t seed = 1;
   Duration duration = milliseconds(60'000);

@@ -9,7 +9,7 @@
 namespace glint::sim {
 namespace {
 
-// An arm's length ahead and below the eyes; world: x ahead, y left, z up, origin at the camera.
+// At arm's length ahead and below the eyes; world: x ahead, y left, z up, origin at the camera.
 const Vector3 k_camera_m{0, 0, 0};
 const Vector3 k_workplace_m{0.44, 0, -0.2};
 const Vector3 k_table_m{0.52, 0.16, -0.34};
@@ -60,7 +60,7 @@ Scenario hololens1(const std::vector<Tool>& tools) {
   scenario.signal = hololens1_signal();
   scenario.localisation = hololens1_localisation();
   scenario.room = furnished_room();
-  // The outside tracker has axes of its own: the experiment must align them.
+  // The external tracker has its own axes: the experiment must align them.
   scenario.reference.T_reference_world = {Quaternion(0.9, 0.1, -0.2, 0.3).normalized(),
                                           Vector3(1.2, -0.7, 0.9)};
   hold_still(scenario, tools_or_pen(tools));
@@ -84,7 +84,7 @@ Scenario still_run(const Camera& camera, const std::vector<Tool>& tools) {
 
 void lay_on_table(Scenario& scenario, std::size_t tool) {
   ToolBody& body = scenario.tools.at(tool);
-  Matrix3 axes;  // the tool's, in the world: z off the table, 30 degrees towards the camera
+  Matrix3 axes;  // of the tool, in the world: z up from the table, 30 degrees towards the camera
   axes.col(2) = Vector3(-0.5, 0, 0.8660254037844386);
   axes.col(0) = -Vector3::UnitY();
   axes.col(1) = axes.col(2).cross(axes.col(0));
@@ -102,7 +102,7 @@ Scenario hand_held_run(const Camera& camera, const std::vector<Tool>& tools, std
   head.target_m = k_workplace_m;
   scenario.head = head_motion(head, scenario.seed);
   draw_by_hand(scenario, tools_or_pen(tools), HandSettings{});
-  // A lamp on the cabinet that saturates, two strips of reflective tape, three balls of a marker's
+  // A saturating lamp on the cabinet, two strips of reflective tape, three spheres of a marker's
   // size.
   scenario.clutter.push_back({{0.85, 0.5, 0.02}, Vector3::Zero(), 0.05, 400'000});
   scenario.clutter.push_back({{0.79, -0.45, -0.25}, {-1, 0, 0}, 0.03, 9'000});
@@ -129,7 +129,7 @@ Scenario trajectory_run(const Camera& camera, const std::vector<Tool>& tools,
   scenario.duration = pen.length();
   const Pose T_world_camera = look_at(k_camera_m, k_workplace_m);
   scenario.head = placed_motion(head, {T_world_camera, 1.0, 1.0});
-  // The pen turns about its markers' middle, which so stays where the recording puts it.
+  // The pen rotates about the centroid of its markers, so that the centroid follows the recording.
   ToolBody& body = scenario.tools.front();
   const Pose to_middle{Quaternion::Identity(), middle_of(body.tool)};
   const Pose T_camera_middle = T_world_camera.inverse() * body.motion->pose(Time{}) * to_middle;
@@ -186,8 +186,9 @@ SignalSettings hololens1_signal() {
   return signal;
 }
 
-// Set once, for both experiments, so that the published method gives the published figures; every
-// motion_ and _per_ figure acts only while the head moves, every rest_ figure always.
+// Determined once for both experiments, so that the baseline (Puljiz et al.) reproduces its
+// published figures. motion_ and _per_ parameters act only while the head moves, rest_ parameters
+// always.
 LocalisationSettings hololens1_localisation() {
   LocalisationSettings localisation;
   localisation.rest_position_m = 0.00203;

@@ -1,4 +1,4 @@
-// Ready-made runs.
+// Predefined scenarios.
 #pragma once
 
 #include <string>
@@ -9,35 +9,34 @@
 
 namespace glint::sim {
 
-inline constexpr int k_aligning_frames = 1000;  // still, before each experiment's samples
+inline constexpr int k_aligning_frames = 1000;  // static, before each experiment's samples
 inline constexpr int k_static_frames = 5000;
 inline constexpr int k_dynamic_frames = 2000;  // in each of k_dynamic_runs
 inline constexpr int k_dynamic_runs = 5;
 
-// HoloLens 2 AHAT, 60 s: the camera falls to 5 Hz for 4 s, a hand hides the pen for 1 s, the pen is
-// away for 2 s, hands and bright clutter all the time. No tools named: the built-in pen.
+// HoloLens 2 AHAT, 60 s, with hands and bright clutter. The camera drops to 5 Hz for 4 s, a hand
+// hides the pen for 1 s, the pen is away for 2 s. Default tool: the built-in pen.
 [[nodiscard]] Scenario default_run(const std::vector<Tool>& tools = {});
 
-// The same place without events, clutter or motion.
+// The same scene without events, clutter or motion.
 [[nodiscard]] Scenario still_run(const Camera& camera, const std::vector<Tool>& tools = {});
 
-// The default run's place, motion and clutter without its events, on another camera.
+// Scene, motion and clutter of the default run without its events, with another camera.
 [[nodiscard]] Scenario hand_held_run(const Camera& camera, const std::vector<Tool>& tools,
                                      std::uint64_t seed);
 
-// Puts one of the scenario's tools on the table beside the workplace, free of any hand, where it
-// stays: a reference.
+// Lays one of the tools on the table beside the workplace, without a hand: a static reference.
 void lay_on_table(Scenario& scenario, std::size_t tool);
 
-// Recorded motion: the head's as recorded, the first tool's in the camera's frame, at arm's length,
-// scaled. Other tools rest in the world.
+// Recorded motion: the head's unchanged, the first tool's in the camera's frame, at arm's length,
+// scaled. Other tools are static in the world.
 [[nodiscard]] Scenario trajectory_run(const Camera& camera, const std::vector<Tool>& tools,
                                       const Trajectory& head, const Trajectory& pen,
                                       double pen_scale);
 
-// HoloLens 1. Static: headset and pen still, an arm's length apart, k_aligning_frames +
-// k_static_frames. Dynamic: k_aligning_frames still, then k_dynamic_frames with both moving; run
-// 0..k_dynamic_runs-1 differ in their seed. Both have the one set of declared error sources.
+// HoloLens 1. Static: headset and pen static, at arm's length, k_aligning_frames + k_static_frames.
+// Dynamic: k_aligning_frames static, then k_dynamic_frames with both in motion; the runs
+// 0..k_dynamic_runs-1 differ in their random seed. Both have the same declared error sources.
 [[nodiscard]] Scenario experiment_static(const std::vector<Tool>& tools = {});
 [[nodiscard]] Scenario experiment_dynamic(int run, const std::vector<Tool>& tools = {});
 [[nodiscard]] NoiseSettings hololens1_noise();

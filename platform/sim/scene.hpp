@@ -1,4 +1,4 @@
-// What stands before the camera at one frame's mid-exposure, in the camera's frame.
+// Objects in front of the camera at one frame's mid-exposure, in the camera's frame.
 #pragma once
 
 #include <array>
@@ -27,17 +27,17 @@ struct Bounded {
 
 struct Scene {
   Pose T_world_camera;
-  Bounded<Reflector, k_reflectors_max> reflectors;  // the farthest first
+  Bounded<Reflector, k_reflectors_max> reflectors;  // farthest first
   Bounded<Capsule, k_capsules_max> capsules;
 };
 
-// T_world_tool, the scenario's AwayEvents included.
+// Returns T_world_tool, including the scenario's AwayEvents.
 [[nodiscard]] Pose tool_pose(const Scenario& scenario, int tool, Time time);
 
-// Mean of the markers, tool frame.
+// Returns the centroid of the markers, tool frame.
 [[nodiscard]] Vector3 middle_of(const Tool& tool);
 
-// sequence: chooses the blobs' own errors.
+// sequence: selects the random errors of the blobs.
 void build_scene(const Scenario& scenario, Time mid_exposure, std::uint64_t sequence, Scene& out);
 
 }  // namespace glint::sim

@@ -9,14 +9,14 @@
 namespace glint::sim {
 namespace {
 
-constexpr int k_table_starts = 1 << 16;  // 256 kB: stays in the second-level cache
-constexpr int k_table_row = 512;         // of it, at least: the same table for every smaller camera
+constexpr int k_table_starts = 1 << 16;  // 256 kB: fits the second-level cache
+constexpr int k_table_row = 512;         // minimum row length: the same table for smaller cameras
 
 float lesser(float a, float b) { return a < b ? a : b; }
 float greater(float a, float b) { return a > b ? a : b; }
 
-// Single precision, no branch and one operation at a time: any compiler may do four pixels at once
-// and gets the same bits.
+// Single precision, branch-free, each operation rounded separately: vectorised code of any compiler
+// gives the same bits.
 template <class Pixel>
 void reflectivity_row(const float* signal, const float* normal, const std::uint16_t* mask,
                       const NoiseSettings& noise, float ceiling, int width, Pixel* out) {
@@ -45,7 +45,7 @@ DepthRow depth_row_of(const DepthSettings& depth, const NoiseSettings& noise) {
           static_cast<float>(depth.invalid_from)};
 }
 
-// along: the ray's z where depth is measured along the axis, else 1 everywhere.
+// along: z of the ray if depth is along the axis, otherwise 1.
 void depth_row(const float* signal, const float* range, const float* normal, const float* along,
                const std::uint16_t* mask, const DepthRow& row, int width, std::uint16_t* out) {
   for (int x = 0; x < width; ++x) {

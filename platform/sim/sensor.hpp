@@ -1,10 +1,10 @@
-// From the perfect picture to what the sensor delivers: noise, saturation, wrap, quantisation.
+// Sensor model: noise, saturation, wrap and quantisation of a noise-free image.
 //
-// What:     reflectivity = signal + noise, rounded, clipped at 8 or 16 bit; depth = range + noise,
-//           wrapped, in raw units, 0 where the signal is too weak or saturates, where the range is
-//           beyond the sensor's, and where the lens maps nothing.
-// Cost:     one pass; the normal values come from a table, read from a place that the seed, the
-//           frame and the row choose.
+// What:     reflectivity = signal + noise, rounded, clipped at 8 or 16 bit. depth = range + noise,
+//           wrapped, in raw units; 0 if the signal is too weak or saturates, if the range exceeds
+//           the sensor's, or if the lens maps nothing.
+// Cost:     one pass; normal values come from a table, at an offset given by random seed, frame and
+//           row.
 #pragma once
 
 #include <cstdint>

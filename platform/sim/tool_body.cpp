@@ -27,7 +27,7 @@ Vector3 square_to(const Vector3& axis) {
   return axis.cross(other).normalized();
 }
 
-// Distance, as seen, between a marker and the shaft where that passes before it; else large.
+// Apparent distance between a marker and a shaft that passes in front of it; otherwise large.
 double gap_to_shaft(const Tool& tool, const Vector3& middle, int i, const Vector3& direction) {
   const Vector3 along = middle - tool.tip_m;
   const Vector3 seen_along = along - along.dot(direction) * direction;
@@ -39,7 +39,7 @@ double gap_to_shaft(const Tool& tool, const Vector3& middle, int i, const Vector
   return to_marker.dot(direction) > 0 ? 1.0 : to_marker.cross(direction).norm();
 }
 
-// How many markers stand clear as seen from this direction, and by how much the closest two do.
+// Returns the number of markers separate from this direction, plus the smallest gap (tie-break).
 double clear_markers(const Tool& tool, const Vector3& middle, const Vector3& direction) {
   const double apart = 2 * tool.marker_radius_m + k_clear_m;
   const double beside = tool.marker_radius_m + k_shaft_radius_m + 0.2 * k_clear_m;
@@ -54,7 +54,7 @@ double clear_markers(const Tool& tool, const Vector3& middle, const Vector3& dir
     if (gap >= apart && gap_to_shaft(tool, middle, i, direction) >= beside) clear += 1;
     if (gap < least) least = gap;
   }
-  return clear + least;  // metres: far below one marker
+  return clear + least;  // gap in metres: far below one marker
 }
 
 double score(const Tool& tool, const Vector3& middle, const Vector3& direction) {
@@ -69,7 +69,7 @@ double score(const Tool& tool, const Vector3& middle, const Vector3& direction) 
   return sum;
 }
 
-// The normal of the largest triangle: where flat discs look.
+// Normal of the largest triangle: viewing direction of flat discs.
 Vector3 plane_normal(const Tool& tool) {
   Vector3 best = Vector3::UnitX();
   double largest = 0;
@@ -94,7 +94,7 @@ Grip best_grip(const Tool& tool) {
     grip.towards_camera = plane_normal(tool);
   } else {
     double best = -1;
-    for (int i = 0; i < k_directions; ++i) {  // a Fibonacci sphere
+    for (int i = 0; i < k_directions; ++i) {  // Fibonacci sphere
       const double z = 1 - (2.0 * i + 1) / k_directions;
       const SineCosine turn = sine_cosine(k_golden_angle * i);
       const double across = std::sqrt(1 - z * z);
@@ -131,7 +131,7 @@ ToolBody held_tool(const Tool& tool, const Grip& grip, const SignalSettings& sig
   body.tool = tool;
   body.motion = std::move(motion);
   body.disc_normal = grip.towards_camera;
-  double lowest = 0;  // along up, from the middle
+  double lowest = 0;  // along up, from the centroid
   for (int i = 0; i < tool.marker_count; ++i) {
     const double height = (marker(tool, i) - grip.middle).dot(grip.up);
     if (height < lowest) lowest = height;

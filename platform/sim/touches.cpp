@@ -14,7 +14,7 @@ namespace {
 
 constexpr double k_lift_m = 0.04;  // of the tool, between two touches
 
-// One motion after the other, and a smooth way between two.
+// Sequence of motions, with a smooth transition between two.
 class Stations final : public Motion {
  public:
   Stations(std::vector<MotionPointer> stations, const TouchSettings& settings, double lift_m)
@@ -40,7 +40,7 @@ class Stations final : public Motion {
   double lift_m_;
 };
 
-// Draws one after the other.
+// Sequence of uniform random numbers.
 class TouchDraws {
  public:
   explicit TouchDraws(std::uint64_t seed) : key_{seed, Stream::touches} {}

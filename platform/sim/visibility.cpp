@@ -7,7 +7,7 @@ bool stands_alone(const Scene& scene, const DrawnReflectors& drawn, int index) {
   const Drawn& own = drawn[static_cast<std::size_t>(index)];
   for (int i = 0; i < scene.reflectors.count; ++i) {
     const Drawn& other = drawn[static_cast<std::size_t>(i)];
-    if (i == index || other.peak_signal == 0) continue;  // a hidden one merges with nothing
+    if (i == index || other.peak_signal == 0) continue;  // a hidden reflector merges with none
     const double reach = own.radius_px + other.radius_px + k_gap_px;
     if ((own.pixel - other.pixel).squaredNorm() < reach * reach) return false;
   }

@@ -1,13 +1,13 @@
-// Which markers are visible by truth alone: what `trackable` frames are counted by.
+// Visibility of markers from ground truth alone: the rule behind the count of `trackable` frames.
 //
 // A marker is visible if
-//   - at least k_open_share_min of its disc (its silhouette) is unobstructed: a pixel whose ray the
+//   - at least k_open_share_min of its disc (its silhouette) is unobstructed; a pixel whose ray the
 //     lens does not map counts as obstructed,
-//   - its disc lies inside the image,
+//   - its disc is inside the image,
 //   - its range is within the camera's range_min_m..range_max_m,
-//   - it is not merged with another reflector: no other disc that sends light into the image comes
-//     within k_gap_px of its own, where two discs may make one blob.
-// Brightness is no part of it: the threshold belongs to the tracker.
+//   - it is isolated: no other disc that sends light into the image is within k_gap_px of its own,
+//     where two discs may merge into one blob.
+// Brightness has no influence, since the threshold belongs to the tracker.
 #pragma once
 
 #include <array>
@@ -25,6 +25,6 @@ inline constexpr double k_gap_px = 2.0;
 using DrawnReflectors = std::array<Drawn, k_reflectors_max>;  // in the scene's order
 
 void find_visible(const Camera& camera, const Scene& scene, const DrawnReflectors& drawn,
-                  std::vector<std::uint8_t>& masks);  // one a tool; sized by the caller
+                  std::vector<std::uint8_t>& masks);  // one per tool; sized by the caller
 
 }  // namespace glint::sim
