@@ -24,8 +24,8 @@ void read_range_uncertainty(const NamedFile& file, CameraUncertainty& uncertaint
 // [camera]: lens parameters. Requires the image size of `camera`.
 [[nodiscard]] CameraModel lens_of(const NamedFile& file, const CameraModel& camera);
 
-// Sets the range uncertainty from the standard deviations of a bias's offset and slope, of the
-// focal length by which they were measured, and of the range error that neither models.
+// Sets the range uncertainty from the standard deviations of a bias's offset and slope. Adds that
+// of the focal length by which they were measured, and the range error that neither models.
 void state_range_uncertainty(double offset_sigma_m, double slope_sigma,
                              CameraUncertainty& uncertainty);
 // File of [camera]: standard deviations of principal point and focal length, if stated.

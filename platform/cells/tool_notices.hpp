@@ -12,8 +12,8 @@ namespace glint {
 // Within one sigma a frame cannot distinguish the labelings: such a cell is refused.
 inline constexpr double k_refused_sigmas = 1.0;
 
-// Shortest displacement, in whole millimetres along an axis of its frame, of one marker of the
-// later tool that moves this labeling beyond the limit. Another labeling may then be the nearest.
+// Shortest displacement of one marker of the later tool that moves this labeling beyond the limit.
+// In whole millimetres along an axis of its frame. Another labeling may then be the nearest.
 struct MarkerMove {
   int tool = 0, marker = 0, axis = 0;
   int mm = 0;  // negative: against the axis

@@ -1,7 +1,7 @@
 // Renders a chessboard as seen through the device's own lens, for `glint calibrate camera`.
 //
 // What:     evaluates the target's brightness at each pixel's ray and averages it over the pixel's
-//           footprint on the target, so that corners agree with their projections to 0.01 px.
+//           footprint on the target. Corners then agree with their projections to 0.01 px.
 // Cost:     one plane and two averages per pixel.
 // Accuracy: approximates the footprint by a rectangle along the target's sides.
 #pragma once

@@ -2,8 +2,8 @@
 // frames do not contain.
 //
 // What:     renders the scenario's room, pen, hands, and a robot's triangles as depth along the
-//           axis of a pinhole camera of 80 x 72 pixels, with the pose of the tracking camera and
-//           with noise.
+//           axis of a pinhole camera of 80 x 72 pixels, with noise. The camera has the pose of the
+//           tracking camera.
 // Accuracy: the room's is that of the simulator; the robot's is limited by float rounding.
 // Source:   HoloLens 2's long-throw mode, every fourth pixel of its 320 x 288 in both directions;
 //           focal length and noise are declared here.
