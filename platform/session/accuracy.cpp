@@ -8,15 +8,16 @@
 namespace glint {
 namespace {
 
-// From a marker to the nearest point of its blob's ray.
+// Vector from a marker to the nearest point of its blob's ray.
 Vector3 to_ray(const BlobSlopes& blob, const Vector3& marker_m) {
   const Vector3 ray = Vector3(double{blob.x}, double{blob.y}, 1).normalized();
   return ray * ray.dot(marker_m) - marker_m;
 }
 
-// A partly hidden marker's centroid stays on its disc, and that of a marker merged with another of
-// its size within one radius beside it: beyond both lies another reflector's blob. What three or
-// more blobs have in common is the lens's error.
+// Returns whether a marker is more than its diameter away from its blob's ray. The centroid of a
+// partly occluded marker stays on the marker's disc. The centroid of two merged markers of equal
+// size is within one radius beside it. A larger offset comes from another reflector's blob.
+// Subtracts the mean offset of three or more blobs first, since that is the lens's error.
 bool is_misassigned(const ToolOutcome& outcome, const Tool& tool, const Pose& T_camera_tool) {
   std::array<Vector3, k_markers_per_tool_max> shifts;
   Vector3 sum = Vector3::Zero();

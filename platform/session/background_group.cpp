@@ -12,10 +12,10 @@ namespace glint {
 template class GroupRunner<Background>;
 namespace {
 
-// How long the end of a session may go unseen.
+// Longest time until run() notices the end of the session.
 constexpr Duration k_look = milliseconds(20);
 
-// Of where the cell says that the robot is: 10 mm and a degree.
+// Prior variance of the robot's pose in the cell: 10 mm and a degree, squared.
 constexpr double k_given_variance_m2 = 1e-4, k_given_variance_rad2 = 3e-4;
 
 RunnerSettings<Background> background_settings(const Cell& cell, const GroupPlan<Background>& plan,
@@ -29,7 +29,7 @@ RunnerSettings<Background> background_settings(const Cell& cell, const GroupPlan
   return settings;
 }
 
-// Whether the time has come; otherwise the session ended first, or the system refuses to sleep.
+// Returns true at `due`; false if the session ends first or the system refuses to sleep.
 bool wait_until(Time due, const std::atomic<bool>& stop) noexcept {
   while (!stop) {
     const Time now = monotonic_now();
@@ -154,7 +154,8 @@ bool BackgroundGroup::is_free() const noexcept {
   return graph_.output<MapProgress>().free && graph_.output<RobotProgress>().free;
 }
 
-// Recorded first: what stands in front of a value stands in front of whoever read it.
+// Records the frame before publishing it, so that its record precedes those of the ticks that read
+// it.
 void BackgroundGroup::tell_robot(const RobotProgress& robot) noexcept {
   ++robot_version_;
   const RobotFrame& frame = robot.frame;
@@ -168,7 +169,7 @@ void BackgroundGroup::tell_robot(const RobotProgress& robot) noexcept {
   sinks_.published->publish(robot_version_, robot.time.nanoseconds);
 }
 
-// A picture that tells too little changes nothing of what the one before said.
+// An image without a usable result leaves `jumped` unchanged.
 void BackgroundGroup::note_robot(const RobotProgress& robot) const noexcept {
   FollowedRobotNotes& notes = *sinks_.notes;
   notes.shift_m.store(robot.shift_m, std::memory_order_relaxed);
@@ -180,7 +181,8 @@ void BackgroundGroup::note_robot(const RobotProgress& robot) const noexcept {
   notes.followed.store(robot.followed, std::memory_order_relaxed);
 }
 
-// A robot of which nobody says any more how it stands is not looked for: it may stand anyhow.
+// Returns false if the joint positions are too old: then the robot's posture is unknown and it is
+// not searched for.
 bool BackgroundGroup::knows_joints_at(Time time) noexcept {
   if (heard_ == nullptr) return true;
   robot_.update(*heard_);

@@ -1,9 +1,9 @@
-// The background group of a run: a slice of mapping and of following the robot at every period,
-// beneath frames and ticks.
+// Background group of a run: one bounded slice of mapping and of robot following per period, at a
+// priority below frames and ticks.
 //
-// Live it runs at the lowest priority of the plan, or where real-time rights are refused at the
-// system's idle priority, so that no tick and no frame waits for it. In order its slices run at
-// their nominal times.
+// Live, it runs at the lowest priority of the schedule, or at SCHED_IDLE if real-time rights are
+// refused, so that no tick and no frame waits for it. In order, its slices run at their nominal
+// times.
 #pragma once
 
 #include <array>
@@ -32,21 +32,22 @@ namespace glint {
 
 extern template class GroupRunner<Background>;  // in background_group.cpp, once
 
-// What a background looks at and for, read from the files that its cell names.
+// Inputs of a background group, read from the files that its cell names.
 struct BackgroundScene {
   DepthLoop pictures;
   RobotCloud model;
   LinkPoses poses;  // of the model's links, at the cell's joints
 };
 
-// Empty where the cell has no [mapping]. Throws InputError naming the file that is missing or
-// wrong; with `png` null a PNG is.
+// Returns an empty scene if the cell has no [mapping]. Throws InputError with the name of the file
+// that is missing or wrong; with `png` null, every PNG file is wrong.
 [[nodiscard]] BackgroundScene read_background_scene(const Cell& cell, DepthPngReader png);
 
-// About a tool's line from its tip through its markers' middle, and the hand behind them.
+// Capsule about the line from a tool's tip to its markers' centre, extended over the hand behind
+// it.
 inline constexpr double k_held_radius_m = 0.08, k_held_behind_m = 0.15;
 
-// Where the tracked tools and the hands that hold them are: they stay out of the map.
+// Capsules of the tracked tools and of the hands that hold them; the map excludes them.
 struct TrackedCapsules {
   std::array<LeftOut, k_tools_max> items;  // in the world
   int count = 0;
@@ -55,64 +56,65 @@ struct TrackedCapsules {
   }
 };
 
-// Of the tools that are tracked in the world.
+// Capsules of the tools that are tracked in the world frame.
 [[nodiscard]] TrackedCapsules capsules_of(const Estimates& estimates);
 
 struct BackgroundCounts {
   std::uint64_t slices = 0;
-  std::uint64_t late = 0;            // of them: ended after the next one was due
-  std::uint64_t skipped = 0;         // releases that came while a slice still ran
-  Duration longest_response;         // from a nominal release to its slice's end; in order: none
-  int longest_steps = 0;             // of a slice
-  std::int64_t pictures_missed = 0;  // taken while another was looked at, and not shown
+  std::uint64_t late = 0;            // slices that ended after the next one was due
+  std::uint64_t skipped = 0;         // releases during a slice that still ran
+  Duration longest_response;         // from nominal release to the slice's end; in order: zero
+  int longest_steps = 0;             // maximum over the slices
+  std::int64_t pictures_missed = 0;  // taken while another one was processed; not used
   MapTotals map;
   RobotProgress robot;
-  std::int64_t joints_used = 0, joints_passed_over = 0;  // of the states that were heard
-  std::int64_t pictures_without_joints = 0;  // not followed: the joints heard last were too old
+  std::int64_t joints_used = 0, joints_passed_over = 0;  // of the received joint states
+  std::int64_t pictures_without_joints = 0;              // without robot search: joints too old
 };
 
-// Where a robot that is followed is told, in front of every tick that reads it; each may be null.
+// Outputs of the followed robot's pose, written before every tick that reads it; each may be null.
 struct RobotSinks {
-  graph::TripleBuffer<RobotFrame>* published = nullptr;  // holds version 1: the cell's own
+  graph::TripleBuffer<RobotFrame>* published = nullptr;  // version 1: the cell's own
   RecorderLane* lane = nullptr;
   FollowedRobotNotes* notes = nullptr;
   DdsSink* dds = nullptr;
 };
 
-// What the cell's map is made by. Throws InputError where it would refuse a slice's bound.
+// Map settings of the cell. Throws InputError if a setting breaks a slice's bound.
 [[nodiscard]] MapSettings map_settings_of(const Cell& cell);
 
 class BackgroundGroup {
  public:
-  // The cell has a background. `trace` may be null; it is not yet started. Takes all its memory.
+  // Requires a cell with a background. `trace` may be null and must not be started yet. Allocates
+  // all memory here.
   BackgroundGroup(const Cell& cell, const GroupPlan<Background>& plan, TraceWriter* trace,
                   BackgroundScene scene, RobotSinks sinks = {});
 
-  // The robot's joints from now on; before the first slice. The newest are taken up by the slice
-  // that begins a picture.
+  // Sets the source of the robot's joints; call before the first slice. The slice that begins an
+  // image reads the newest joints.
   void hear(graph::TripleBuffer<HeardJoints>& joints) noexcept { heard_ = &joints; }
 
-  // The thread that run() wants to be called in.
+  // Settings for the thread that calls run().
   [[nodiscard]] static ThreadSettings thread_settings(const GroupPlan<Background>& plan);
 
-  // From `epoch` on, until `stop`; returns at most a slice and some milliseconds after it.
+  // Runs from `epoch` until `stop` is set; returns at most a slice and some milliseconds after it.
   void run(Time epoch, const std::atomic<bool>& stop) noexcept;
-  // In a run that keeps no real time: all slices that are due by then.
+  // For runs that are not in real time: runs all slices due by `now`.
   void reach(Time now) noexcept;
 
-  // The frame group's: what is tracked stays out of the map.
+  // Written by the frame group; the map excludes these capsules.
   [[nodiscard]] graph::TripleBuffer<TrackedCapsules>& tracked() noexcept { return tracked_; }
 
-  // Pictures so far that show the robot where no drift takes it; any thread may ask.
+  // Number of images whose robot pose was rejected as a jump. Thread-safe.
   [[nodiscard]] std::int64_t jumps() const noexcept { return jumps_; }
-  // Pictures so far that were not followed, because the joints heard last were too old; likewise.
+  // Number of images not searched for the robot because its joints were too old. Thread-safe.
   [[nodiscard]] std::int64_t without_joints() const noexcept { return without_joints_; }
-  // The joint that the first state without all of the model's lacked, null: none did; likewise.
+  // First joint of the model that a received state lacked; null: none. Thread-safe.
   [[nodiscard]] const std::string* lacking_joint() const noexcept { return robot_.lacking(); }
-  // Why the first state with all of them could not pose the model; Reason::none: all could.
+  // Why the first complete state could not pose the model; Reason::none: all could. Thread-safe.
   [[nodiscard]] Reason unusable_joints() const noexcept { return robot_.unusable(); }
 
-  // When run() has returned: a last map of all pictures that were shown whole.
+  // Call after run() has returned: computes a last map of all completed images.
   void finish() noexcept;
   [[nodiscard]] const BackgroundCounts& counts() const noexcept { return counts_; }
   [[nodiscard]] const PointCloud& map() noexcept { return graph_.node<ExtendMap>().map().map(); }
@@ -136,7 +138,7 @@ class BackgroundGroup {
   std::uint64_t robot_version_ = 1;
   std::atomic<std::int64_t> jumps_{0}, without_joints_{0};
   std::int64_t shown_ = 0;
-  std::int64_t next_ = 0;  // slice in order
+  std::int64_t next_ = 0;  // number of the next slice, in order
   graph::TripleBuffer<TrackedCapsules> tracked_;
   std::array<LeftOut, k_left_out_max> left_out_;
   BackgroundCounts counts_;

@@ -1,4 +1,4 @@
-// What a background did, as JSON: the same fields from a desktop's run and a board's.
+// JSON of a background group's counts: the same fields in runs on desktop and companion computer.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -9,10 +9,10 @@
 namespace glint {
 namespace {
 
-constexpr double k_apart_m = 0.015, k_apart_cosine = 0.999;  // of half the rotation: 5 deg
+constexpr double k_apart_m = 0.015, k_apart_cosine = 0.999;  // of half the rotation angle: 5 deg
 constexpr int k_fits_least = 20;
 constexpr Duration k_between_sights = milliseconds(200), k_sights_apart_most = milliseconds(500);
-constexpr double k_long_s = 1e6;  // beyond any correlation
+constexpr double k_long_s = 1e6;  // longer than any correlation
 constexpr unsigned k_doubtful =
     k_marker_touches_edge | k_marker_has_neighbour | k_marker_uneven | k_marker_wrapped;
 
@@ -52,8 +52,8 @@ bool CalibrationWatch::body_is_due(int tool, const HeadPose& head, Time now) con
          (in_a_row_ == 0 || now - body_.head.time >= k_between_sights);
 }
 
-// A sight counts once the next one shows how the head moves on: over a shorter time its velocity
-// would hold too much of the headset's own error.
+// Adds a sighting when the next one is there, and takes the head's velocity from the sightings on
+// either side. Over a shorter time the velocity would contain too much of the headset's own error.
 void CalibrationWatch::note_body(const OptimalFit& fit, const HeadPose& head) noexcept {
   SeenBody seen;
   seen.head = {head.time, head.T_world_camera};

@@ -1,10 +1,10 @@
-// Adds up, in a run, what the tools' residuals show of calibration errors.
+// Online estimation of calibration errors from the residuals of the tools' fits, during a run.
 //
-// Of each frame one tool counts, in turn, so that a frame's cost does not grow with the tools. Of
-// each tool, fits count whose pose differs from that of the fit counted before, since a tool at
-// rest shows the same errors of lens and range again. Fits that were refused as bad count, too.
-// Where a body stands still in view, each fifth of a second one of its fits shows what the lens,
-// the clocks and the headset's drift do to its place in the world.
+// Each frame adds the fit of one tool, in turn, so that the cost of a frame does not depend on the
+// number of tools. A fit is added if its pose differs from that of the tool's last added fit, since
+// a static tool repeats the same errors of lens and range. Fits that the tracker rejected are added
+// too. If a reference body is in view, one of its fits every 200 ms shows the effects of lens,
+// clocks and headset drift on its world pose.
 #pragma once
 
 #include <array>
@@ -23,18 +23,18 @@ class CalibrationWatch {
  public:
   explicit CalibrationWatch(const Cell& cell);
 
-  // After each frame, by its thread. No heap.
+  // Call on the frame thread after each frame. No heap.
   void see(const Tracker& tracker) noexcept;
 
-  // Of the tools of which enough was seen; after the last frame.
+  // Findings for the tools with at least k_fits_least fits. Call after the last frame.
   [[nodiscard]] std::vector<CalibrationFinding> findings() const;
-  // What they rest on, of one tool.
+  // The sums behind the findings of one tool.
   [[nodiscard]] const CalibrationErrors& errors_of(std::size_t tool) const {
     return tools_[tool].errors;
   }
 
-  // While frames come, for one other thread that may take its time: every k_review the findings of
-  // what it saw so far go to `notes`. Each call takes the newest sums of one tool.
+  // Call on one other thread, not real-time, while frames arrive. Writes the findings so far to
+  // `notes` every k_review. Each call reads the newest sums of one tool.
   static constexpr Duration k_review = milliseconds(1000);
   void review(Time now, CalibrationNotes& notes);
 
@@ -42,11 +42,11 @@ class CalibrationWatch {
   struct Watched {
     int tool = 0;
     std::uint32_t identity = 0;
-    Pose counted;  // T_camera_tool of the last fit that did
+    Pose counted;  // T_camera_tool of the last added fit
     CalibrationErrors errors;
   };
   struct SeenBody {
-    StampedPose head;  // then
+    StampedPose head;  // at the sighting
     BodySight sight;
   };
   void see(const Tracker& tracker, const Tool& tool, Watched& watched) noexcept;
@@ -61,17 +61,17 @@ class CalibrationWatch {
   AllWatched tools_;
   std::uint64_t seen_ = 0;  // frames
   HeadWalk walk_;
-  SeenBody body_;                   // the newest sight
-  StampedPose head_before_;         // of the one before
-  int in_a_row_ = 0;                // sights, up to 2
-  std::optional<Time> last_sight_;  // that world_ took
+  SeenBody body_;                   // the newest sighting
+  StampedPose head_before_;         // of the sighting before body_
+  int in_a_row_ = 0;                // consecutive sightings, up to 2
+  std::optional<Time> last_sight_;  // last one added to world_
   WorldErrors world_;
   struct Newest {
     Watched tool;
     WorldErrors world;
   };
   graph::TripleBuffer<Newest> shared_;
-  AllWatched reviewed_;  // the reviewing thread's
+  AllWatched reviewed_;  // of the reviewing thread
   WorldErrors reviewed_world_;
   Time next_review_;
 };

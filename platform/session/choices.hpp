@@ -1,4 +1,4 @@
-// The rate groups' numbers, and a release as the recording keeps it.
+// Numbers of the rate groups, and conversion of a release to and from its recorded form.
 #pragma once
 
 #include <algorithm>
@@ -15,16 +15,16 @@ namespace glint {
 
 inline constexpr std::uint8_t k_frame_group = 0;
 inline constexpr std::uint8_t k_tick_group = 1;
-inline constexpr std::uint8_t k_background_group = 2;  // of traces; nothing of it is recorded
+inline constexpr std::uint8_t k_background_group = 2;  // in traces only; not recorded
 
 struct OverrunNote {
   std::uint8_t group = k_frame_group;
   graph::OverrunDecision decision;
 };
-// From the frame group to the tick group, which sends at most one each tick.
+// From the frame group to the tick group, which sends at most one per tick.
 using OverrunNotes = graph::Ring<OverrunNote, 64>;
 
-// What is known of a frame without looking at it; in a run and in its replay alike.
+// Stamp of a frame whose pixels were not processed; the same in a run and in its replay.
 [[nodiscard]] inline FrameStamp overrun_stamp(const Frame& frame) {
   return {frame.mid_exposure, frame.stamp_sigma, frame.arrival, frame.sequence, Reason::none};
 }

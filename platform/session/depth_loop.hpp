@@ -1,4 +1,4 @@
-// Depth pictures in memory, shown to and fro at a steady rate: a mapping camera for a session.
+// Simulated mapping camera: repeats stored depth images forward and backward at a fixed rate.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace glint {
 
 class DepthLoop {
  public:
-  // Of none it shows none.
+  // Without images: newest() returns 0.
   DepthLoop() = default;
   DepthLoop(DepthSequence sequence, Duration period)
       : sequence_(std::move(sequence)), period_(period) {
@@ -25,7 +25,7 @@ class DepthLoop {
                      camera.fy / stride_,    thinned(camera.cx),      thinned(camera.cy)};
   }
 
-  // Pictures taken by then: the newest one's number, from 1 on.
+  // Number of the newest image taken by `now`, from 1; 0: none.
   [[nodiscard]] std::int64_t newest(Time now) const noexcept {
     if (sequence_.frames.empty() || now < Time{}) return 0;
     return now.nanoseconds / period_.nanoseconds + 1;
@@ -33,11 +33,11 @@ class DepthLoop {
   [[nodiscard]] Time time_of(std::int64_t number) const noexcept {
     return Time{} + period_ * (number - 1);
   }
-  // To and fro: a pose never jumps.
+  // Plays forward, then backward, so that the camera's pose never jumps.
   [[nodiscard]] const DepthFrame& picture(std::int64_t number) const noexcept {
     return sequence_.frames[place_of(number)];
   }
-  // The same picture with no more pixels than a robot is looked for in: every so many of them.
+  // The same image, subsampled to at most k_scene_pixels_max pixels for the robot search.
   [[nodiscard]] ShownDepth::Scene scene(std::int64_t number) const noexcept {
     return {scene_camera_, scenes_[place_of(number)]};
   }
@@ -59,7 +59,7 @@ class DepthLoop {
     }
     return out;
   }
-  // Pixel x stands where pixel stride x + stride / 2 stood; centres lie at + 0.5.
+  // Pixel x of the subsampled image is pixel stride x + stride / 2; pixel centres are at + 0.5.
   [[nodiscard]] double thinned(double centre) const {
     return (centre - stride_ / 2 - 0.5) / stride_ + 0.5;
   }

@@ -1,5 +1,6 @@
-// Pose samples to text files (TUM, CSV) and to the figures of a run, from a thread of its own
-// behind a bounded ring: the tick thread only copies. What the ring cannot hold is counted.
+// Writes pose samples to text files (TUM, CSV) and adds them to a run's output figures, on a thread
+// of its own behind a bounded ring. The tick thread only copies. Samples that the full ring rejects
+// are counted.
 #pragma once
 
 #include <atomic>
@@ -22,21 +23,22 @@ class FileSink {
  public:
   static constexpr int k_ring_capacity = 1024;  // 4 s of one tool at 250 Hz
 
-  // Empty names make no file. Throws InputError where a file cannot be made.
+  // An empty name creates no file. Throws InputError if a file cannot be created.
   FileSink(const std::string& tum_file, const std::string& csv_file, WhenFull when_full,
            const Cell& cell, TruthOfTool truth);
   ~FileSink() { close(); }
   FileSink(const FileSink&) = delete;
   FileSink& operator=(const FileSink&) = delete;
 
-  // From one thread. No heap, no lock; WhenFull::wait sleeps where the ring is full.
-  // `newest_frame`: as OutputFigures::add() has it.
+  // Call from one thread. No heap, no lock; WhenFull::wait sleeps while the ring is full.
+  // `newest_frame`: see OutputFigures::add().
   void offer(const PoseSample& sample, std::optional<Time> newest_frame) noexcept;
 
-  // Writes what waits and closes the files. The first line that says what went wrong, or nothing.
+  // Writes the queued samples and closes the files. Returns the first error message, or an empty
+  // string.
   std::string close();
-  // Samples that found no room, and lines that a failed write cost, so far; any thread may ask.
-  // After close().
+  // Call by_rate() after close(). lost(): samples rejected by the full ring and lines lost by
+  // failed writes so far; thread-safe.
   [[nodiscard]] const OutputByRate& by_rate() const noexcept { return figures_.figures(); }
   [[nodiscard]] std::uint64_t lost() const noexcept {
     return ring_.dropped() + lines_lost_.load(std::memory_order_relaxed);

@@ -15,7 +15,7 @@ template class GroupRunner<Tracker>;
 template class GroupRunner<MarkerTracker>;
 namespace {
 
-// The first node of a kind, by its number in the order of execution.
+// Index of the first node with this name, in the order of execution.
 constexpr int number_of(std::string_view name) {
   int number = 0;
   for (const graph::NodeInfo& node : graph::Description<Tracker>::nodes) {
@@ -28,7 +28,7 @@ constexpr int k_locate_rois = number_of("LocateRois");
 constexpr int k_back_project = number_of("BackProject");
 static_assert(k_locate_rois > 0 && k_back_project > k_locate_rois);
 
-// The last node of G that has run when `after_node` is the last one of Tracker that has; -1: none.
+// Last node of G that has run if `after_node` is the last one of Tracker that has; -1: none.
 template <class G>
 int last_node(int after_node) {
   const auto& recorded = graph::Description<Tracker>::nodes;
@@ -117,11 +117,11 @@ void FrameGroupOf<G>::answer(const ArrivedFrame& arrived) noexcept {
     if (in_time_ != kept_.get()) *kept_ = *in_time_;
     in_time_ = kept_.get();
     publish();
-  } else {  // the slot stays the writer's, which fills it whole for the next version
+  } else {  // the slot remains the writer's, which overwrites it for the next version
     slot.tool_count = 0;
     slot.verdict.reason = reason_of(overrun_.policy);
   }
-  (void)notes_.push({k_frame_group, overrun_});  // full: the choice records it all the same
+  (void)notes_.push({k_frame_group, overrun_});  // full: the choice has it too
 }
 
 template <class G>
@@ -134,15 +134,15 @@ void FrameGroupOf<G>::tell_transforms(const HeadPose& head) const noexcept {
 
 template <class G>
 void FrameGroupOf<G>::record(const ArrivedFrame& arrived) noexcept {
-  if constexpr (std::is_same_v<G, Tracker>) {  // a recording is not recorded again
+  if constexpr (std::is_same_v<G, Tracker>) {  // a replay of markers does not record
     const auto ran = [&](int node) { return !overrun_.happened() || overrun_.after_node >= node; };
     (void)lane_->offer_head_pose(arrived.head);
     ChoiceRecord choice = as_record(group_.choice(), 0);
     choice.overrun = overrun_;
     (void)lane_->offer_choice(choice);
-    // The frame comes last: with it a replay has all that the activation was given. The one or the
-    // other is left out by the recording's level. What was not computed for this frame is not
-    // there.
+    // The frame comes last: then a replay has all inputs of the activation. The recording's level
+    // omits either the frame or its markers. Data that was not computed for this frame is left
+    // empty.
     (void)lane_->offer_frame(arrived.frame,
                              ran(k_locate_rois) ? tracker_->template token<Rois>() : Rois{});
     MarkerFrame markers;

@@ -1,5 +1,5 @@
-// The frame group as it runs: a frame goes in, the tracker is activated, its estimates are
-// published to the tick group, and what a replay needs is offered to the recorder.
+// Frame group of a run: activates the tracker on each frame, publishes its estimates to the tick
+// group, and offers the inputs of a replay to the recorder.
 #pragma once
 
 #include <functional>
@@ -18,12 +18,12 @@ namespace glint {
 
 using Clock = std::function<Time()>;
 
-// Another way from a frame to estimates, in the tracker's place: the caller hands it in, so that
-// the groups need none of what it is built from.
+// Alternative method from a frame to estimates, instead of the tracker. The caller injects it, so
+// that the groups do not depend on its parts.
 class FrameMethod {
  public:
   virtual ~FrameMethod() = default;
-  // What is known after this frame; valid until the next call.
+  // Returns the estimates after this frame; valid until the next call.
   [[nodiscard]] virtual const Estimates& process(const ArrivedFrame& arrived) = 0;
 };
 
@@ -31,30 +31,30 @@ class FrameMethod {
 template <class G>
 class FrameGroupOf {
  public:
-  // `lane` may be null: nothing is recorded. `tool_set` and `runner` outlive this. With a `method`
-  // it decides in the tracker's place, unwatched.
+  // `lane` may be null: nothing is recorded. `tool_set` and `runner` must outlive this object. A
+  // `method` replaces the tracker and has no deadline watch.
   FrameGroupOf(const Cell& cell, graph::TripleBuffer<ToolSet>& tool_set, Clock now,
                GroupRunner<G>& runner, RecorderLane* lane,
                std::unique_ptr<FrameMethod> method = nullptr);
 
-  // Where the headset is goes there, too, after each frame's estimates, and where the robot is
-  // that stands on the reference body; null: nowhere.
+  // Publishes the headset's pose to `dds` after each frame's estimates, and the robot's pose if the
+  // robot is mounted on the reference body; null: publishes neither.
   void tell_transforms_to(DdsSink* dds) noexcept { dds_ = dds; }
 
-  // Estimates are published before anything is offered: latency first. Of a frame that was not in
-  // time, what the policy says is published. In a replay `recorded` decides in place of the clock;
-  // the newest set of tools that was published is the recorded one.
+  // Publishes the estimates before it offers anything to the recorder: latency first. After an
+  // overrun, publishes the policy's substitute. In a replay, `recorded` decides instead of the
+  // clock, and the newest published tool set must be the recorded one.
   void process(const ArrivedFrame& arrived, const ChoiceRecord* recorded = nullptr) noexcept;
 
   [[nodiscard]] graph::TripleBuffer<Estimates>& estimates() noexcept { return estimates_; }
-  // The overruns that somebody has to tell the world: the tick group, by CAN.
+  // Overruns of this group; the tick group reports them over CAN.
   [[nodiscard]] OverrunNotes& overrun_notes() noexcept { return notes_; }
-  // The tracker, its tokens those of the last frame; null: a method or an overrun's policy made the
-  // estimates.
+  // The tracker, with its tokens those of the last frame; null: a method or an overrun's policy
+  // made the estimates.
   [[nodiscard]] const G* tracker() const noexcept {
     return method_ == nullptr && !overrun_.happened() ? tracker_.get() : nullptr;
   }
-  // What the last frame left.
+  // Estimates of the last frame.
   [[nodiscard]] const Estimates& newest() const noexcept { return *newest_; }
 
  private:
@@ -67,11 +67,12 @@ class FrameGroupOf {
   graph::RateGroup<G> group_;
   std::unique_ptr<FrameMethod> method_;  // null: the tracker
   graph::TripleBuffer<Estimates> estimates_;
-  // A substitute rests on the last estimates that were in time, which are not copied for it: they
-  // stay as they are in the slot in which they were published. The writer's slot is another one
-  // then, and only publish() gives the writer a slot: this one at the earliest when the next
-  // version has been published, whatever the reader takes meanwhile. Before that they are copied to
-  // `kept_` if the next version is a substitute, since the next overrun in a row needs them again.
+  // A substitute is computed from the last estimates that were in time. They are not copied for it:
+  // they remain in the slot in which they were published. The writer's slot is a different one,
+  // since only publish() exchanges slots. At the earliest, publishing the next version gives this
+  // slot back to the writer, whichever version the reader takes meanwhile. If the next version is a
+  // substitute, they are copied to `kept_` before that, since the next consecutive overrun needs
+  // them again.
   std::unique_ptr<Estimates> kept_ = std::make_unique<Estimates>();
   const Estimates* in_time_ = kept_.get();
   const Estimates* newest_ = kept_.get();
@@ -80,7 +81,7 @@ class FrameGroupOf {
   RecorderLane* lane_;
   DdsSink* dds_ = nullptr;
   bool robot_on_body_;
-  Pose T_body_robot_;  // the reference body's
+  Pose T_body_robot_;  // in the reference body's frame
   Duration lost_after_;
   graph::OverrunDecision overrun_;  // of the last frame
   OverrunNotes notes_;
@@ -88,7 +89,7 @@ class FrameGroupOf {
 
 using FrameGroup = FrameGroupOf<Tracker>;
 
-// In frame_group.cpp, once.
+// Instantiated once, in frame_group.cpp.
 extern template class GroupRunner<Tracker>;
 extern template class GroupRunner<MarkerTracker>;
 extern template class FrameGroupOf<Tracker>;

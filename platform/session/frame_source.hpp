@@ -1,5 +1,5 @@
-// Where frames come from: a run waits for the next one, and gives its pixels back when it is done
-// with them. The same source serves a live run and one in order.
+// Interface of a frame source. A run waits for each frame and returns its pixels after use. The
+// same source serves live runs and runs in order.
 #pragma once
 
 #include <cstddef>
@@ -19,66 +19,66 @@ namespace glint {
 struct MarkerFrame;
 
 struct ArrivedFrame {
-  Frame frame;  // its pixels stay valid until give_back()
+  Frame frame;  // pixels are valid until give_back()
   HeadPose head;
-  int slot = -1;                         // the source's own number for the pixels' place
-  const MarkerFrame* markers = nullptr;  // of a recording without pixels: what was found in them
+  int slot = -1;                         // the source's index of the pixel buffer
+  const MarkerFrame* markers = nullptr;  // of a recording without pixels: its detected markers
 };
 
 // The session's clock.
 struct SourceClock {
-  bool live = false;          // false: frames are asked for in order, as fast as they come
-  Time epoch;                 // monotonic: where the session's time begins
-  std::function<Time()> now;  // of the session; any thread
+  bool live = false;          // false: frames are requested in order, without waiting
+  Time epoch;                 // monotonic clock at session time zero
+  std::function<Time()> now;  // session time; thread-safe
 };
 
-// What became of the frames that a source had, for the table, the JSON and the exit code.
+// Frame losses of a source, for the table, the JSON and the exit code.
 struct SourceReport {
   std::string text;  // "recording out/run.mcap, level full"; empty: nothing to report
-  std::vector<std::pair<std::string, std::uint64_t>> counts;  // by name, zeros among them
-  std::vector<std::string> failures;                          // what was lost, a line each
+  std::vector<std::pair<std::string, std::uint64_t>> counts;  // by name, including zeros
+  std::vector<std::string> failures;                          // one line per loss
 };
 
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
-  // Does what is better done before the session's clock starts. `go_on(ready, wanted)`, frames,
-  // ends it early with false.
+  // Does work that should precede the start of the session's clock. `go_on(ready, wanted)`, in
+  // frames, returns false to end it early.
   virtual void prepare(const std::function<bool(int, int)>& /*go_on*/) {}
-  // Once, before the first wait().
+  // Call once, before the first wait().
   virtual void start(const SourceClock& clock) = 0;
-  // Blocks until a frame has arrived; false: there are no more. The only blocking call of the
-  // frame group.
+  // Blocks until a frame has arrived; returns false if there are no more. The only blocking call of
+  // the frame group.
   [[nodiscard]] virtual bool wait(ArrivedFrame& arrived) = 0;
   virtual void give_back(const ArrivedFrame& arrived) noexcept = 0;
 
-  // Whether the newest frame that is due at this time came late, or has not come yet; how many came
-  // late. From any thread.
+  // late(): whether the newest frame due at this time arrived late or has not arrived yet.
+  // late_frames(): number of late frames. Both thread-safe.
   [[nodiscard]] virtual bool late(Time /*now*/) const noexcept { return false; }
   [[nodiscard]] virtual int late_frames() const noexcept { return 0; }
 
-  // Frames in all and their duration; 0: not known before they arrive.
+  // Number of frames and their duration; 0: unknown in advance.
   [[nodiscard]] virtual std::size_t frame_count() const noexcept { return 0; }
   [[nodiscard]] virtual Duration duration() const noexcept { return {}; }
-  // Delivered part of frame_count(). From any thread.
+  // Delivered fraction of frame_count(). Thread-safe.
   [[nodiscard]] virtual double delivered_part() const noexcept { return 0; }
-  // One for each frame delivered, in the order of delivery, complete once wait() returned false;
-  // empty: it has no truth.
+  // Ground truth of each delivered frame, in the order of delivery; complete once wait() has
+  // returned false. Empty: the source has no ground truth.
   [[nodiscard]] virtual const std::vector<FrameTruth>& truths() const noexcept {
     static const std::vector<FrameTruth> none;
     return none;
   }
-  // T_world_tool of the cell's tool; nothing: no truth at that time. From any thread.
+  // True T_world_tool of the cell's tool; nullopt: no ground truth at that time. Thread-safe.
   [[nodiscard]] virtual std::optional<Pose> truth_of_tool(int /*tool*/, Time /*time*/) const {
     return std::nullopt;
   }
-  // Added to the session's time it gives Unix time, where the frames' stamps do; for a run in
+  // Offset from session time to Unix time, if the frames' time stamps define it; for a run in
   // order.
   [[nodiscard]] virtual std::optional<Duration> unix_offset() const noexcept {
     return std::nullopt;
   }
-  // After the last wait().
+  // Call after the last wait().
   [[nodiscard]] virtual SourceReport report() { return {}; }
 };
 

@@ -1,4 +1,4 @@
-// Which poses are gross: so far off that a robot must not be moved by them.
+// Criterion of a gross pose error: too large an error for moving a robot.
 #pragma once
 
 #include "kernels/angles.hpp"
@@ -13,12 +13,12 @@ inline constexpr double k_gross_misassigned_m = 0.005;
 struct TrackingError {
   double tip_m = 0;
   double angle_rad = 0;
-  double tip_sigma_m = 0;    // stated: root of the tip covariance's trace; 0: none is stated
-  bool misassigned = false;  // a marker was given a blob that is not its own
+  double tip_sigma_m = 0;    // stated: root of the tip covariance's trace; 0: not stated
+  bool misassigned = false;  // a marker was assigned another reflector's blob
 };
 
-// The rotation is off by more than 15 deg; or the tip by more than 20 mm and by more than three
-// stated sigmas; or by more than 5 mm under a wrong marker assignment.
+// Returns whether the rotation error is above 15 deg, or the tip error above 20 mm and above three
+// stated standard deviations, or the tip error above 5 mm with a wrong marker assignment.
 [[nodiscard]] inline bool is_gross(const TrackingError& error) {
   if (error.angle_rad > k_gross_angle_rad) return true;
   if (error.misassigned && error.tip_m > k_gross_misassigned_m) return true;

@@ -1,4 +1,4 @@
-// Runs one group's activations as its plan says, and notices the one that is not in time.
+// Runs one group's activations by its static schedule and detects deadline overruns.
 #pragma once
 
 #include <array>
@@ -19,26 +19,26 @@ struct WatchSettings {
   bool on = false;
   Duration deadline;  // from the nominal release
   graph::OverrunPolicy policy = graph::OverrunPolicy::predict;
-  std::vector<std::int64_t> remaining_ns;  // by node: from its end to the group's, at worst
+  std::vector<std::int64_t> remaining_ns;  // by node: from its end to the group's, worst case
 };
 
 template <class G>
 struct RunnerSettings {
   graph::PlanTables<G> plan = graph::plan_by_rule<G>(1);
-  std::vector<ThreadSettings> others;  // one for each worker of the plan beyond the first
+  std::vector<ThreadSettings> others;  // one for each worker of the schedule beyond the first
   WatchSettings watch;
   std::vector<Injection> injections;
-  std::vector<std::int64_t> bounds_ns;  // by node, for the trace; empty: no board
+  std::vector<std::int64_t> bounds_ns;  // by node, for the trace; empty: no board file
   std::uint8_t group = 0;
   bool live = true;
   TraceWriter* trace = nullptr;  // not yet started
 };
 
-// When an activation began.
+// Start of an activation.
 struct ActivationStart {
   std::uint64_t activation = 0;
   std::uint64_t at = 0;  // the frame's sequence number, or the tick's
-  Time nominal, now;     // of the session's clock: the release as planned, and as it came
+  Time nominal, now;     // session clock: planned release, actual start
   std::uint64_t frame_sequence = 0;
 };
 
@@ -51,7 +51,7 @@ struct OverrunCounts {
 template <class G>
 class GroupRunner {
  public:
-  // Of a worker with a core and real-time rights, before it sleeps: some milliseconds.
+  // Spins of a worker with a core and real-time rights before it sleeps: some milliseconds.
   static constexpr std::uint32_t k_spins_max = 100'000;
 
   explicit GroupRunner(RunnerSettings<G> settings = {})
@@ -77,7 +77,7 @@ class GroupRunner {
   GroupRunner(const GroupRunner&) = delete;  // its probes point into it
   GroupRunner& operator=(const GroupRunner&) = delete;
 
-  // What was decided about this activation; {}: it was in time. settle() has to follow.
+  // Returns the overrun decision of this activation; {}: it was in time. Call settle() after it.
   [[nodiscard]] graph::OverrunDecision run(G& graph, const ActivationStart& start) noexcept {
     if (!settings_.watch.on && traces_.empty() && settings_.injections.empty()) {
       run_plain(graph);
@@ -106,8 +106,8 @@ class GroupRunner {
     return decision;
   }
 
-  // In a replay, as recorded: an activation that overran ends after node `last`, or where that is
-  // -1 before the first. settle() has to follow.
+  // Replay: an activation with a recorded overrun ends after node `last`; -1: runs no node. Call
+  // settle() after it.
   graph::OverrunDecision run_as(G& graph, graph::OverrunDecision recorded, int last) noexcept {
     by_workers_ = !recorded.happened();
     if (by_workers_) {
@@ -123,20 +123,20 @@ class GroupRunner {
     return last_overrun_;
   }
 
-  // After the output has left: when this returns, no worker is inside the graph any more.
+  // Call after the output has left. Waits until no worker is inside the graph.
   void settle(G& graph) noexcept {
     if (executor_ == nullptr || !by_workers_) return;
     executor_->settle(graph);
     for (std::size_t w = 1; w < traces_.size(); ++w) traces_[w]->end_activation();
   }
 
-  // What the group did around its nodes, by the session's clock.
+  // Traces the group's work outside its nodes. Times by the session's clock.
   void add_span(TraceFlag kind, Time begin, Time end) noexcept {
     if (!traces_.empty()) traces_[0]->add(kind, begin.nanoseconds, end.nanoseconds);
   }
 
   [[nodiscard]] const OverrunCounts& overruns() const noexcept { return counts_; }
-  // The newest that there was; {}: none yet.
+  // The newest overrun; {}: none yet.
   [[nodiscard]] const graph::OverrunDecision& last_overrun() const noexcept {
     return last_overrun_;
   }
@@ -181,7 +181,7 @@ class GroupRunner {
   std::vector<std::unique_ptr<NodeTrace>> traces_;
   std::vector<NodeProbe> probes_;
   std::unique_ptr<PlannedExecutor<G>> executor_;
-  bool by_workers_ = true;  // the last activation, where there is more than one
+  bool by_workers_ = true;  // whether the last activation ran on all workers
   OverrunCounts counts_;
   graph::OverrunDecision last_overrun_;
 };

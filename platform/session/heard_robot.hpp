@@ -1,9 +1,10 @@
-// How the robot that is followed stands, by the joint positions that are heard.
+// Link poses of the followed robot, by forward kinematics from the received joint positions.
 //
-// The newest state with a position of each of the model's joints counts, whatever else it holds;
-// one without changes nothing and is counted. Until the first one, the robot stands as it was
-// given. From then on it is known only for so long after a state has arrived: by this machine's
-// clock, since a stamp is of another's.
+// Uses the newest joint state that has a position of each of the model's joints, whatever else it
+// contains. Counts and skips a state without one of them. Until the first usable state, the links
+// have their given poses. After it, the poses are valid for a limited time after the state's
+// arrival. That time is measured by this machine's clock, since a time stamp is of another
+// machine's.
 #pragma once
 
 #include <array>
@@ -24,19 +25,19 @@ namespace glint {
 class HeardRobot {
  public:
   HeardRobot() = default;
-  // `given`: where the model's links are until joints are heard.
+  // `given`: poses of the model's links until joints are received.
   HeardRobot(const RobotCloud& model, const LinkPoses& given, Duration lost_after)
       : tree_(model.tree), inputs_(model.inputs), poses_(given), lost_after_(lost_after) {}
 
-  // Where the links are, and of which state: 0 as given. The poses stay in their place and are
-  // written by update() alone.
+  // The link poses and the number of the state they are from; 0: as given. The address of the poses
+  // is constant; only update() writes them.
   [[nodiscard]] ShownDepth::Links links() const noexcept {
     return {&poses_, static_cast<std::uint64_t>(used_)};
   }
 
-  // Finds the links anew where something new was heard, without memory: k_heard_joints_max names
-  // and k_robot_joints_max joints at most, once a picture. The model's points, which are many, are
-  // FollowRobot's to pose. Nobody may hold the poses then.
+  // Recomputes the link poses if a new state was received. No heap; at most k_heard_joints_max
+  // names and k_robot_joints_max joints, once per image. FollowRobot transforms the model's many
+  // points. Requires that no other thread reads the poses meanwhile.
   void update(graph::TripleBuffer<HeardJoints>& heard) noexcept {
     const std::size_t count = inputs_.size();
     if (count == 0 || !heard.sample()) return;
@@ -57,22 +58,22 @@ class HeardRobot {
     arrival_ = Time{heard.time_ns()};
   }
 
-  // Whether the links are where the robot's were then, on the clock of the states' arrival: false
-  // where joints were heard once, and the last that the poses are of are too old.
+  // Returns whether the link poses are valid at `time`, on the clock of the states' arrival. False
+  // if joints were received and the state behind the poses is too old.
   [[nodiscard]] bool is_known_at(Time time) const noexcept {
     return used_ == 0 || time - arrival_ <= lost_after_;
   }
 
-  // States that the links were posed by, and states that they could not be.
+  // Number of states that posed the links, and of states that could not.
   [[nodiscard]] std::int64_t used() const noexcept { return used_; }
   [[nodiscard]] std::int64_t passed_over() const noexcept { return passed_over_; }
-  // The joint that the first of the latter lacked that lacked one; null: none did. Any thread may
-  // ask, as for the next.
+  // First missing joint of the first incomplete state; null: no state was incomplete. Thread-safe,
+  // as is unusable().
   [[nodiscard]] const std::string* lacking() const noexcept {
     const std::size_t joint = lacking_;
     return joint == k_none ? nullptr : &inputs_[joint];
   }
-  // Why the first that lacked none could not pose the links; Reason::none: all could.
+  // Why the first complete but unusable state could not pose the links; Reason::none: all could.
   [[nodiscard]] Reason unusable() const noexcept { return unusable_; }
 
  private:
@@ -82,7 +83,7 @@ class HeardRobot {
   std::vector<std::string> inputs_;
   LinkPoses poses_;
   Duration lost_after_;
-  Time arrival_;  // of the state that the poses are of
+  Time arrival_;  // of the state behind the poses
   std::array<double, k_robot_joints_max> positions_{};
   std::int64_t used_ = 0, passed_over_ = 0;
   std::atomic<std::size_t> lacking_{k_none};

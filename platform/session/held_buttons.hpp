@@ -1,8 +1,8 @@
-// Which of the pen's buttons are held, for the tick group: each change is a version of its own.
+// State of the pen's buttons for the tick group; each change is a new version.
 //
-// A tick sees the newest version and no other. A button that goes down and up between two ticks,
-// as those by key but draw do, therefore shows in none: what leaves says what is held, and who
-// counts clicks has the events (rt/glint/button, /glint/button in a recording).
+// A tick reads the newest version only. A button that is pressed and released between two ticks is
+// therefore in no tick; by key this is so for all buttons but draw. The output states which buttons
+// are held. To count clicks, read the events (rt/glint/button, or /glint/button in a recording).
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace glint {
 
-// A button's bit of what is held; 0: it has none.
+// Bit of a button in the set of held buttons; 0: it has none.
 [[nodiscard]] inline std::uint8_t bit_of(Button button) noexcept {
   return static_cast<std::uint8_t>((1U << static_cast<unsigned>(button)) & k_buttons_mask);
 }
@@ -24,14 +24,15 @@ static_assert(static_cast<int>(Button::draw) == 0 && static_cast<int>(Button::de
 
 class HeldButtons {
  public:
-  // One thread at a time. Whoever spoke last of a button counts. `lane` may be null.
+  // Call from one thread at a time. The last event of a button counts. `lane` may be null.
   void take(const ButtonEvent& event, RecorderLane* lane) noexcept {
     const std::uint8_t bit = bit_of(event.button);
     const auto held = static_cast<std::uint8_t>(event.pressed ? now_.held | bit : now_.held & ~bit);
     if (held == now_.held) return;
     now_.held = held;
     ++version_;
-    // Recorded first: what stands in front of a value stands in front of whoever read it.
+    // Records the version before publishing it, so that its record precedes those of the ticks that
+    // read it.
     if (lane != nullptr) (void)lane->offer_pen_buttons({version_, event.time, held});
     published_.write_slot() = now_;
     published_.publish(version_, event.time.nanoseconds);
@@ -41,7 +42,7 @@ class HeldButtons {
 
  private:
   PenButtons now_;
-  std::uint64_t version_ = 0;  // the first is "none was ever held"
+  std::uint64_t version_ = 0;  // the first: no button was ever held
   graph::TripleBuffer<PenButtons> published_;
 };
 

@@ -1,4 +1,4 @@
-// The labelled markers of one tool in one frame, weighed by the noise that the tracker estimates.
+// Labelled markers of one tool in one frame, weighted by the tracker's noise estimate.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace glint {
 
 class LabelledMarkers {
  public:
-  // Without those that have one of these marker flags.
+  // Omits markers that have one of the flags in `without_flags`.
   LabelledMarkers(const Markers& all, const Labeling& labeling, const Tool& tool,
                   const MarkerNoise& noise, unsigned without_flags) noexcept;
 
@@ -21,7 +21,7 @@ class LabelledMarkers {
     return {markers_.data(), count_};
   }
   [[nodiscard]] std::span<const LocalRays> sights() const { return {rays_.data(), count_}; }
-  // Which of the tool's markers each is.
+  // Index in the tool of each marker.
   [[nodiscard]] std::span<const int> numbers() const { return {of_tool_.data(), count_}; }
 
  private:
@@ -31,7 +31,7 @@ class LabelledMarkers {
   std::size_t count_ = 0;
 };
 
-// The declared noise until residuals show another.
+// Returns the declared noise until residuals give an estimate.
 [[nodiscard]] MarkerNoise noise_of(const NoiseEstimate& estimate, const Camera& camera) noexcept;
 
 }  // namespace glint

@@ -1,5 +1,5 @@
-// Frame to CAN: from a frame's last byte in memory to the return of the write of the CAN frame that
-// first carries its estimate; three parts that add up to it exactly.
+// Frame-to-CAN latency: from a frame's last byte in memory to the return of the write of the first
+// CAN frame that carries its estimate. Its three parts add up exactly.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +13,13 @@
 namespace glint {
 
 struct FrameToCan {
-  Duration computing;  // arrival -> estimate published
-  Duration sampling;   // published -> the tick that reads it has woken
-  Duration sending;    // that -> its first CAN frame is written
+  Duration computing;  // arrival to publication of the estimate
+  Duration sampling;   // publication to the wake-up of the tick that reads it
+  Duration sending;    // wake-up to the end of the write of its first CAN frame
   [[nodiscard]] constexpr Duration total() const { return computing + sampling + sending; }
 };
 
-// What was observed, never a bound.
+// Observed values, not bounds.
 struct LatencyFigures {
   std::int64_t n = 0;
   double p50_us = 0, p99_us = 0, p99_9_us = 0, max_us = 0;
@@ -28,12 +28,12 @@ struct LatencyFigures {
 constexpr std::int64_t size_of(const FrameToCan& entry) { return entry.total().nanoseconds; }
 constexpr std::int64_t size_of(std::int64_t nanoseconds) { return nanoseconds; }
 
-// The newest entries of a run that may have no end, and the largest of all. The room is set aside
-// at the start; adding takes nothing from the heap.
+// Ring of the newest entries of a run of unknown length, and the largest of all. Allocates at
+// construction only.
 template <class Entry>
 class NewestLog {
  public:
-  // Hours of a camera, 17 minutes of ticks at 250 Hz.
+  // Hours of camera frames; 17 minutes of ticks at 250 Hz.
   static constexpr std::size_t k_entries_max = std::size_t{1} << 18;
 
   explicit NewestLog(std::size_t capacity)
@@ -53,9 +53,9 @@ class NewestLog {
     }
     if (size_of(entry) > size_of(entries_[largest_])) largest_ = at;
   }
-  // In no order beyond the first `capacity`.
+  // Unordered beyond the first `capacity`.
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
-  // Older ones that made room.
+  // Number of older entries that were overwritten.
   [[nodiscard]] std::int64_t left_out() const { return left_out_; }
 
  private:

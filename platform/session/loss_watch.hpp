@@ -1,5 +1,5 @@
-// Counts at each tick what the run has lost so far, and decides which kind of loss a CAN emergency
-// frame reports: at most one a second and kind, none for CAN's own.
+// Counts the run's output losses at each tick and selects the kind that a CAN emergency frame
+// reports: at most one a second per kind, none for CAN losses.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace glint {
 
-// Each may be null; `counters` outlives the watch.
+// Each may be null. `counters` must outlive the watch.
 struct LossSources {
   const CanSink* can = nullptr;
   const DdsSink* dds = nullptr;
@@ -25,9 +25,9 @@ struct LossSources {
 };
 
 // CANopen emergency: identifier 0x80 + node, error code FF80 + kind, error register 81, the kind in
-// the place of the tool, the rest 0.
+// the tool's byte, the rest 0.
 [[nodiscard]] inline CanFrame loss_frame(unsigned node, LossKind kind) noexcept {
-  constexpr std::uint8_t k_losses = 0x80;  // of the device's own error codes
+  constexpr std::uint8_t k_losses = 0x80;  // in the range of device-specific error codes
   const auto number = static_cast<std::uint8_t>(kind);
   CanFrame frame = overrun_frame(node, {number, 0, Reason::none, 0});
   frame.data[0] = static_cast<std::uint8_t>(k_losses + number);
@@ -40,7 +40,7 @@ class LossWatch {
 
   explicit LossWatch(const LossSources& sources) : sources_(sources) {}
 
-  // Reads the sinks' counts into the counters. No lock, no heap.
+  // Copies the sinks' counts into the counters. No lock, no heap.
   void count() noexcept {
     if (sources_.counters == nullptr) return;
     LossCounters& counters = *sources_.counters;
@@ -51,7 +51,7 @@ class LossWatch {
     }
     if (sources_.files != nullptr) counters.store(LossKind::files, sources_.files->lost());
   }
-  // The kind of which more was lost than its last emergency frame reported; from then on that is
+  // Returns a kind that lost more than its last emergency frame reported, and marks the loss as
   // reported.
   [[nodiscard]] std::optional<LossKind> take_due(Time tick) noexcept {
     if (sources_.counters == nullptr) return {};
@@ -68,7 +68,7 @@ class LossWatch {
  private:
   struct Reported {
     std::uint64_t lost = 0;
-    Time next;  // emergency frame at the earliest
+    Time next;  // earliest time of the next emergency frame
   };
 
   LossSources sources_;

@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-// A full disk is named as such, beside the system's words.
+// Adds "disk full" to the system's message if that is the cause.
 std::string cause(const std::string& words) {
   const std::string full = std::generic_category().message(ENOSPC);
   return words.find(full) == std::string::npos ? words : "disk full: " + words;

@@ -1,4 +1,4 @@
-// What a run lost on the way out, in words for its table, its JSON and its exit code.
+// Output losses of a run as text, for its table, its JSON and its exit code.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@
 namespace glint {
 
 struct Loss {
-  std::string kind;         // of LossKind's names
+  std::string kind;         // name of the LossKind
   std::uint64_t count = 0;  // frames, messages or lines; 0: unknown
   std::string text;         // what was lost and why
 };
 
-// Empty: everything that was produced left and is on the disk, and what DDS wrote was received.
+// Returns an empty list if all output left, is on the disk, and was received by DDS.
 [[nodiscard]] std::vector<Loss> losses_of(const SinkOutcome& outcome);
 
-// One line each: "lost, KIND: TEXT".
+// One line per loss: "lost, KIND: TEXT".
 [[nodiscard]] std::vector<std::string> lines_of(const std::vector<Loss>& losses);
 
 }  // namespace glint

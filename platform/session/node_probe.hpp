@@ -1,4 +1,4 @@
-// What a session puts around each node of a watched activation: a trace, and injected delays.
+// Probe around each node of a watched activation: records a trace and injects delays.
 #pragma once
 
 #include <algorithm>
@@ -11,14 +11,14 @@
 
 namespace glint {
 
-// The time since an activation's nominal release. Live it is the board's; in a run that keeps no
-// real time it stands still but for delays that are injected.
+// Time since an activation's nominal release. Live, the CPU's cycle counter measures it. In runs
+// that are not in real time, only injected delays advance it.
 class ElapsedClock {
  public:
   explicit ElapsedClock(bool live) noexcept
       : live_(live), ns_per_cycle_(live ? ns_per_cycle() : 0) {}
 
-  // `already`: since the nominal release, when the CPU counted `cycles`.
+  // `already`: time since the nominal release at the CPU's count `cycles`.
   void begin(Duration already, std::uint64_t cycles) noexcept {
     begin_ns_ = live_ ? already.nanoseconds : 0;
     begin_cycles_ = cycles;
@@ -28,7 +28,7 @@ class ElapsedClock {
     const auto cycles = static_cast<std::int64_t>(cycle_count() - begin_cycles_);
     return begin_ns_ + static_cast<std::int64_t>(static_cast<double>(cycles) * ns_per_cycle_);
   }
-  // Live: keeps the CPU busy for that long. Else: that much later it is.
+  // Live: busy-waits for that time. Otherwise: advances the clock by it.
   void delay(Duration time) noexcept {
     if (!live_) {
       begin_ns_ += time.nanoseconds;
@@ -50,17 +50,18 @@ class ElapsedClock {
 struct Injection {
   std::string node;      // as given: "FindBlobs" or "RoiThreshold#1"
   int number = 0;        // in the graph's order of execution
-  bool in_tick = false;  // of the tick group, else of the frame group
+  bool in_tick = false;  // in the tick group; else in the frame group
   std::uint64_t at = 0;  // the frame's sequence number, or the tick's
   Duration delay;
   bool done = false;
 };
 
-// As it is asked for: "node=FindBlobs,delay_us=200,frame=512" or, of the tick group,
-// "node=PackCan,delay_us=200,tick=40"; copy i of a split is "RoiThreshold#i". Throws InputError.
+// Parses "node=FindBlobs,delay_us=200,frame=512" or, for the tick group,
+// "node=PackCan,delay_us=200,tick=40"; "RoiThreshold#i" is copy i of a split node. Throws
+// InputError.
 [[nodiscard]] Injection injection_of(const std::string& text);
 
-// One for each worker.
+// One per worker.
 class NodeProbe {
  public:
   NodeProbe(ElapsedClock& clock, std::span<Injection> injections, NodeTrace* trace) noexcept
@@ -74,7 +75,7 @@ class NodeProbe {
     bool injected = false;
     for (Injection& injection : injections_) {
       if (injection.number != node || injection.at != at_ || injection.done) continue;
-      injection.done = injected = true;  // one worker only runs this node
+      injection.done = injected = true;  // exactly one worker runs this node
       clock_->delay(injection.delay);
     }
     if (trace_ == nullptr) return;

@@ -25,7 +25,7 @@ bool inside(const Vector3& error, const Matrix3& covariance) {
   return factor.info() == Eigen::Success && error.dot(factor.solve(error)) <= k_chi_square_95;
 }
 
-// -ln of the Gaussian density; nothing is added for a covariance that is not positive.
+// Negative log-likelihood of the error. Returns 0 for a covariance that is not positive definite.
 double log_score(const Vector6& error, const Matrix6& covariance) {
   const Eigen::LDLT<Matrix6> factor(covariance);
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0)) return 0;
@@ -77,7 +77,7 @@ void OutputFigures::add(const PoseSample& sample, std::optional<Time> newest_fra
   judge(sample, sample.state == TrackState::measured ? figures.of_measured : figures.of_predicted);
 }
 
-// In the sample's frame, at the time that the pose is predicted to.
+// True tip pose in the sample's frame, at the time that the pose is predicted to.
 std::optional<Pose> OutputFigures::true_tip(const PoseSample& sample) const {
   if (!truth_ || sample.frame == ReferenceFrame::camera) return std::nullopt;
   const Time time = sample.tick + cell_.actuation_delay;

@@ -1,8 +1,7 @@
-// What the receiver got, by frame rate: states, age, and the error against truth where there is
-// one.
+// Output statistics by frame rate: states, age and, if there is ground truth, the error.
 //
-// A tick's rate follows from the time between the two newest frames, or since the newest one where
-// that is longer: nominal up to 1.5 of the camera's gaps, reduced up to 4.5, low beyond.
+// The frame rate of a tick follows from the larger of two times: between the two newest frames, or
+// since the newest one. Nominal: up to 1.5 camera periods; reduced: up to 4.5; low: above.
 #pragma once
 
 #include <array>
@@ -17,21 +16,21 @@
 
 namespace glint {
 
-// True T_world_tool of the cell's tool at a time of the session; nothing: no truth.
+// True T_world_tool of the cell's tool at a session time; nullopt: no ground truth.
 using TruthOfTool = std::function<std::optional<Pose>(int tool, Time time)>;
 
 inline constexpr int k_frame_rates = 3;  // nominal, reduced, low
-inline constexpr int k_ages = 512;       // of 1 ms; the last one holds all beyond
-inline constexpr int k_errors = 2048;    // of 0.1 mm; likewise
+inline constexpr int k_ages = 512;       // bins of 1 ms; the last one holds all larger values
+inline constexpr int k_errors = 2048;    // bins of 0.1 mm; likewise
 
-// Of poses with a truth, at the time that they are predicted to, in the pose's own frame.
+// Errors of poses with ground truth, at the time that they are predicted to, in the pose's frame.
 struct OutputErrors {
   std::uint64_t count = 0, inside_position = 0, inside_rotation = 0;  // the stated 95 % ellipsoid
   std::uint64_t gross = 0;                                            // gross.hpp
   double square_m2 = 0, square_rad2 = 0;                              // sums of squared errors
-  // Sums of the stated covariances' traces, and of their random parts'.
+  // Sums of the traces of the stated covariances and of their random parts.
   double stated_m2 = 0, stated_rad2 = 0, random_m2 = 0, random_rad2 = 0;
-  double log_score = 0;  // sum of -ln of the stated Gaussian density at the truth, in m and rad
+  double log_score = 0;  // sum of -ln of the stated Gaussian density at the true pose, in m and rad
   double largest_m = 0;
   std::array<std::uint64_t, k_errors> histogram{};
 };
@@ -45,20 +44,21 @@ struct RateFigures {
 
 struct OutputByRate {
   std::array<std::uint64_t, k_frame_rates> gaps{};  // between frames
-  std::array<double, k_frame_rates> seconds{};      // in all
+  std::array<double, k_frame_rates> seconds{};      // total time
   std::array<std::array<RateFigures, k_frame_rates>, k_tools_max> tools{};
 };
 
-// The value below which this share of the counted ones lies, in bins.
+// The given quantile of a histogram, in bins.
 [[nodiscard]] double quantile(std::span<const std::uint64_t> counts, double share);
 
 class OutputFigures {
  public:
-  // The simulator's world is the cell's; its reference body is the cell's reference tool.
+  // Requires that the simulator's world is the cell's and that its reference body is the cell's
+  // reference tool.
   OutputFigures(const Cell& cell, TruthOfTool truth);
 
-  // Each sample once, in the order of their ticks; `newest_frame`: arrival of the newest frame by
-  // then, nothing before the first.
+  // Call once per sample, in the order of the ticks. `newest_frame`: arrival of the newest frame at
+  // that time; nullopt before the first.
   void add(const PoseSample& sample, std::optional<Time> newest_frame);
 
   [[nodiscard]] const OutputByRate& figures() const { return figures_; }

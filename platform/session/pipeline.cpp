@@ -8,7 +8,7 @@
 namespace glint {
 namespace {
 
-// Smallest and largest marker of all tools: the gates must let both through.
+// Radii of the smallest and largest marker of all tools; the size gate must accept both.
 struct RadiusRange {
   double smallest_m = 0.005, largest_m = 0.005;
 };
@@ -23,8 +23,8 @@ RadiusRange radii(const ToolSet& tools) {
   return range;
 }
 
-// A flat marker shines up to 75 degrees off its normal and is then narrower: half of its disc is
-// as likely as the whole.
+// A flat marker is visible up to 75 degrees off its normal and is then narrower: half of its disc
+// is as likely as the complete disc.
 constexpr double k_flat_part_min = 0.4;
 
 MarkerOptics marker_optics(const Cell& cell) {
@@ -74,14 +74,14 @@ double square(double value) { return value * value; }
 
 CorrespondSettings correspond_settings(const Cell& cell) {
   CorrespondSettings settings;
-  // As many declared sigmas as by default.
+  // Keeps the default ratio of the limit to the declared standard deviation.
   settings.max_rms_m *= cell.camera.range_sigma_m / settings.range_sigma_m;
   settings.range_sigma_m = cell.camera.range_sigma_m;
   settings.pixel_sigma_px = cell.camera.pixel_sigma_px;
   settings.focal_px = cell.camera.model.fx;
   settings.range_min_m = cell.camera.range_min_m;
   settings.range_max_m = cell.camera.range_max_m;
-  // A smaller labeling is of use only where another tool may hold the missing marker.
+  // A smaller labeling is useful only if another tool may hold the missing marker.
   settings.fewer_kept = cell.tools.count > 1 ? 1 : 0;
   return settings;
 }
@@ -101,7 +101,7 @@ TrackSettings track_settings(const Cell& cell) {
   return settings;
 }
 
-// What both trackers have: everything from the candidate markers on.
+// Nodes that both trackers have: all from the candidate markers on.
 template <class AnyTracker>
 void configure_common(const Cell& cell, AnyTracker& tracker) {
   const Limits limits = limits_of(cell);

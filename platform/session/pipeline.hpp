@@ -1,4 +1,4 @@
-// Sets up the graphs from a cell: the one place where a user's settings become nodes' settings.
+// Configures the graphs from a cell: the only place that converts user settings to node settings.
 #pragma once
 
 #include "nodes/output.hpp"
@@ -7,14 +7,14 @@
 
 namespace glint {
 
-// Both throw std::logic_error where a node cannot be prepared; the cell was validated before.
+// Throw std::logic_error if a node's prepare() fails; require a validated cell.
 void configure(const Cell& cell, Tracker& tracker);
 void configure(const Cell& cell, MarkerTracker& tracker);
 void configure(const Cell& cell, Output& output);
 
-// What the cell declares of a marker's noise and of the lens.
+// The cell's declared marker noise and its lens.
 [[nodiscard]] MarkerNoise declared_noise(const Camera& camera) noexcept;
-// The robot's frame that the cell declares.
+// The cell's declared pose of the robot.
 [[nodiscard]] RobotFrame declared_robot_frame(const Cell& cell);
 
 }  // namespace glint

@@ -1,4 +1,5 @@
-// A cell inside a recording: its text and every file it names, so that a recording replays alone.
+// Stores a cell in a recording and reads it back: its text and every file it names, so that the
+// recording can be replayed without other files.
 #pragma once
 
 #include <string>
@@ -11,15 +12,16 @@
 
 namespace glint {
 
-// "cell.toml"; "tools.json", whose numbers read back to the same bits; "rays.f32", the ray
-// table's floats in this machine's byte order (little endian wherever Glint runs), if there is one;
-// and the files of `glint calibrate` by the keys that name them, such as "motion.file.toml".
+// Attachments: "cell.toml"; "tools.json", whose numbers are read back bit-identically; "rays.f32",
+// the ray table's floats, if there is one; and the files of `glint calibrate`, named by their keys,
+// such as "motion.file.toml". Byte order of "rays.f32": this machine's (little endian on all
+// supported ones).
 [[nodiscard]] std::vector<Attachment> attachments_of(const Cell& cell);
 
-// What "tools.json" holds; `path` is the recording's. Throws InputError where it is damaged.
+// Reads "tools.json"; `path` is the recording's. Throws InputError if it is damaged.
 [[nodiscard]] ToolSet tools_from_json(std::string_view text, const std::string& path);
 
-// Throws InputError where an attachment is missing or damaged.
+// Throws InputError if an attachment is missing or damaged.
 [[nodiscard]] Cell recorded_cell(RecordingReader& reader, const std::string& path);
 
 }  // namespace glint

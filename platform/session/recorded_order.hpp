@@ -1,8 +1,8 @@
-// The releases of a recording, in an order in which each activation finds what it read.
+// Order of a recording's releases in which each activation finds the data that it read.
 //
-// Choices are recorded after the fact: a tick's may stand in front of the frame whose estimates it
-// read, or behind the next one. So a tick waits for its frame, and a frame waits for a tick that
-// read it or a later one: all ticks that read older estimates are released by then.
+// Choices are recorded after the activation: a tick's choice may precede the frame whose estimates
+// it read, or follow the next frame. Therefore a tick waits for its frame. A frame waits for a tick
+// that read it or a later one: all ticks that read older estimates are released by then.
 #pragma once
 
 #include <algorithm>
@@ -20,12 +20,12 @@
 
 namespace glint {
 
-// What a group outside of the replay published: each version is recorded before a tick reads it.
+// Versions published by a group that is not replayed; each is recorded before a tick reads it.
 template <class T>
 class RecordedVersions {
  public:
   void add(std::uint64_t version, const T& value) { values_[version] = value; }
-  // Versions only rise: the older ones are not read again.
+  // Versions are read in increasing order; erases the older ones.
   void publish(std::uint64_t version) {
     const auto value = values_.find(version);
     if (value == values_.end()) return;
@@ -42,19 +42,19 @@ class RecordedVersions {
 
 class RecordedOrder {
  public:
-  // What is held back at most. A recording that needs more lacks messages: what waits longest is
-  // released then, and a tick that finds other estimates is counted.
+  // Capacity of the queues. A recording that needs more lacks messages: then the oldest entry is
+  // released, and a tick that finds other estimates is counted.
   static constexpr std::size_t k_frames_held_max = 64, k_ticks_held_max = 1024;
 
-  // `on_output` is called with each recorded output record.
+  // Calls `on_output` with each recorded output record.
   RecordedOrder(RecordingReader& reader, std::function<void(OutputMessage&)> on_output)
       : reader_(reader), on_output_(std::move(on_output)) {}
 
-  // What ticks read of the robot and of the buttons: published before next() returns the tick.
+  // Robot pose and buttons that the ticks read; published before next() returns the tick.
   RecordedVersions<RobotFrame> robot;
   RecordedVersions<PenButtons> buttons;
 
-  // False: the recording ends here. Throws InputError.
+  // Returns false at the end of the recording. Throws InputError.
   [[nodiscard]] bool next(NextRelease& release) {
     while (!tick_is_due() && !frame_is_due()) {
       if (ended_) return false;
@@ -65,7 +65,7 @@ class RecordedOrder {
       ticks_.pop_front();
       robot.publish(tick_.versions[1]);
       buttons.publish(tick_.versions[2]);
-      // Ticks that were skipped have numbers, too.
+      // Skipped ticks have numbers too.
       const auto number = tick_.nominal.nanoseconds / reader_.nominal_tick().nanoseconds;
       release = {tick_.nominal, nullptr, static_cast<std::uint64_t>(number), &tick_};
     } else {
@@ -77,9 +77,9 @@ class RecordedOrder {
     return true;
   }
 
-  // Messages are missing in front of what was read so far.
+  // Whether messages are missing before the current position.
   [[nodiscard]] bool has_gap() const noexcept { return gaps_ > 0; }
-  // Frames behind a gap that lack their head pose or their choice: they are not released.
+  // Frames after a gap without a head pose or a choice; they are not released.
   [[nodiscard]] std::int64_t frames_without_inputs() const noexcept { return without_inputs_; }
 
  private:
@@ -97,7 +97,7 @@ class RecordedOrder {
     if (!frames_.empty()) return read < frames_.front().choice.activation;
     return ended_ || ticks_.size() > k_ticks_held_max;
   }
-  // Where no tick is due, those that wait read this frame or a later one.
+  // If no tick is due, the waiting ticks read this frame or a later one.
   [[nodiscard]] bool frame_is_due() const {
     return !frames_.empty() && (!ticks_.empty() || ended_ || frames_.size() > k_frames_held_max);
   }
@@ -118,7 +118,7 @@ class RecordedOrder {
       choice_ = choice;
       has_choice_ = true;
     } else if (choice.group == k_tick_group) {
-      // Older recordings have no version of the buttons: 0, none was ever held.
+      // Older recordings have no version of the buttons: 0 means that none was held.
       choice.version_count = 3;
       ticks_.push_back(choice);
     }
@@ -138,8 +138,8 @@ class RecordedOrder {
     robot.add(frame.version, {frame.state, frame.T_world_robot, frame.rms_m, frame.in_reference});
   }
   void on(PenButtonsRecord& held) { buttons.add(held.version, {held.held}); }
-  void on(DroppedInput& /*input*/) {}  // the frame is there as well
-  void on(ButtonEvent& /*event*/) {}   // ticks read what was held by then
+  void on(DroppedInput& /*input*/) {}  // its frame is recorded as well
+  void on(ButtonEvent& /*event*/) {}   // ticks read the held buttons
 
   void hold(HeldFrame held) {
     if (has_gap()) {
@@ -149,7 +149,7 @@ class RecordedOrder {
       }
       activation_ = std::max(activation_ + 1, choice_.activation) - 1;
     }
-    // A frame without its choice has the tools of the one before, and was in time.
+    // A frame without a choice keeps the tool set of the frame before, and was in time.
     if (choice_.activation != ++activation_) choice_.overrun = {};
     choice_.activation = activation_;
     choice_.version_count = 1;
@@ -163,12 +163,12 @@ class RecordedOrder {
   std::function<void(OutputMessage&)> on_output_;
   std::deque<HeldFrame> frames_;
   std::deque<ChoiceRecord> ticks_;
-  HeldFrame frame_;  // released last, as the next two
+  HeldFrame frame_;  // released last, as are the next two
   ArrivedFrame arrived_;
   ChoiceRecord tick_;
-  HeadPose head_;                             // read last
+  HeadPose head_;                             // the last one read
   ChoiceRecord choice_;                       // of the frame group, likewise
-  std::uint64_t activation_ = 0;              // of the frame read last
+  std::uint64_t activation_ = 0;              // of the last frame read
   bool has_head_ = true, has_choice_ = true;  // since the newest gap
   std::uint64_t gaps_ = 0;
   bool ended_ = false;

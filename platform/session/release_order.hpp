@@ -1,5 +1,5 @@
-// The order of releases where no clock makes it: frames and ticks one after the other in one
-// thread, by their nominal times or as a recording has them.
+// Deterministic order of releases without a clock: frames and ticks run one after the other in one
+// thread, by their nominal times or in the order of a recording.
 #pragma once
 
 #include <atomic>
@@ -11,15 +11,15 @@
 
 namespace glint {
 
-// Of the frame group or of the tick group.
+// Release of the frame group or of the tick group.
 struct NextRelease {
   Time nominal;
-  const ArrivedFrame* frame = nullptr;     // null: a tick. Valid until the next one is asked for.
+  const ArrivedFrame* frame = nullptr;     // null: a tick. Valid until the next call of next()
   std::uint64_t tick = 0;                  // the tick's number
-  const ChoiceRecord* recorded = nullptr;  // in a replay, likewise
+  const ChoiceRecord* recorded = nullptr;  // of a replay; validity likewise
 };
 
-// Runs all that `order` has by on_frame(const NextRelease&) and on_tick(const NextRelease&).
+// Runs all releases of `order` by on_frame(const NextRelease&) and on_tick(const NextRelease&).
 template <class Order, class OnFrame, class OnTick>
 void run_releases(Order& order, const OnFrame& on_frame, const OnTick& on_tick) {
   for (NextRelease release; order.next(release);) {
@@ -35,15 +35,15 @@ void run_releases(Order& order, const OnFrame& on_frame, const OnTick& on_tick) 
   return {static_cast<std::int64_t>(1e9 / cell.tick_hz)};
 }
 
-// Of a run: frames at their arrival, ticks at their period until the last frame's poses are lost.
-// Of the same time the frame is first.
+// Order of a run: frames at their arrival, ticks at their period until the last frame's poses are
+// lost. At equal times the frame is first.
 class NominalOrder {
  public:
-  // `stop` may be null; set, it ends the frames.
+  // `stop` may be null. When it is set, no more frames are taken.
   NominalOrder(const Cell& cell, FrameSource& source, const std::atomic<bool>* stop)
       : source_(source), stop_(stop), period_(tick_period_of(cell)), lost_after_(cell.lost_after) {}
 
-  // False: nothing is left.
+  // Returns false if nothing is left.
   [[nodiscard]] bool next(NextRelease& release) {
     if (!frame_waits_ && !frames_ended_) take_frame();
     if (tick_ < until_) {
@@ -70,7 +70,7 @@ class NominalOrder {
   Duration period_, lost_after_;
   ArrivedFrame arrived_;
   Time tick_,
-      until_;  // the next tick; the arrival of the frame that waits, or the end of the ticks
+      until_;  // time of the next tick; arrival of the waiting frame, or the end time of the ticks
   std::uint64_t number_ = 0;
   bool any_frame_ = false, frame_waits_ = false, frames_ended_ = false;
 };

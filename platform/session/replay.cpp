@@ -17,7 +17,7 @@
 namespace glint {
 namespace {
 
-// Output records as they were recorded and as they are decided here, each in its order.
+// Queues of recorded and of recomputed output records, each in its order.
 struct RecordComparison {
   std::deque<std::vector<std::uint8_t>> recorded, decided;
 
@@ -40,12 +40,12 @@ RunnerSettings<G> runner_settings(int workers) {
   return settings;
 }
 
-// A run's groups, released as recorded. G: see FrameGroupOf.
+// Runs the groups of a run, released as recorded. G: see FrameGroupOf.
 template <class G>
 void decide_again(const Cell& cell, RecordingReader& reader, const ReplayOptions& options,
                   ReplayResult& result) {
   RecordComparison comparison;
-  // Behind a gap no record is compared: the tracker lacks frames from there on.
+  // After a gap no record is compared, since the tracker lacks frames from there on.
   RecordedOrder order(reader, [&](OutputMessage& output) {
     ++result.records_recorded;
     if (!order.has_gap()) comparison.recorded.push_back(std::move(output.record));
@@ -79,7 +79,7 @@ void decide_again(const Cell& cell, RecordingReader& reader, const ReplayOptions
     frames->process(*release.frame, release.recorded);
     ++result.frames;
   };
-  // Behind a gap a tick goes on with what was there before.
+  // After a gap a tick uses the older versions.
   const auto on_tick = [&](const NextRelease& release) {
     nominal = release.nominal;
     if (options.progress) options.progress((nominal - Time{}).seconds());
@@ -103,7 +103,7 @@ void decide_again(const Cell& cell, RecordingReader& reader, const ReplayOptions
   result.losses.frames += order.frames_without_inputs();
 }
 
-// At level outputs nothing can be decided again: the records are only read back.
+// At level outputs there are no inputs to replay: only reads the records back.
 void read_back(RecordingReader& reader, ReplayResult& result) {
   Sha256 hash;
   while (const auto message = reader.next()) {

@@ -1,4 +1,5 @@
-// Decides again what a recording's run decided, and compares the output records byte for byte.
+// Deterministic replay of a recording: recomputes its output records and compares them byte for
+// byte.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@ namespace glint {
 struct ReplayOptions {
   int workers = 1;  // 1 or 2: the same bytes
   ReadTolerance tolerance;
-  std::function<void(double seconds)> progress;  // how far into the recording
+  std::function<void(double seconds)> progress;  // position in the recording
 };
 
 struct ReplayResult {
@@ -21,16 +22,16 @@ struct ReplayResult {
   std::int64_t ticks = 0;
   std::int64_t records = 0;
   std::int64_t records_recorded = 0;
-  std::int64_t overruns = 0;          // decisions about them, taken from the recording
+  std::int64_t overruns = 0;          // overrun decisions, taken from the recording
   std::int64_t mismatches = 0;        // records that differ from the recorded ones
   std::int64_t first_mismatch = -1;   // its number
-  std::int64_t versions_missing = 0;  // ticks that read what the recording lacks
-  RecordingLosses losses;             // only where the tolerance allows them
-  std::int64_t records_compared = 0;  // behind a gap none: the tracker lacks frames from there on
-  std::string output_sha256;          // of the records decided here
-  std::string recorded_sha256;        // of the run, as it wrote at its end
-  // A recording that ended early has no hash of its own, and its last tick may be cut in two. Of a
-  // damaged one, the records before the damage are compared.
+  std::int64_t versions_missing = 0;  // ticks that read a version missing in the recording
+  RecordingLosses losses;             // nonzero only if the tolerance allows losses
+  std::int64_t records_compared = 0;  // none after a gap: the tracker lacks frames from there on
+  std::string output_sha256;          // of the recomputed records
+  std::string recorded_sha256;        // of the run, written at its end
+  // A recording that ended early has no hash, and its last tick may be incomplete. Of a damaged
+  // recording, the records before the damage are compared.
   [[nodiscard]] bool agrees() const {
     if (mismatches != 0) return false;
     if (recorded_sha256.empty() || losses.any()) return records_compared > 0;
@@ -38,8 +39,8 @@ struct ReplayResult {
   }
 };
 
-// Throws InputError for a file that is no recording, not a whole one, or one without an output
-// record to compare: there is nothing to replay.
+// Throws InputError for a file that is no recording, for an incomplete one, and for one without
+// output records.
 [[nodiscard]] ReplayResult replay(const std::string& file, const ReplayOptions& options);
 
 }  // namespace glint

@@ -14,7 +14,7 @@ std::string name_of_node(const graph::NodeInfo& node) {
   return node.copies > 1 ? name + "#" + std::to_string(node.copy) : name;
 }
 
-// The plan's nodes of one group, in the order in which their cores run them.
+// The schedule's nodes of one group, in order of their start times.
 std::vector<PlannedNode> in_order(const Plan& plan, int group) {
   std::vector<PlannedNode> nodes;
   for (const PlannedNode& node : plan.nodes) {
@@ -33,7 +33,7 @@ GroupPlan<G> group_plan(const Plan& plan, const TaskModel& model, int group,
   GroupPlan<G> result;
   result.priority = plan.groups.at(g).priority;
   const std::vector<PlannedNode> nodes = in_order(plan, group);
-  // Worker 0 is the core of the graph's first node, since that is where an activation begins.
+  // Worker 0 is the core of the graph's first node, since an activation begins there.
   std::map<int, int> worker_of_core;
   result.cores.clear();
   const auto worker_of = [&](int core) {
@@ -54,7 +54,7 @@ GroupPlan<G> group_plan(const Plan& plan, const TaskModel& model, int group,
   result.bounds_ns.assign(static_cast<std::size_t>(G::node_count), 0);
   result.remaining_ns.assign(static_cast<std::size_t>(G::node_count), 0);
   for (const PlannedNode& node : nodes) {
-    if (!result.tables.add(node.node, worker_of(node.core))) continue;  // found as left out below
+    if (!result.tables.add(node.node, worker_of(node.core))) continue;  // reported as a fault below
     const auto n = static_cast<std::size_t>(node.node);
     result.bounds_ns[n] = model.groups.at(g).nodes.at(n).bound_ns;
     result.remaining_ns[n] = end_ns - node.end_ns;

@@ -1,5 +1,5 @@
-// What a board and a plan tell a run: who runs which node where, at which priority, and within
-// which bounds. Without them: the rule of graph/workers.hpp, any core, and no bound.
+// Allocation of nodes to cores, priorities and time bounds of a run, from a board file and a
+// schedule. Without them: the rule of graph/workers.hpp, any core, and no bounds.
 #pragma once
 
 #include <cstdint>
@@ -20,40 +20,40 @@ namespace glint {
 template <class G>
 struct GroupPlan {
   graph::PlanTables<G> tables = graph::plan_by_rule<G>(1);
-  std::vector<int> cores = {-1};           // of each worker; -1: any
+  std::vector<int> cores = {-1};           // by worker; -1: any
   int priority = 0;                        // SCHED_FIFO
-  std::vector<std::int64_t> bounds_ns;     // by node; empty: no board
-  std::vector<std::int64_t> remaining_ns;  // by node: from its end to the group's, at worst
+  std::vector<std::int64_t> bounds_ns;     // by node; empty: no board file
+  std::vector<std::int64_t> remaining_ns;  // by node: from its end to the group's, worst case
 };
 
 struct RunPlan {
-  bool planned = false;  // by a plan file
+  bool planned = false;  // by a schedule file
   std::string board, plan_file;
-  // In microseconds; 0: no board.
+  // In microseconds; 0: no board file.
   double frame_bound_us = 0, tick_bound_us = 0, frame_to_can_bound_us = 0, background_bound_us = 0;
-  std::vector<std::string> doubts;  // why these bounds promise less than they say
+  std::vector<std::string> doubts;  // why these bounds may not hold
   GroupPlan<Tracker> frame;
   GroupPlan<Output> tick;
-  std::optional<GroupPlan<Background>> background;  // where the cell has one
+  std::optional<GroupPlan<Background>> background;  // if the cell has one
 };
 
-// Fixed priorities: on a core, tick preempts frame preempts background. Below the kernel's
-// interrupt threads (50).
+// Fixed priorities: on each core, tick preempts frame and frame preempts background. All are below
+// the kernel's interrupt threads (50).
 inline constexpr int k_tick_priority = 48;
 inline constexpr int k_frame_priority = 45;
 inline constexpr int k_background_priority = 42;
-// Of a thread that stands in for the camera's driver.
+// Priority of a thread that simulates the camera's driver.
 inline constexpr int k_arrival_priority = k_tick_priority + 1;
 
-// What may be needed at worst after each node, where one worker runs them all in the graph's order.
+// Worst-case remaining time after each node, if one worker runs all nodes in the graph's order.
 [[nodiscard]] std::vector<std::int64_t> remaining_in_order(
     const std::vector<std::int64_t>& bounds_ns);
 
-// By rule, for the cell's number of workers.
+// Schedule by rule, for the cell's number of workers.
 [[nodiscard]] RunPlan plan_by_rule(const Cell& cell);
 
-// As a checked plan says: its first group is the tracker's, its second the output's, a
-// third one the background's. Throws InputError naming `file` where a worker would wait for ever.
+// Converts a checked schedule: its first group is the tracker's, the second the output's, the
+// optional third the background's. Throws InputError naming `file` if a worker would wait for ever.
 [[nodiscard]] RunPlan plan_of(const Plan& plan, const TaskModel& model, const std::string& file);
 
 }  // namespace glint

@@ -6,13 +6,13 @@
 
 namespace glint {
 
-// A tick has at least one frame, so that no more ticks than frames are in flight.
+// Each tick has at least one frame, so there are at most as many ticks as frames in flight.
 SentTicks::SentTicks(std::size_t latencies)
     : pending_(k_can_in_flight_max), latencies_(latencies) {}
 
 void SentTicks::add(const TickOfFrames& tick, std::uint64_t sent) noexcept {
   settle(sent);
-  // Full: the sink has failed for good, and nothing after that leaves.
+  // Full: the sink has failed permanently, and no later frame leaves.
   if (pushed_ - popped_ == pending_.size()) return;
   pending_[pushed_++ % pending_.size()] = tick;
 }

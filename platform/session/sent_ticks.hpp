@@ -1,7 +1,7 @@
 // Counts the ticks whose pose frames have left over CAN: their states, gaps and latencies.
 //
-// A log's writer runs behind the ticks and may fail later: a tick is pending until the sink reports
-// its frames as sent. Memory is fixed; no heap after the start.
+// A log's writer is asynchronous and may fail later. A tick is pending until the sink reports its
+// frames as sent. Memory is fixed; no heap after the start.
 #pragma once
 
 #include <algorithm>
@@ -17,31 +17,31 @@
 
 namespace glint {
 
-// One tick whose pose frames the sink accepted, at least some of them.
+// A tick of which the sink accepted at least one pose frame.
 struct TickOfFrames {
   std::uint64_t last = 0;  // frames accepted up to its last pose frame
   Time at;                 // send time of its first frame
   int tools = 0;
-  bool whole = false;    // no frame of a pose was refused
+  bool whole = false;    // all pose frames were accepted
   bool carries = false;  // the first tick that carries a frame's estimate
   std::array<TrackState, k_tools_max> states{};
-  FrameToCan latency;  // where it carries one
+  FrameToCan latency;  // if `carries`
 };
 
-// The ticks of one tool that left, by state.
+// Number of sent ticks of one tool, by state.
 struct ToolTicks {
   std::uint64_t measured = 0, predicted = 0, lost = 0;
-  std::uint64_t none = 0;                // nothing was measured since the start
-  Duration longest_without_measurement;  // between ticks that left as measured, and to either end
-  Time last_measured;                    // or the first that left
+  std::uint64_t none = 0;                // no measurement since the start
+  Duration longest_without_measurement;  // between measured ticks, and to the first and last tick
+  Time last_measured;                    // or the first sent tick
 
   [[nodiscard]] std::uint64_t all() const { return measured + predicted + lost + none; }
 };
 
-// What a run reports of them.
+// Summary for the run's report.
 struct TicksLeft {
-  std::uint64_t ticks = 0;  // all of whose pose frames left
-  Duration longest_gap;     // between two of these
+  std::uint64_t ticks = 0;  // with all pose frames sent
+  Duration longest_gap;     // between two of these ticks
   std::array<ToolTicks, k_tools_max> tools{};
 
   [[nodiscard]] bool any_measured() const {
@@ -52,12 +52,12 @@ struct TicksLeft {
 
 class SentTicks {
  public:
-  // `latencies`: how many there is room for.
+  // `latencies`: capacity of the latency log.
   explicit SentTicks(std::size_t latencies);
 
-  // Counts what has left by now, then takes one more tick. `sent`: CanSinkCounts::sent.
+  // Counts the pending ticks sent so far, then adds `tick`. `sent`: CanSinkCounts::sent.
   void add(const TickOfFrames& tick, std::uint64_t sent) noexcept;
-  // Counts what has left by now.
+  // Counts the pending ticks sent so far.
   void settle(std::uint64_t sent) noexcept;
 
   [[nodiscard]] const LatencyLog& latencies() const noexcept { return latencies_; }

@@ -17,8 +17,8 @@
 namespace glint {
 namespace {
 
-// From the choice of the epoch to the first frame everything else starts. The memory of a map and
-// of a recording is touched by then, and other DDS participants are found.
+// Time from the choice of the epoch to the first frame. By then the memory of a map and of a
+// recording is touched, other DDS participants are discovered, and all other parts have started.
 Duration lead_of(const Cell& cell) {
   const bool much = cell.background || !cell.record.file.empty();
   return milliseconds(much ? 1000 : 300) + (cell.dds.on ? milliseconds(1200) : Duration{});
@@ -31,7 +31,7 @@ std::vector<int> cores_of(const RunPlan& plan) {
   return cores;
 }
 
-// The last map, when nothing runs any more.
+// Writes the last map. Call when no group runs any more.
 void write_map(BackgroundGroup& background, const std::string& folder, SessionResult& result) {
   background.finish();
   if (background.map().count == 0) return;
@@ -51,7 +51,7 @@ SessionResult run_session(const Cell& cell, FrameSource& source, const SessionOp
   SessionOptions options = given;
   if (!options.plan.planned) options.plan = plan_by_rule(cell);
   SessionResult result;
-  // What is ready before the session's clock starts cannot be late.
+  // Frames prepared before the session's clock starts cannot be late.
   source.prepare([&options](int ready, int wanted) {
     if (options.preparing) options.preparing(ready, wanted);
     return options.stop == nullptr || !*options.stop;
@@ -64,8 +64,8 @@ SessionResult run_session(const Cell& cell, FrameSource& source, const SessionOp
     options.best_effort = result.machine.spoils;
   }
 
-  // Sinks need the distance of the session's clock to Unix time, so it is fixed before they are
-  // opened, far enough ahead that they are ready by then.
+  // Sinks need the offset from session time to Unix time. The epoch is therefore chosen before they
+  // are opened, far enough ahead that they are ready by then.
   Time nominal_now;
   const Time epoch = monotonic_now() + lead_of(cell);
   std::int64_t unix_offset_ns = unix_offset().nanoseconds + epoch.nanoseconds;

@@ -28,7 +28,7 @@ RunnerSettings<G> runner_settings(const GroupPlan<G>& plan, std::uint8_t group, 
   settings.bounds_ns = plan.bounds_ns;
   settings.trace = trace;
   for (std::size_t w = 1; w < plan.cores.size(); ++w) {
-    // Without real time worker 0 is a normal thread on any core: so are the others.
+    // Without real time worker 0 is a normal thread on any core; so are the others.
     settings.others.push_back(cell.realtime
                                   ? ThreadSettings{"glint-worker", plan.cores[w], plan.priority}
                                   : ThreadSettings{"glint-worker"});
@@ -42,7 +42,7 @@ RunnerSettings<G> runner_settings(const GroupPlan<G>& plan, std::uint8_t group, 
   settings.watch.remaining_ns = plan.remaining_ns;
   settings.watch.on = cell.overrun.watch && (cell.realtime || !settings.injections.empty());
   if (!cell.realtime && settings.watch.on) {
-    // Time stands still but for what is injected: one worker, so that each run decides alike.
+    // Only injected delays advance time: one worker, so that every run makes the same decisions.
     settings.plan = graph::plan_by_rule<G>(1);
     settings.others.clear();
     settings.watch.remaining_ns = remaining_in_order(plan.bounds_ns);

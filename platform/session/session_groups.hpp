@@ -1,5 +1,5 @@
-// What every run has in common, live or in order, on a desktop or a board: the groups, what they
-// exchange, how they are run and watched, and where their output goes.
+// Groups of a run, their data exchange, execution, monitoring and outputs. Common to all runs: live
+// or in order, on a desktop or a companion computer.
 #pragma once
 
 #include <cstddef>
@@ -19,39 +19,39 @@
 
 namespace glint {
 
-// Of how many frames something is kept.
+// Number of frames whose results are kept.
 struct KeptFrames {
-  std::size_t latencies = 0;  // 0: no end is known, and the newest are kept
-  std::size_t outcomes = 0;   // to be judged by a truth
+  std::size_t latencies = 0;  // 0: unknown number; keeps the newest
+  std::size_t outcomes = 0;   // for comparison with ground truth
 };
 
 class SessionGroups {
  public:
-  // `trace` may be null; it is not yet started.
+  // `trace` may be null and must not be started yet.
   SessionGroups(const Cell& cell, const SessionOptions& options, KeptFrames kept, Sinks& sinks,
                 TraceWriter* trace, const Clock& now, std::int64_t unix_offset_ns,
                 BackgroundScene scene);
 
   void process(const ArrivedFrame& arrived) noexcept;                  // frame thread
   void tick(std::uint64_t number, Time nominal, Time woken) noexcept;  // tick thread
-  // In place of the next tick: see TickGroup.
+  // Call instead of the next tick: see TickGroup.
   void stop_safe() noexcept { tick_.stop_safe(); }
 
-  // What changes by plan or was asked for, up to this time; not by a real-time thread.
+  // Applies scheduled and requested changes up to `now`. Do not call on a real-time thread.
   void reach(Time now) {
     roster_.reach(now);
     calibration_.review(now, *calibration_notes_);
   }
 
-  // Null where the cell has none.
+  // Null if the cell has none.
   [[nodiscard]] BackgroundGroup* background() noexcept { return background_.get(); }
 
   [[nodiscard]] const BackgroundGroup* background() const noexcept { return background_.get(); }
 
-  // Ticks without a measurement are counted while this source is late.
+  // Counts the ticks without a measurement while this source is late.
   void watch(const FrameSource& source) noexcept { tick_.watch(source); }
 
-  // When all groups have ended.
+  // Call after all groups have ended.
   void report(SessionResult& result);
 
  private:
@@ -70,20 +70,19 @@ class SessionGroups {
   std::size_t processed_ = 0, tracked_ = 0;
 };
 
-// The loops of a run: every run uses one of the two.
+// The two loops of a run.
 //
-// Frames when they arrive, ticks and slices by the clock, which starts at `epoch`, each group in a
-// thread of its own. Ticks go on until the last frame's poses are lost, or until the run is
-// stopped.
+// Live: frames on arrival, ticks and slices by the clock from `epoch` on, each group in a thread of
+// its own. Ticks continue until the last frame's poses are lost, or until the run is stopped.
 void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& groups,
               const SessionOptions& options, SessionResult& result);
 
-// Frames, ticks and slices in the order of their nominal times, in one thread: the same bytes every
-// time. `now` is the groups' clock.
+// In order: frames, ticks and slices in the order of their nominal times, in one thread.
+// Deterministic: the same bytes in every run. `now` is the groups' clock.
 void run_in_order(const Cell& cell, Time& now, FrameSource& source, SessionGroups& groups,
                   const SessionOptions& options, SessionResult& result);
 
-// The trace file's first line.
+// First line of the trace file.
 [[nodiscard]] std::string trace_header(const Cell& cell, const RunPlan& plan,
                                        std::int64_t epoch_unix_ns);
 

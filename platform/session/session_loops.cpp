@@ -24,7 +24,7 @@ void note(const ThreadReport& report, SessionResult& result) {
   if (!report.refused.empty()) result.refused.push_back(report.name + ": " + report.refused);
 }
 
-// Runs `body` declared free of heap allocations and page faults.
+// Runs `body` with counters of heap allocations and page faults armed.
 template <class Body>
 void counted(Body body) {
   prefault_stack();
@@ -35,14 +35,14 @@ void counted(Body body) {
   AllocationCounter::disarm();
 }
 
-// Which lines about the robot are printed; each is printed once.
+// Lines about the robot that were printed; each is printed once.
 struct PrintedAboutRobot {
   bool jumped = false, lacking = false, unusable = false, lost = false;
 };
 
-// One line each at the first refused jump, the first joint state that lacks one of the model's
-// joints, the first that cannot be posed, and the first picture without joints. Not for a real-time
-// thread.
+// Prints one line each at: the first rejected jump, the first joint state without one of the
+// model's joints, the first that cannot be posed, and the first image without joints. Do not call
+// on a real-time thread.
 void print_about_robot(const SessionGroups& groups, PrintedAboutRobot& printed) {
   const BackgroundGroup* const background = groups.background();
   if (background == nullptr) return;
@@ -80,7 +80,7 @@ void print_about_robot(const SessionGroups& groups, PrintedAboutRobot& printed) 
 void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& groups,
               const SessionOptions& options, SessionResult& result) {
   std::atomic<bool> frames_done{false}, ran_away{false};
-  std::atomic<std::int64_t> reached_ns{0}, end_ns{0};  // of the ticks; the end once frames_done
+  std::atomic<std::int64_t> reached_ns{0}, end_ns{0};  // last tick; end once frames_done
   const auto ends = [&] { return stopped(options) || ran_away; };
   const std::uint64_t allocations_before = AllocationCounter::count();
   const std::uint64_t faults_before = PageFaultCounter::count();
@@ -128,7 +128,7 @@ void run_live(const Cell& cell, Time epoch, FrameSource& source, SessionGroups& 
   const double all_s = (source.duration() + cell.lost_after).seconds();
   PrintedAboutRobot printed;
   while (!frames_done || (reached_ns + tick_period_of(cell).nanoseconds < end_ns && !ends())) {
-    // The source may be behind its time, the ticks are not.
+    // The source may be late; the ticks are not.
     const double reached_s = static_cast<double>(reached_ns) * 1e-9;
     if (options.progress) {
       options.progress(std::min(reached_s, source.delivered_part() * all_s), all_s);

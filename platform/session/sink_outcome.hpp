@@ -1,4 +1,4 @@
-// Where a run's files go, and what became of everything it sent.
+// Locations of a run's output files, and results of all its outputs.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,14 @@
 namespace glint {
 
 struct SinkOptions {
-  std::string out = "out";               // folder of all files that the cell names relatively
-  bool with_reader = true;               // a DDS reader process of its own counts what arrives
-  std::vector<std::string> best_effort;  // what this machine spoils: said in every output
-  bool by_rate = true;                   // figures by frame rate
-  TruthOfTool truth{};                   // of run_session()'s source, for them
+  std::string out = "out";               // folder for relative file names of the cell
+  bool with_reader = true;               // a separate DDS reader process counts received samples
+  std::vector<std::string> best_effort;  // this machine's timing faults, stated in all outputs
+  bool by_rate = true;                   // statistics by frame rate
+  TruthOfTool truth{};                   // of run_session()'s source, for `by_rate`
 };
 
-// Messages of other DDS participants that named a tool.
+// Numbers of tool change requests from other DDS participants.
 struct ToolOrders {
   std::uint64_t added = 0, removed = 0;
 };
@@ -32,24 +32,24 @@ struct ToolOrders {
 struct SinkOutcome {
   CanSinkCounts can;
   double can_bus_load = 0;      // computed, of the bus that the cell declares
-  ButtonFrameCounts can_heard;  // frames of buttons
-  std::string can_not_heard;    // why none can come, where the cell names one
+  ButtonFrameCounts can_heard;  // button frames received
+  std::string can_not_heard;    // why no button frames can arrive, if the cell names one
   DdsCounts dds;
-  HeardCounts heard;                    // over DDS
+  HeardCounts heard;                    // received over DDS
   std::vector<ToolOrders> tool_orders;  // by tool; empty: no DDS
   ReaderResult dds_reader;
   bool dds_was_read = false;
-  std::string dds_not_read;  // why the reader process has no result, where there was one
-  std::shared_ptr<const OutputByRate> by_rate;  // null: not wanted
-  std::uint64_t files_lost = 0;                 // lines that TUM and CSV files lack
-  std::string files_wrong;                      // the first write of these that failed
+  std::string dds_not_read;  // why the reader process has no result, if there was one
+  std::shared_ptr<const OutputByRate> by_rate;  // null: not requested
+  std::uint64_t files_lost = 0;                 // lines missing in TUM and CSV files
+  std::string files_wrong;                      // first write error of these
   RecordingOutcome recording;
   std::string recording_file;
   std::string output_sha256;
   std::string fault;                     // why the run had to stop; empty: it did not
-  std::vector<std::string> refused;      // real-time rights that the system did not grant
-  std::vector<std::string> files;        // everything written
-  std::vector<std::string> not_written;  // other files that the disk refused, each with the reason
+  std::vector<std::string> refused;      // real-time rights that the system refused
+  std::vector<std::string> files;        // all written files
+  std::vector<std::string> not_written;  // other files that failed, each with the reason
 };
 
 }  // namespace glint

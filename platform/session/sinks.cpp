@@ -98,7 +98,7 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
   }
 
   if (cell.can.buttons) {
-    // Without real time nobody's hand could keep up with a run.
+    // No bus input without real time: a person cannot keep up with such a run.
     if (cell.realtime) {
       buttons_ = open_can_buttons(
           cell.can.sink, *cell.can.buttons, {unix_offset_ns},
@@ -111,7 +111,7 @@ Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_off
     }
   }
 
-  // A simulated run that does not keep real time would only overrun its DDS readers.
+  // A run that is faster than real time would only overrun its DDS readers.
   if (cell.dds.on && cell.realtime) {
     DdsSettings settings = dds_settings(cell, unix_offset_ns);
     settings.best_effort = joined(options.best_effort);
@@ -164,7 +164,7 @@ void Sinks::close(SinkOutcome& result) {
     inputs_->stop();
     result.heard = inputs_->counts();
     result.tool_orders = tool_orders_;
-    inputs_.reset();  // the sink leaves the domain when nobody else holds it
+    inputs_.reset();  // the sink leaves the domain when nothing else holds it
   }
   if (files_ != nullptr) {
     result.files_wrong = files_->close();
@@ -182,7 +182,7 @@ void Sinks::close(SinkOutcome& result) {
     result.recording_file = recording_file_;
     result.files.push_back(recording_file_);
   }
-  // Last, so that the last diagnostics have every loss.
+  // Last, so that the last diagnostics include every loss.
   if (dds_ != nullptr) {
     dds_->stop();
     result.dds = dds_->counts();

@@ -1,4 +1,4 @@
-// Everything a run sends to, opened from a cell and closed in the right order.
+// All outputs of a run, opened from a cell and closed in the right order.
 #pragma once
 
 #include <memory>
@@ -27,42 +27,42 @@ namespace glint {
 
 class Sinks {
  public:
-  // Throws InputError for a bus that cannot carry the cell's traffic or a file that cannot be made,
-  // MissingDevice for an interface that is not there.
+  // Throws InputError for a bus that cannot carry the cell's traffic or a file that cannot be
+  // created, MissingDevice for an interface that does not exist.
   Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_offset_ns);
 
   [[nodiscard]] CanSink* can() noexcept { return can_.get(); }
   [[nodiscard]] DdsSink* dds() noexcept { return dds_.get(); }
-  // What comes in over the same domain; null where there is none.
+  // Inputs from the same DDS domain; null if there are none.
   [[nodiscard]] DdsInputs* inputs() noexcept { return inputs_.get(); }
   [[nodiscard]] Recorder* recorder() noexcept { return recorder_.get(); }
   [[nodiscard]] FileSink* files() noexcept { return files_.get(); }
 
-  // A button went down or up: into the recording, and to the ticks from the next one on. From any
-  // thread that may wait for another, thus neither the frame's nor the tick's.
+  // Button event: records it and publishes it to the following ticks. Thread-safe; may block, thus
+  // call on neither the frame nor the tick thread.
   void offer_button(const ButtonEvent& event);
 
-  // Which buttons are held: for the tick group, its only reader.
+  // The held buttons, for the tick group, its only reader.
   [[nodiscard]] graph::TripleBuffer<PenButtons>& held_buttons() noexcept {
     return held_buttons_.published();
   }
 
-  // What is asked for over DDS.
+  // Tool changes requested over DDS.
   [[nodiscard]] ToolRequests& tool_requests() noexcept { return tool_requests_; }
 
-  // For whoever counts overruns; DDS diagnostics tell them.
+  // Written by the groups' callers; published by the DDS diagnostics.
   [[nodiscard]] OverrunCounters& overruns() noexcept { return overruns_; }
 
-  // For the tick group, which counts losses; likewise.
+  // Written by the tick group, which counts losses; published likewise.
   [[nodiscard]] LossCounters& losses() noexcept { return losses_; }
 
-  // For whoever follows the robot; likewise.
+  // Written by the background group; published likewise.
   [[nodiscard]] FollowedRobotNotes& robot_notes() noexcept { return robot_notes_; }
 
-  // Of the calibration watch; /diagnostics publishes them.
+  // Written by the calibration watch; published likewise.
   [[nodiscard]] CalibrationNotes& calibration_notes() noexcept { return calibration_notes_; }
 
-  // After the last offer: everything is written, and what became of it stands in the result.
+  // Call after the last offer. Writes all queued data and stores the results in `result`.
   void close(SinkOutcome& result);
 
  private:
@@ -75,9 +75,9 @@ class Sinks {
   CalibrationNotes calibration_notes_;
   ToolRequests tool_requests_;
   std::vector<ToolOrders> tool_orders_;  // by tool; of the thread that reads from DDS
-  std::mutex one_button_;  // the lane of inputs and what is held are for one thread at a time
+  std::mutex one_button_;                // serialises the input lane and the held buttons
   HeldButtons held_buttons_;
-  std::unique_ptr<Recorder> recorder_;  // outlives those whose threads offer to it
+  std::unique_ptr<Recorder> recorder_;  // outlives the threads that offer to it
   std::unique_ptr<FileSink> files_;
   std::unique_ptr<CanSink> can_;
   std::unique_ptr<CanButtons> buttons_;

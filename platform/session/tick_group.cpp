@@ -52,7 +52,7 @@ void TickGroup::tick_as(std::uint64_t number, const ChoiceRecord& recorded) noex
 
 void TickGroup::run(const Now& now, Time woken, const graph::OverrunDecision* recorded) noexcept {
   output_->input<Now>() = now;
-  // What PackCan remembers of what it sent: taken back where that does not leave.
+  // State of PackCan before the tick; restored if its frames do not leave.
   const PackCan remembered = output_->node<PackCan>();
   overrun_ = recorded != nullptr ? runner_->run_as(*output_, *recorded, recorded->after_node)
                                  : runner_->run(*output_, {group_.choice().activation, now.number,
@@ -118,7 +118,7 @@ std::uint64_t TickGroup::carried_sequence() const noexcept {
   return std::as_const(*output_).token<graph::Latest<Estimates>>().value().verdict.stamp.sequence;
 }
 
-// The tools of the cell that leave at this tick, each with all its frames, before the node's own.
+// Number of pose frames at this tick; they precede the node's own frames.
 std::size_t TickGroup::pose_frames() const noexcept {
   const int of_tool = can_fd_ ? 1 : k_can_frames_per_pose_max;
   return static_cast<std::size_t>(std::min(samples_->count * of_tool, frames_->count));
@@ -141,7 +141,7 @@ void TickGroup::send(const Now& now, Time woken) noexcept {
 
 void TickGroup::send_poses(Time woken) noexcept {
   const auto& estimates = std::as_const(*output_).token<graph::Latest<Estimates>>();
-  // A substitute of this tick carries older estimates: the newest ones wait for the next tick.
+  // A substitute carries older estimates: the newest ones remain for the next tick.
   const bool first_carried = !overrun_.happened() && estimates.version() != carried_version_ &&
                              estimates.value().verdict.usable();
   if (!overrun_.happened() && !first_carried) carried_version_ = estimates.version();
@@ -160,7 +160,7 @@ void TickGroup::send_poses(Time woken) noexcept {
     tick.whole = tick.whole && accepted;
     if (first) tick.at = time;
     if (first && accepted && first_carried) {
-      // Of a frame that is refused the next tick carries the estimate first.
+      // If this frame is refused, the next tick is the first to carry the estimate.
       carried_version_ = estimates.version();
       const Time published{estimates.time_ns()};
       tick.carries = true;
@@ -173,8 +173,8 @@ void TickGroup::send_poses(Time woken) noexcept {
   if (tick.whole || tick.carries) sent_.add(tick, sinks_.can->counts().sent);
 }
 
-// One emergency a tick: the frame group's overruns first, then the tick's, then losses; what waits
-// is reported at the ticks after.
+// Sends at most one emergency per tick: first the frame group's overruns, then the tick's, then
+// losses. The others remain queued for later ticks.
 void TickGroup::send_emergency(Time tick) noexcept {
   OverrunNote note;
   if (frame_notes_->pop(note) || own_notes_.pop(note)) {

@@ -1,5 +1,5 @@
-// The tick group as it runs: at each tick the newest estimates become pose samples and CAN frames;
-// frames are sent at once, samples go to DDS, to the recorder and into the hash.
+// Tick group of a run: at each tick computes pose samples and CAN frames from the newest estimates.
+// Sends the frames at once; passes samples to DDS, to the recorder and to the output hash.
 #pragma once
 
 #include <cstdint>
@@ -25,15 +25,15 @@ namespace glint {
 
 extern template class GroupRunner<Output>;  // in tick_group.cpp, once
 
-// Whoever listens; each may be null.
+// Outputs of the tick group; each may be null.
 struct TickSinks {
   CanSink* can = nullptr;
   DdsSink* dds = nullptr;
   FileSink* files = nullptr;
   RecorderLane* lane = nullptr;
-  const Recorder* recorder = nullptr;  // the lane's
-  LossCounters* losses = nullptr;      // where they are counted
-  // Each output record; a replay compares it.
+  const Recorder* recorder = nullptr;  // of the lane
+  LossCounters* losses = nullptr;      // counts of losses
+  // Called with each output record; a replay compares it.
   std::function<void(std::span<const std::uint8_t>)> record{};
 };
 
@@ -44,28 +44,28 @@ class TickGroup {
             Clock now, TickSinks sinks, std::int64_t unix_offset_ns, std::size_t latency_entries,
             GroupRunner<Output>& runner, OverrunNotes& frame_notes);
 
-  // Tick `number` at its nominal time; `woken` is when it really began. Of a tick that was not in
-  // time, what the policy says leaves.
+  // Runs tick `number` at its nominal time; `woken`: actual start. After an overrun the policy's
+  // substitute is sent.
   void tick(std::uint64_t number, Time nominal, Time woken) noexcept;
-  // In a replay: takes the versions that the recorded tick read; false: one of them was not
-  // published. Then the tick itself, with the recorded decision in place of the clock's.
+  // Replay. release_as() takes the versions that the recorded tick read; returns false if one was
+  // not published. tick_as() runs the tick, with the recorded decision instead of the clock's.
   [[nodiscard]] bool release_as(const ChoiceRecord& recorded) noexcept;
   void tick_as(std::uint64_t number, const ChoiceRecord& recorded) noexcept;
-  // No tick can follow: the node's heartbeat says so.
+  // Call when no tick can follow: sends the heartbeat "stopped".
   void stop_safe() noexcept;
 
-  // From here on the ticks without a measurement are counted while this source is late.
+  // From now on counts the ticks without a measurement while this source is late.
   void watch(const FrameSource& source) noexcept { source_ = &source; }
 
-  // After the last tick: flushes the CAN sink first.
+  // Call after the last tick. Flushes the CAN sink first.
   [[nodiscard]] const SentTicks& sent() noexcept;
-  // Ticks that had no measurement of any tool while the source was late.
+  // Ticks without a measurement of any tool while the source was late.
   [[nodiscard]] std::uint64_t ticks_source_late() const noexcept { return ticks_source_late_; }
   [[nodiscard]] std::uint64_t can_frames() const noexcept { return can_frames_; }
   [[nodiscard]] std::uint64_t records() const noexcept { return records_; }
-  // What left at the last tick; none where it was skipped.
+  // Samples of the last tick; none if it was skipped.
   [[nodiscard]] const PoseSamples& samples() const noexcept { return *samples_; }
-  // Over all output records so far, lower-case hex.
+  // Hash of all output records so far, lower-case hex.
   [[nodiscard]] std::string output_sha256() const;
 
  private:
@@ -91,7 +91,7 @@ class TickGroup {
   bool can_fd_;
   Duration lost_after_;
   graph::OverrunDecision overrun_;  // of the last tick
-  bool skipped_ = false;            // and nothing left at it
+  bool skipped_ = false;            // no output at the last tick
   const PoseSamples* samples_;
   const CanFrames* frames_;
   std::unique_ptr<PoseSamples> in_time_ = std::make_unique<PoseSamples>();
@@ -103,7 +103,7 @@ class TickGroup {
   const FrameSource* source_ = nullptr;
   std::uint64_t ticks_source_late_ = 0;
   Sha256 hash_;
-  std::uint64_t carried_version_ = 0;  // of the estimates that CAN has carried already
+  std::uint64_t carried_version_ = 0;  // of the newest estimates that CAN has carried
   std::uint64_t can_frames_ = 0, can_accepted_ = 0;
   std::uint64_t records_ = 0;
 };

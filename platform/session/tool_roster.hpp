@@ -1,7 +1,7 @@
-// Hands the tools that are there to the frame group, a new version at each change.
+// Publishes the set of present tools to the frame group, a new version at each change.
 //
-// A version says by itself which they are, so that a recording, which keeps the version that each
-// frame was given, replays every change without holding the sets.
+// A version encodes its set. A recording stores the version of each frame and therefore replays
+// every change without storing the sets.
 #pragma once
 
 #include <atomic>
@@ -14,19 +14,19 @@
 
 namespace glint {
 
-// The n-th set that was published, from 1 on, with these tools there.
+// Version of the n-th published set, n from 1, with these tools present.
 [[nodiscard]] constexpr std::uint64_t tools_version(std::uint64_t number, ToolsPresent there) {
   return number << 16 | there;
 }
-// Recordings from before tools could change have version 1: all are there.
+// Recordings from before tools could change have version 1: all tools are present.
 [[nodiscard]] constexpr ToolsPresent tools_in(std::uint64_t version) {
   return version >> 16 == 0 ? k_all_tools : static_cast<ToolsPresent>(version & 0xFFFF);
 }
 
-// Which tools somebody outside a run wants to be there: asked from one thread, taken up by another.
+// Requests from outside a run to add or remove tools: written by one thread, applied by another.
 class ToolRequests {
  public:
-  // From any thread. Of several about one tool the last counts.
+  // Thread-safe. The last request for a tool counts.
   void ask(int tool, bool there) noexcept {
     const std::uint32_t bit = 1u << tool;
     std::uint32_t before = asked_.load(std::memory_order_relaxed), after = 0;
@@ -36,7 +36,7 @@ class ToolRequests {
     } while (!asked_.compare_exchange_weak(before, after, std::memory_order_relaxed));
   }
 
-  // What is there now, after what was asked since the last call.
+  // Applies the requests since the last call to the present tools.
   [[nodiscard]] ToolsPresent applied_to(ToolsPresent there) noexcept {
     const std::uint32_t asked = asked_.exchange(0, std::memory_order_relaxed);
     const auto about = static_cast<ToolsPresent>(asked >> k_about);
@@ -47,12 +47,12 @@ class ToolRequests {
  private:
   static constexpr int k_about = k_tools_max;
   static_assert(2 * k_tools_max <= 32);
-  std::atomic<std::uint32_t> asked_{0};  // below: wanted; above: which it is about
+  std::atomic<std::uint32_t> asked_{0};  // low bits: wanted; high bits: tools concerned
 };
 
 class ToolRoster {
  public:
-  // Both outlive this; `requests` may be null.
+  // Both must outlive this object; `requests` may be null.
   explicit ToolRoster(const Cell& cell, ToolRequests* requests = nullptr)
       : cell_(&cell),
         requests_(requests),
@@ -63,9 +63,9 @@ class ToolRoster {
 
   [[nodiscard]] graph::TripleBuffer<ToolSet>& published() noexcept { return published_; }
 
-  // Publishes what the cell's changes say of this time and what was asked for, if it is not what
-  // holds already. To be called by one thread, not a real-time one: later than the change by as
-  // much as it is called. A change of the cell touches the tools that it names, no others.
+  // Applies the cell's changes up to `now` and the requests; publishes the set if it differs. Call
+  // from one thread, not real-time; the delay of a change is the time until the next call. A change
+  // of the cell affects only the tools that it names.
   void reach(Time now) {
     ToolsPresent there = there_;
     for (; next_ < cell_->tool_changes.size() && cell_->tool_changes[next_].at <= now; ++next_) {
