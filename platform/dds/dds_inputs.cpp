@@ -11,15 +11,15 @@
 namespace glint {
 namespace {
 
-// As robot_state_publisher subscribes to joint states: any driver is heard.
+// Best effort as robot_state_publisher's subscription: matches every driver's publisher.
 constexpr Quality k_joints{Reliability::best_effort, Durability::volatile_data, 5};
-// As RViz asks for it: also of a publisher that was there before.
+// Transient local as RViz's subscription: receives it also from a publisher that started earlier.
 constexpr Quality k_description{Reliability::reliable, Durability::transient_local, 1};
 constexpr Quality k_guess{Reliability::reliable, Durability::volatile_data, 10};
 constexpr Quality k_button{Reliability::reliable, Durability::volatile_data, 64};
 constexpr Quality k_tool{Reliability::reliable, Durability::volatile_data, 64};
 
-// Of a whole message as it came; strings and padding included.
+// Maximum serialised sizes of messages, strings and padding included.
 constexpr std::size_t k_joints_bytes = std::size_t{64} << 10;
 constexpr std::size_t k_description_bytes = k_heard_description_max + 64;
 constexpr std::size_t k_guess_bytes = std::size_t{4} << 10;
@@ -27,14 +27,15 @@ constexpr std::size_t k_button_bytes = 64;
 constexpr std::size_t k_tool_bytes = 128;  // a name has 31 at most
 
 constexpr Duration k_look_again = milliseconds(20);
-constexpr int k_takes_max = 256;           // of one topic before the others have their turn
-constexpr std::size_t k_senders_max = 64;  // of one button, looked through for the one that held it
+constexpr int k_takes_max = 256;           // per call and topic: no topic starves the others
+constexpr std::size_t k_senders_max = 64;  // publishers of one button searched for the sender
 
 constexpr const char* k_button_names[k_button_count] = {"button", "button_delete", "button_undo",
                                                         "button_finish"};
 
-// Takes what waits in a reader. A message is unpacked only where it is no larger than `most` bytes;
-// `use(message, sender)` returns whether it is valid. Returns how many were refused.
+// Takes all available messages of a reader. Deserialises a message only if it has at most `most`
+// bytes; `use(message, sender)` returns whether it is valid. Returns the number of rejected
+// messages.
 template <class Message, class Use>
 std::uint64_t take_bounded(dds_entity_t reader, const TopicType& type, std::size_t most, Use use) {
   std::uint64_t refused = 0;
@@ -57,7 +58,7 @@ std::uint64_t take_bounded(dds_entity_t reader, const TopicType& type, std::size
   return refused;
 }
 
-// Only the reading thread changes a counter.
+// Only the reading thread writes the counters.
 std::uint64_t count_up(std::atomic<std::uint64_t>& counter, std::uint64_t by = 1) {
   const std::uint64_t now = counter.load(std::memory_order_relaxed) + by;
   counter.store(now, std::memory_order_relaxed);
@@ -171,7 +172,7 @@ void DdsInputs::take_guesses() {
                                                          k_guess_bytes, use));
 }
 
-// A driver may say at a steady rate whether the button is down: only changes are events.
+// A driver may repeat the button's state at a fixed rate: only changes are events.
 void DdsInputs::take_button(Button button) {
   ButtonReader& one = buttons_[static_cast<std::size_t>(button)];
   const auto use = [&](const BoolMessage& message, dds_instance_handle_t sender) {
@@ -186,7 +187,7 @@ void DdsInputs::take_button(Button button) {
   count_up(refused_, take_bounded<BoolMessage>(one.reader, bool_type(), k_button_bytes, use));
 }
 
-// The sender left the domain (a killed one when its lease ends), or hangs, or its cable is cut.
+// The sender left the domain (if killed: at the end of its lease), hangs, or is disconnected.
 void DdsInputs::release_if_gone(Button button) {
   ButtonReader& one = buttons_[static_cast<std::size_t>(button)];
   if (!one.pressed) return;
@@ -202,7 +203,7 @@ void DdsInputs::release_if_gone(Button button) {
   if (on_button_) on_button_({time, button, false});
 }
 
-// A name that no tool of the run has is refused.
+// Rejects names that are not among the run's tools.
 void DdsInputs::take_tools(dds_entity_t reader, bool there) {
   const auto use = [&](const TextMessage& message, dds_instance_handle_t) {
     const auto found = std::find(tool_names_.begin(), tool_names_.end(), message.data);

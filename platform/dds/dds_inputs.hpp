@@ -1,12 +1,11 @@
-// What comes in: joint states, the robot's description, a guess of where it stands, the pen's
-// buttons, and which tools are there, read by a thread of its own.
+// DDS inputs, read on a thread of their own: joint states, robot description, initial guess of the
+// robot's pose, the pen's buttons, and tool changes.
 //
-// Values of which the newest counts are handed over in triple buffers, as Latest<> reads them; a
-// button's changes go one by one to whoever records them, for each of them counts, and so do tools
-// that are named to be there or not, if the settings allow it. A held button is released when the
-// participant that said so leaves the domain, cleanly or by its lease, or is silent for the
-// settings' timeout. Every message is bounded before it is unpacked; what is too
-// large or makes no sense is refused and counted.
+// States go to triple buffers, read as Latest<>: only the newest counts. Each change of a button
+// goes to a callback, and so does each tool change, if the settings allow them. A held button is
+// released when its sender leaves the domain, cleanly or by its lease, or is silent for the
+// settings' timeout. Each message's size is checked before it is deserialised; an oversized or
+// invalid message is rejected and counted.
 #pragma once
 
 #include <array>
@@ -26,10 +25,10 @@
 namespace glint {
 
 struct HeardCounts {
-  // Messages taken.
+  // Received messages.
   std::uint64_t joints = 0, descriptions = 0, guesses = 0, buttons = 0, tools = 0;
   std::uint64_t refused = 0;
-  std::uint64_t released = 0;  // buttons whose sender left or fell silent
+  std::uint64_t released = 0;  // buttons whose sender left or timed out
   [[nodiscard]] bool any() const {
     return joints + descriptions + guesses + buttons + tools + refused > 0;
   }
@@ -38,11 +37,10 @@ struct HeardCounts {
 class DdsInputs {
  public:
   using OnButton = std::function<void(const ButtonEvent&)>;
-  // The settings' tool of this number is there from now on, or no more.
+  // The tool with this index in the settings is present from now on, or removed.
   using OnTool = std::function<void(int tool, bool there)>;
 
-  // Both may be empty; they are called from the reading thread with each change. Throws as
-  // Participant does.
+  // Both may be empty; the reading thread calls them at each change. Throws as Participant.
   DdsInputs(std::shared_ptr<Participant> participant, const DdsSettings& settings,
             OnButton on_button, OnTool on_tool = {});
   ~DdsInputs();  // stop()
@@ -51,17 +49,17 @@ class DdsInputs {
 
   void start();
   void stop();
-  // Without a thread: waits for messages, at most `limit`, and takes all that are there.
+  // Without start(): waits at most `limit` for messages and processes all that are available.
   void read(Duration limit);
 
-  // Each has one reader at most.
+  // Each buffer allows one reader.
   [[nodiscard]] graph::TripleBuffer<HeardJoints>& joints() noexcept { return *joints_; }
   [[nodiscard]] graph::TripleBuffer<HeardGuess>& guess() noexcept { return *guess_; }
   [[nodiscard]] graph::TripleBuffer<HeardDescription>& description() noexcept {
     return *description_;
   }
 
-  // From any thread.
+  // Thread-safe.
   [[nodiscard]] HeardCounts counts() const noexcept;
 
  private:
@@ -69,7 +67,7 @@ class DdsInputs {
     dds_entity_t reader = 0;
     bool pressed = false;
     dds_instance_handle_t sender = 0;  // of the last message
-    Time last;                         // its arrival
+    Time last;                         // its arrival time
   };
 
   dds_entity_t add_reader(const TopicType& type, const std::string& topic, const Quality& quality);
@@ -83,7 +81,7 @@ class DdsInputs {
 
   std::shared_ptr<Participant> participant_;
   Duration unix_minus_board_;
-  Duration board_minus_steady_;  // a step of Unix time moves no arrival
+  Duration board_minus_steady_;  // constant: steps of the Unix clock do not change arrival times
   OnButton on_button_;
   OnTool on_tool_;
   Duration button_timeout_;

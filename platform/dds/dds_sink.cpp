@@ -11,7 +11,7 @@ using Clock = std::chrono::steady_clock;
 constexpr Clock::duration k_diagnostics_period = std::chrono::seconds(1);
 constexpr Duration k_receipts_limit = milliseconds(2000);
 
-// Only the thread that owns a counter changes it, so no read-modify-write is needed.
+// Only one thread writes each counter, so no read-modify-write is needed.
 void add_one(std::atomic<std::uint64_t>& counter) {
   counter.store(counter.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
 }
@@ -59,7 +59,7 @@ void DdsSink::stop() {
   stopping_.store(true);
   if (thread_.joinable()) thread_.join();
   write_waiting();
-  write_diagnostics();  // with what the last second lost
+  write_diagnostics();  // including the losses of the last second
   publisher_->end_streams(k_receipts_limit);
   publisher_.reset();
 }

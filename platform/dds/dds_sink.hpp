@@ -1,9 +1,10 @@
-// Poses to ROS 2 and any other DDS reader, from a thread of its own behind a bounded ring.
+// DDS publisher of pose samples, for ROS 2 and other readers, on a thread of its own behind a
+// bounded ring.
 //
 // The tick thread only copies a sample into the ring: no heap, no lock, no system call. The sink's
-// thread looks into the ring every poll_period; waking it instead would cost the tick thread a
-// system call. What the ring cannot hold is counted, and after stop() offered = written +
-// ring_dropped holds exactly. Topics, types and the reader's counting: README.md.
+// thread polls the ring every poll_period; a wake-up would cost the tick thread a system call.
+// Samples that the full ring rejects are counted. After stop(), offered = written + ring_dropped
+// holds exactly. Topics, types and the reader's counting: README.md.
 #pragma once
 
 #include <atomic>
@@ -23,12 +24,12 @@ class Participant;
 class PosePublisher;
 
 struct DdsCounts {
-  std::uint64_t offered = 0;        // samples given to offer()
+  std::uint64_t offered = 0;        // calls of offer()
   std::uint64_t written = 0;        // of these, written to the tool's status topic
-  std::uint64_t ring_dropped = 0;   // of these, not: ring full, unknown tool, stopped, not written
-  std::uint64_t write_failed = 0;   // the part of ring_dropped that DDS or the tick order refused
-  std::uint64_t poses_written = 0;  // written samples that had a pose
-  std::uint64_t others_lost = 0;    // poses and transforms: no room, or refused by DDS
+  std::uint64_t ring_dropped = 0;   // not written: ring full, unknown tool, stopped, write failed
+  std::uint64_t write_failed = 0;   // part of ring_dropped: rejected by DDS or out of tick order
+  std::uint64_t poses_written = 0;  // written samples with a pose
+  std::uint64_t others_lost = 0;    // poses and transforms: ring full, or rejected by DDS
   [[nodiscard]] std::uint64_t lost() const { return ring_dropped + others_lost; }
 };
 
@@ -37,43 +38,44 @@ class DdsSink {
   static constexpr int k_ring_capacity = 1024;  // 4 s of one tool at 250 Hz
   static constexpr int k_frame_capacity = 64;   // 1.4 s of frames
 
-  // Joins the domain. Throws MissingDevice when the network interface is not there or has no IPv4
-  // address, InputError when a setting is out of range or the domain is already open in this
-  // process.
+  // Joins the domain. Throws MissingDevice if the network interface does not exist or has no IPv4
+  // address; InputError if a setting is out of range or this process has opened the domain with
+  // another configuration.
   explicit DdsSink(const DdsSettings& settings);
   ~DdsSink();  // stop()
   DdsSink(const DdsSink&) = delete;
   DdsSink& operator=(const DdsSink&) = delete;
 
-  // Until then the ring only fills.
+  // Before start() the ring only fills.
   void start();
 
-  // Whether `count` readers have found every tool's status topic before the limit is over. Samples
-  // written before a reader has found the topic never reach it.
+  // Returns whether `count` readers discovered every tool's status topic within `limit`. A reader
+  // does not receive samples written before its discovery.
   [[nodiscard]] bool wait_for_readers(int count, Duration limit) const;
 
-  // From one thread only. False: the sample was dropped and counted. A tool's ticks must advance.
+  // Call from one thread only. Returns false if the sample was dropped and counted. The ticks of a
+  // tool must increase.
   bool offer(const PoseSample& sample) noexcept;
 
-  // From one other thread only: what a frame tells tf. False: no room; it is counted.
+  // Call from one other thread only: the transforms of a frame. Returns false, and counts the loss,
+  // if the ring is full.
   bool offer_frame(const FrameTransforms& frame) noexcept { return frames_.push(frame); }
 
-  // From one other thread only: where a robot that is followed now stands, for tf_static. Only the
-  // newest counts.
+  // Call from one other thread only: the newest pose of the followed robot, for tf_static.
   void offer_robot(const Pose& T_world_robot) noexcept {
     robot_.write_slot() = T_world_robot;
     robot_.publish(++robot_version_, 0);
   }
 
-  // The domain's participant, for readers of this process; empty after stop(). A reader that holds
+  // Participant of the domain, for readers in this process; empty after stop(). A reader that holds
   // it keeps the domain open.
   [[nodiscard]] std::shared_ptr<Participant> participant() const;
 
-  // Writes what is in the ring, tells readers that the stream ends, waits for their receipts (at
-  // most 2 s) and leaves the domain. Call it when the offering thread has ended.
+  // Writes the contents of the ring, sends the end of the streams, waits for acknowledgements (at
+  // most 2 s) and leaves the domain. Call after the offering thread has ended.
   void stop();
 
-  // From any thread; the identity holds after stop().
+  // Thread-safe. The identity above holds after stop().
   [[nodiscard]] DdsCounts counts() const noexcept;
 
  private:

@@ -1,5 +1,5 @@
-// The sink's state as /diagnostics shows it: one entry a tool, one each of timing, losses,
-// robot, calibration.
+// Message for /diagnostics: one entry per tool and one each for timing, losses, robot and
+// calibration.
 #pragma once
 
 #include <deque>
@@ -17,17 +17,17 @@ namespace glint {
 
 struct SinkFigures;
 
-// Holds the text of one message; message() borrows it.
+// Owns the text of one message; message() refers to it.
 class Diagnostics {
  public:
   void add(std::string_view tool, const PoseSample& sample, const SinkFigures& figures);
-  // Whether outputs are in time, and what this machine spoils.
+  // Deadline overruns and this machine's timing faults.
   void add_timing(const OverrunCounters& overruns, std::string_view best_effort);
-  // What the run has lost so far, an error from the first loss on.
+  // Output losses so far; an error from the first loss on.
   void add_losses(const LossCounters& losses);
-  // Whether the robot stands where it is taken to be, as far as that was seen.
+  // Whether the robot was detected at its assumed pose.
   void add_robot(const FollowedRobotNotes& robot);
-  // Calibration errors that are larger than stated, by the tools' residuals.
+  // Calibration errors that are larger than stated.
   void add_calibration(const std::vector<CalibrationFinding>& findings);
   [[nodiscard]] DiagnosticsMessage message(Time unix_time);
 

@@ -1,4 +1,5 @@
-// What a frame tells tf: where the headset is, and a robot that stands where a body is seen.
+// Transforms of a frame for tf: the headset's pose, and the robot's if it is mounted on the
+// reference body.
 #pragma once
 
 #include "kernels/geometry.hpp"
@@ -8,7 +9,7 @@ namespace glint {
 
 struct FrameTransforms {
   HeadPose head;
-  bool robot_known = false;  // false also for one that stands in the world: tf_static's
+  bool robot_known = false;  // false also for a robot fixed in the world: tf_static has it
   Pose T_world_robot;
 };
 

@@ -6,7 +6,7 @@
 namespace glint {
 namespace {
 
-constexpr double k_unit_tolerance = 0.01;  // of a quaternion's length, as others round it
+constexpr double k_unit_tolerance = 0.01;  // of a quaternion's norm, for rounded inputs
 
 bool hear_name(const char* text, std::size_t least, HeardName& to) {
   if (text == nullptr) return false;

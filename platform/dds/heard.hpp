@@ -1,7 +1,7 @@
-// What others say of the robot and the pen, checked and of a bounded size.
+// Validation and fixed-size storage of received messages about the robot and the pen.
 //
-// A message that is not whole, not finite or too large is refused, never cut: half a joint state is
-// no joint state.
+// An incomplete, non-finite or oversized message is rejected, never truncated: a partial joint
+// state is invalid.
 #pragma once
 
 #include <array>
@@ -20,16 +20,16 @@ inline constexpr int k_heard_joints_max = 64;
 inline constexpr std::size_t k_heard_name_max = 63;  // characters of a joint's or a frame's name
 inline constexpr std::size_t k_heard_description_max = std::size_t{4} << 20;
 
-using HeardName = std::array<char, k_heard_name_max + 1>;  // ends in 0
+using HeardName = std::array<char, k_heard_name_max + 1>;  // zero-terminated
 
 struct HeardJoints {
-  Time time;  // on the board's clock: the message's stamp, or its arrival where it has none
+  Time time;  // session time: the message's time stamp, or its arrival if it has none
   int count = 0;
   std::array<HeardName, k_heard_joints_max> names{};
-  std::array<double, k_heard_joints_max> positions{};  // rad or m, as their joints are
+  std::array<double, k_heard_joints_max> positions{};  // rad or m, by joint type
 };
 
-// RViz's guess of where the robot stands.
+// Initial guess of the robot's pose, from RViz.
 struct HeardGuess {
   Time time;
   HeardName frame{};
@@ -41,15 +41,16 @@ struct HeardDescription {
   std::string urdf;
 };
 
-// From a message that arrived at `arrival` (board). False: refused, and `to` may hold anything.
+// `arrival`: arrival in session time. Returns false for a rejected message; `to` is then
+// unspecified.
 [[nodiscard]] bool hear(const JointStateMessage& message, Duration unix_minus_board, Time arrival,
                         HeardJoints& to);
 [[nodiscard]] bool hear(const PoseCovarianceMessage& message, Duration unix_minus_board,
                         Time arrival, HeardGuess& to);
 [[nodiscard]] bool hear(const TextMessage& message, HeardDescription& to);
 
-// The positions of these joints, by their names; others are passed over. How many were found before
-// one that is not there once: all of them, or the number of the one that is wrong.
+// Finds the positions of the named joints; ignores all others. Returns names.size(), or the index
+// of the first name that does not occur exactly once.
 [[nodiscard]] std::size_t positions_of(const HeardJoints& joints,
                                        std::span<const std::string> names,
                                        std::span<double> positions) noexcept;

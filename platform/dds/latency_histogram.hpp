@@ -1,4 +1,5 @@
-// Quantiles of any number of latencies in fixed memory: buckets of 10 us up to 1 s, exact maximum.
+// Quantiles of an unlimited number of latencies in fixed memory: histogram with bins of 10 us up to
+// 1 s, and the exact maximum.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +19,7 @@ class LatencyHistogram {
     ++count_;
     max_ns_ = std::max(max_ns_, latency.nanoseconds);
   }
-  // The upper edge of the bucket that holds the quantile, at most the maximum; 0 when empty.
+  // Upper edge of the quantile's bin, at most the maximum; 0 if empty.
   [[nodiscard]] double quantile_us(double fraction) const {
     const double wanted = fraction * static_cast<double>(count_);
     std::uint64_t seen = 0;

@@ -10,7 +10,7 @@ constexpr std::int64_t k_second_ns = 1'000'000'000;
 
 }  // namespace
 
-// Hashes as published with ROS 2; TrackStatus' by the same rule, see README.md.
+// Hashes as published with ROS 2; TrackStatus's is computed by the same rule, see README.md.
 TopicType pose_stamped_type() {
   return {&geometry_msgs_msg_dds__PoseStamped__desc,
           "10f3786d7d40fd2b54367835614bff85d4ad3b5dab62bf8bca0cc232d73b4cd8"};

@@ -1,4 +1,4 @@
-// Glint's values as ROS 2 messages. Strings are borrowed: they must outlive the message.
+// Conversion of Glint's types to ROS 2 messages. Strings are borrowed and must outlive the message.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ using TfMessage = tf2_msgs_msg_dds__TFMessage_;
 using DiagnosticsMessage = diagnostic_msgs_msg_dds__DiagnosticArray_;
 using StatusMessage = glint_msgs_msg_dds__TrackStatus_;
 
-// A string of a message is char*, though writing only reads it.
+// Message strings are char*, although writing only reads them.
 [[nodiscard]] inline char* borrowed(const char* text) { return const_cast<char*>(text); }
 
 [[nodiscard]] TopicType pose_stamped_type();
@@ -31,13 +31,13 @@ using StatusMessage = glint_msgs_msg_dds__TrackStatus_;
 [[nodiscard]] TopicType diagnostics_type();
 [[nodiscard]] TopicType status_type();
 
-// Unix time; times outside 1970..2038 become the nearest that fits.
+// Unix time, clamped to 1970..2038.
 [[nodiscard]] StampMessage stamp_message(Time unix_time);
 [[nodiscard]] Time time_of(const StampMessage& stamp);
 
 [[nodiscard]] HeaderMessage header_message(Time unix_time, const char* frame);
 [[nodiscard]] PoseMessage pose_message(const Pose& pose);
-// The covariance goes row by row: x, y, z, rotation about fixed axes x, y, z (REP-103).
+// Covariance in row-major order: x, y, z, rotation about fixed axes x, y, z (REP-103).
 [[nodiscard]] PoseCovarianceMessage pose_covariance_message(const HeaderMessage& header,
                                                             const Pose& pose,
                                                             const Matrix6& covariance);

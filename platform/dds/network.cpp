@@ -11,7 +11,7 @@
 namespace glint {
 namespace {
 
-// Participants that one machine can hold without multicast. Cyclone's own limit is 9, which refused
+// Maximum number of participants on one machine without multicast. Cyclone's default of 9 rejected
 // the tenth of 16 processes.
 constexpr const char* k_participant_index_max = "60";
 
@@ -39,7 +39,7 @@ bool is_loopback(const std::string& name) {
   return false;
 }
 
-// A name that DDS would read as markup never names an interface or a host.
+// Rejects names with XML markup; no interface or host has such a name.
 std::string plain(const std::string& text) {
   if (text.find_first_of("<>&\"'") != std::string::npos) {
     throw InputError("dds: found '" + text + "'; expected a host or interface name");

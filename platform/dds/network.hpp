@@ -1,4 +1,5 @@
-// Cyclone DDS is told everything here: no configuration file, no environment, no other interface.
+// Complete configuration of Cyclone DDS: no configuration file, no environment variable, one
+// interface.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +9,14 @@
 
 namespace glint {
 
-// Throws MissingDevice, naming the interface and those that there are, when it does not exist, is
-// down or has no IPv4 address. Cyclone's own message for this names none of them.
+// Throws MissingDevice if the interface does not exist, is down or has no IPv4 address. The message
+// lists the available interfaces, which Cyclone's own does not.
 void require_network_interface(const std::string& name);
 
-// Larger messages are dropped on their way, in or out.
+// Larger messages are dropped, sent or received.
 inline constexpr std::size_t k_message_bytes_max = std::size_t{16} << 20;
 
-// Cyclone's configuration as XML: this interface alone; on loopback unicast to this machine only.
+// Cyclone's configuration as XML: this interface only; on loopback only unicast to this machine.
 [[nodiscard]] std::string cyclone_configuration(const DdsSettings& settings);
 
 }  // namespace glint

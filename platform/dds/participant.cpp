@@ -10,9 +10,9 @@
 namespace glint {
 namespace {
 
-// A writer that finds no room waits no longer than this: it stands on the sink's only thread.
+// Maximum blocking time of a write without free space: it blocks the sink's only thread.
 constexpr dds_duration_t k_blocking_max = DDS_MSECS(10);
-constexpr int k_domain_max = 232;  // the last whose ports fit in 16 bits (DDSI-RTPS 2.2, 9.6.1)
+constexpr int k_domain_max = 232;  // highest with ports within 16 bits (DDSI-RTPS 2.2, 9.6.1)
 
 struct FreeQos {
   void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
@@ -36,11 +36,11 @@ Qos qos_of(const TopicType& type, const Quality& quality) {
   dds_qset_history(qos.get(), history, depth);
   if (quality.durability == Durability::transient_local) {
     dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
-    // What late readers get is this history, not the other: without it Cyclone keeps one sample.
+    // Late readers get this history; without it Cyclone keeps one sample.
     dds_qset_durability_service(qos.get(), 0, history, depth, DDS_LENGTH_UNLIMITED,
                                 DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   }
-  // A writer that offers XCDR2 only is matched by Fast DDS readers and never heard.
+  // Fast DDS readers match a writer that offers only XCDR2, but receive nothing from it.
   const dds_data_representation_id_t xcdr1 = DDS_DATA_REPRESENTATION_XCDR1;
   dds_qset_data_representation(qos.get(), 1, &xcdr1);
   const std::string user_data = std::string("typehash=RIHS01_") + type.type_hash + ";";
@@ -55,7 +55,7 @@ dds_entity_t topic_of(dds_entity_t participant, const TopicType& type, const std
 
 }  // namespace
 
-// A domain as this process has it, until its last participant leaves.
+// A domain of this process; it exists until its last participant leaves.
 struct Participant::Domain {
   Domain(dds_domainid_t id, const std::string& text)
       : configuration(text), entity(dds_create_domain(id, text.c_str())) {}
@@ -68,7 +68,7 @@ struct Participant::Domain {
   dds_entity_t entity;
 };
 
-// Cyclone has one configuration for a domain.
+// Cyclone allows one configuration per domain.
 std::shared_ptr<Participant::Domain> Participant::domain_of(const DdsSettings& settings) {
   static std::mutex one_opens;
   static std::map<int, std::weak_ptr<Domain>> open;
@@ -98,7 +98,7 @@ Participant::Participant(const DdsSettings& settings) {
   require_network_interface(settings.interface);
   const auto id = static_cast<dds_domainid_t>(settings.domain);
   domain_ = domain_of(settings);
-  // rmw_cyclonedds shows only participants that say where their security enclave is.
+  // rmw_cyclonedds shows only participants that state their security enclave.
   constexpr std::string_view enclave = "enclave=/;";
   Qos qos(dds_create_qos());
   dds_qset_userdata(qos.get(), enclave.data(), enclave.size());

@@ -1,4 +1,4 @@
-// One process's place in a DDS domain, and endpoints in it that ROS 2 recognises.
+// DDS participant of one process, with endpoints that ROS 2 recognises.
 #pragma once
 
 #include <dds/dds.h>
@@ -10,8 +10,8 @@
 
 namespace glint {
 
-// A type and the hash by which ROS 2 (Iron and newer) knows it: RIHS01, the SHA-256 of its
-// description as JSON (rosidl_generator_type_description).
+// A type and its ROS 2 type hash (Iron and newer): RIHS01, the SHA-256 of its description as JSON
+// (rosidl_generator_type_description).
 struct TopicType {
   const dds_topic_descriptor_t* descriptor;
   const char* type_hash;
@@ -29,16 +29,15 @@ struct Quality {
 
 class Participant {
  public:
-  // Several of one process may join the same domain. Throws MissingDevice (network interface) or
-  // InputError (settings; this process is in the domain by another interface; the network refuses).
+  // Participants of one process may share a domain. Throws MissingDevice (network interface) or
+  // InputError (settings; this process uses the domain on another interface; network error).
   explicit Participant(const DdsSettings& settings);
-  ~Participant();  // leaves the domain with every endpoint of its own
+  ~Participant();  // deletes its endpoints and leaves the domain
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
-  // Both throw std::runtime_error, which no setting should be able to cause. XCDR1 alone is offered
-  // and asked for; endpoints carry their type hash as ROS 2's do. A reader reads no writer of this
-  // process.
+  // Both throw std::runtime_error; no setting should cause it. Offers and requests XCDR1 only.
+  // Endpoints carry their type hash as in ROS 2. A reader ignores writers of this process.
   dds_entity_t writer(const TopicType& type, const std::string& topic, const Quality& quality);
   dds_entity_t reader(const TopicType& type, const std::string& topic, const Quality& quality);
   dds_entity_t waitset();

@@ -11,11 +11,11 @@
 namespace glint {
 namespace {
 
-// Enough for a reader to ask again for what a full socket lost: 400 ms at 250 Hz.
+// Enough for retransmission of what a full socket lost: 400 ms at 250 Hz.
 constexpr Quality k_status_quality{Reliability::reliable, Durability::volatile_data, 100};
-// A pose that a newer one has overtaken is worth nothing: keep one, and never wait.
+// An older pose has no use: keep one, and never wait.
 constexpr Quality k_pose_quality{Reliability::reliable, Durability::volatile_data, 1};
-// As tf2's broadcasters and diagnostic_updater have it.
+// Same QoS as tf2's broadcasters and diagnostic_updater.
 constexpr Quality k_tf_quality{Reliability::reliable, Durability::volatile_data, 100};
 constexpr Quality k_tf_static_quality{Reliability::reliable, Durability::transient_local, 1};
 constexpr Quality k_diagnostics_quality{Reliability::reliable, Durability::volatile_data, 1};

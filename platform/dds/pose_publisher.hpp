@@ -1,4 +1,4 @@
-// Writes pose samples to their topics, in the caller's thread. The sink's thread is its only user.
+// Writes pose samples to their DDS topics, synchronously. Only the sink's thread uses it.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace glint {
 
-// What diagnostics tell beside each tool's state.
+// Counts in the diagnostics of each tool.
 struct SinkFigures {
   std::uint64_t offered = 0;
   std::uint64_t written = 0;
@@ -22,32 +22,33 @@ struct SinkFigures {
 
 class PosePublisher {
  public:
-  // Joins the domain, creates every writer and writes tf_static. Throws as Participant does, and
-  // InputError for tools that are none, too many, or alike once named for ROS.
+  // Joins the domain, creates every writer and writes tf_static. Throws as Participant, and
+  // InputError if there are no tools, too many, or two with the same ROS name.
   explicit PosePublisher(const DdsSettings& settings);
 
-  // Poses and transforms that DDS refused so far.
+  // Number of poses and transforms that DDS rejected.
   [[nodiscard]] std::uint64_t others_failed() const { return others_failed_; }
 
-  // How many readers the tool's status topic has found, the smallest over all tools.
+  // Number of readers of the tools' status topics; the minimum over all tools.
   [[nodiscard]] int readers() const;
 
-  // For readers of the same process; a domain is opened once.
+  // For readers of the same process, which open a domain once.
   [[nodiscard]] const std::shared_ptr<Participant>& participant() const { return participant_; }
 
-  // The status, and where there is a pose the pose, its covariance and tf. False: DDS did not take
-  // the status, or the tick does not follow the tool's last one; then nothing is written.
+  // Writes the status and, if there is a pose, the pose, its covariances and tf. Returns false if
+  // DDS rejects the status or if the tick is not after the tool's last one; then writes nothing.
   bool write(const PoseSample& sample);
 
-  // tf: world to the camera and to a robot on a body, where the head's pose is known.
+  // tf: from world to the camera, and to a robot on the reference body; only with a valid head
+  // pose.
   void write_frame(const FrameTransforms& frame);
 
-  // tf_static: world to the robot, from now on; the other transforms as they were.
+  // tf_static: replaces the transform from world to the robot; keeps all others.
   void write_robot(const Pose& T_world_robot);
 
   void write_diagnostics(const SinkFigures& figures);
 
-  // Marks the end of every tool's stream and waits for the readers' receipts.
+  // Marks the end of every tool's stream and waits for the readers' acknowledgements.
   void end_streams(Duration limit);
 
  private:
@@ -56,9 +57,9 @@ class PosePublisher {
     ToolTopics topics;
     dds_entity_t status = 0, pose = 0, pose_covariance = 0, pose_systematic = 0;
     bool started = false;
-    Time start;         // board time of the first tick
+    Time start;         // session time of the first tick
     Time newest;        // of the newest tick, written or not
-    Time last_written;  // one period before the start until one is written
+    Time last_written;  // before the first: one period before the start
     std::uint64_t ticks_not_sent = 0;
     PoseSample sample;  // the newest
   };

@@ -1,7 +1,7 @@
-// glint_dds_reader: takes everything a Glint sink publishes and says what came and what did not.
+// glint_dds_reader: receives all messages of a Glint sink and reports received and missed ones.
 //   glint_dds_reader --interface lo --domain 0 --prefix glint --tool pen --out reader.json
-// Ends when the sink has left, on SIGTERM or SIGINT, or when no sink is found in time. Exit: 0
-// done, 2 bad use or input, 3 the network interface is missing or no sink was found.
+// Ends when the sink has left, on SIGTERM or SIGINT, or if it finds no sink within the limit. Exit
+// codes: 0 success, 2 wrong usage or input, 3 missing network interface or no sink found.
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <iostream>
@@ -18,7 +18,7 @@ void tell_to_end(int) { told_to_end = 1; }
 void end_on_signals() {
   std::signal(SIGTERM, tell_to_end);
   std::signal(SIGINT, tell_to_end);
-  sigset_t signals;  // whoever starts it as a process may have blocked them until here
+  sigset_t signals;  // the parent process may have blocked them
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigprocmask(SIG_UNBLOCK, &signals, nullptr);
@@ -29,7 +29,7 @@ constexpr glint::Duration k_wait = glint::milliseconds(50);
 bool read_until_end(glint::StatusReader& reader, double search_s) {
   const dds_time_t search_end = dds_time() + static_cast<dds_time_t>(search_s * 1e9);
   while (told_to_end == 0) {
-    // Asked before reading: what was written until then is read below.
+    // Queried before reading: all messages written before are then read below.
     const bool left = reader.sink_has_left();
     reader.read(left ? glint::Duration{} : k_wait);
     if (left) return true;

@@ -17,7 +17,7 @@
 namespace glint {
 namespace {
 
-constexpr Duration k_end_limit = milliseconds(5000);  // between being told to end and ending
+constexpr Duration k_end_limit = milliseconds(5000);  // from SIGTERM to the end of the process
 
 std::string reader_program() {
   std::error_code error;
@@ -44,8 +44,8 @@ std::vector<std::string> arguments_of(const DdsSettings& settings, const std::st
   return arguments;
 }
 
-// How the reader is started: SIGTERM waits until it can take it, and a terminal's Ctrl-C, which
-// goes to a whole process group, does not end it before the sink has told it all.
+// Attributes of the child process. SIGTERM is blocked until the child handles it. The child has a
+// process group of its own, so that Ctrl-C does not end it before the sink's last message.
 class SpawnAttributes {
  public:
   SpawnAttributes() {
@@ -70,7 +70,7 @@ class SpawnAttributes {
 
 ReaderProcess::ReaderProcess(const DdsSettings& settings, const std::string& result_file)
     : result_file_(result_file) {
-  std::remove(result_file.c_str());  // an earlier run's result is not this one's
+  std::remove(result_file.c_str());  // removes the result of an earlier run
   std::vector<std::string> arguments = arguments_of(settings, result_file);
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());

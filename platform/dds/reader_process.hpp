@@ -1,4 +1,4 @@
-// The reader as a process of its own, as any other program on the network would be.
+// DDS reader as a separate process, like any other program on the network.
 #pragma once
 
 #include <sys/types.h>
@@ -12,22 +12,22 @@ namespace glint {
 
 class ReaderProcess {
  public:
-  // Starts glint_dds_reader, which lies beside this program, on the settings' domain, interface,
-  // prefix and tools; it writes result_file when the stream ends. Throws MissingDevice when the
-  // program is not there or does not start.
+  // Starts glint_dds_reader from this program's folder, with the settings' domain, interface,
+  // prefix and tools. It writes result_file at the end of the stream. Throws MissingDevice if the
+  // program does not exist or does not start.
   ReaderProcess(const DdsSettings& settings, const std::string& result_file);
-  ~ReaderProcess();  // ends it, if it has not ended
+  ~ReaderProcess();  // ends the process if it still runs
   ReaderProcess(const ReaderProcess&) = delete;
   ReaderProcess& operator=(const ReaderProcess&) = delete;
 
-  // Waits until it ends by itself, after `limit` tells it to, and reads its result. Throws
-  // MissingDevice when it failed. Call it once, after the sink's stop().
+  // Waits at most `limit` for the process to end, then terminates it, and reads its result. Throws
+  // MissingDevice on failure. Call once, after the sink's stop().
   [[nodiscard]] ReaderResult finish(Duration limit);
 
   [[nodiscard]] pid_t id() const { return id_; }
 
  private:
-  // Whether it has ended within the limit.
+  // Returns whether the process ended within the limit.
   bool wait(Duration limit);
 
   std::string result_file_;

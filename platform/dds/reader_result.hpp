@@ -1,4 +1,4 @@
-// What the reader process found, and the JSON file in which it says so.
+// Result of the DDS reader process, and its JSON file.
 #pragma once
 
 #include <cstdint>
@@ -10,20 +10,20 @@ struct ReaderResult {
   std::uint64_t received = 0;         // status messages
   std::uint64_t missed = 0;           // from gaps in the tick stamps
   std::uint64_t poses_received = 0;   // PoseStamped messages
-  std::uint64_t poses_announced = 0;  // status messages that say there is a pose
+  std::uint64_t poses_announced = 0;  // status messages that state a pose
   std::uint64_t first_tick = 0;       // tick numbers of the first and last status message
   std::uint64_t last_tick = 0;
-  std::uint32_t streams = 0;        // tools asked for
-  std::uint32_t streams_ended = 0;  // tools whose sink said that it ends
-  // Unix time at which a status was taken, less its tick's: p50 and p99 to 10 us, up to 1 s.
+  std::uint32_t streams = 0;        // requested tools
+  std::uint32_t streams_ended = 0;  // tools whose end of stream was received
+  // Latency: Unix time of receiving a status minus its tick's; p50 and p99 to 10 us, up to 1 s.
   double latency_p50_us = 0;
   double latency_p99_us = 0;
   double latency_max_us = 0;
 };
 
-// Written to a temporary file beside it, then renamed. Throws InputError.
+// Writes a temporary file beside it, then renames it. Throws InputError.
 void save_result(const ReaderResult& result, const std::string& file);
-// Throws InputError where there is no such file or it is not a reader's.
+// Throws InputError if the file does not exist or is not a reader's result.
 [[nodiscard]] ReaderResult load_result(const std::string& file);
 
 }  // namespace glint

@@ -17,7 +17,7 @@ dds_subscription_matched_status_t matches_of(dds_entity_t reader) {
   return status;
 }
 
-// Takes all that wait in a reader, batch by batch, without copying.
+// Takes all available messages of a reader, in batches, without copies.
 template <class Message, class Use>
 void take_all(dds_entity_t reader, Use use) {
   for (;;) {
@@ -40,7 +40,7 @@ StatusReader::StatusReader(const DdsSettings& settings) : participant_(settings)
   for (const std::string& name : settings.tool_names) {
     const ToolTopics topics = topics_of(settings.topic_prefix, name);
     ToolReader tool;
-    // The pose first: a sink that has found the status reader has then found this one, too.
+    // Created first: a sink that has discovered the status reader has then discovered this one too.
     tool.pose = participant_.reader(pose_stamped_type(), topics.pose, k_everything);
     tool.status = participant_.reader(status_type(), topics.status, k_everything);
     for (const dds_entity_t reader : {tool.pose, tool.status}) {

@@ -1,4 +1,4 @@
-// Reads every tool's status and pose topic, keeping all, and counts.
+// Reads the status and pose topics of every tool with keep_all, and counts the messages.
 #pragma once
 
 #include <vector>
@@ -15,10 +15,10 @@ class StatusReader {
   // Throws as Participant does.
   explicit StatusReader(const DdsSettings& settings);
 
-  // Waits for messages, at most `limit`, and counts all that are there.
+  // Waits at most `limit` for messages and counts all that are available.
   void read(Duration limit);
 
-  // A sink was found, and by now every one found has gone.
+  // Returns whether at least one sink was found and all found sinks have left.
   [[nodiscard]] bool sink_has_left() const;
   [[nodiscard]] bool sink_was_found() const;
 

@@ -1,6 +1,6 @@
-// The reader's count of one tool's stream: what came, and what must have been written and did not
-// come, from gaps in the tick stamps. A tick for which the sink wrote nothing (ring full, output
-// skipped) is no loss on the way: the sink states those in ticks_not_sent, and they are taken off.
+// Counts received and missed messages of one tool's stream, from gaps in the tick stamps. Ticks for
+// which the sink wrote nothing (ring full, output skipped) are not transport losses: the sink
+// states them in ticks_not_sent, and they are subtracted.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class StreamCounter {
   void add(const StreamMark& mark) {
     if (advance(mark)) ++received_;
   }
-  // The end mark stands one period after the last tick and is itself not counted.
+  // The end mark is one period after the last tick and is not counted.
   void end(const StreamMark& mark) { ended_ = advance(mark) || ended_; }
 
   [[nodiscard]] std::uint64_t received() const { return received_; }
@@ -29,7 +29,7 @@ class StreamCounter {
   [[nodiscard]] bool ended() const { return ended_; }
 
  private:
-  // False for a stamp that does not follow the last one: it was counted already.
+  // Returns false for a stamp that is not after the last one: it was counted already.
   bool advance(const StreamMark& mark) {
     if (mark.tick_period.nanoseconds <= 0) return false;
     if (!started_ || mark.stream_start != start_) {  // a restarted sink begins a new stream

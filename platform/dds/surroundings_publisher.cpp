@@ -14,7 +14,7 @@ namespace glint {
 namespace {
 
 constexpr std::uint8_t k_float32 = 7;  // sensor_msgs/PointField
-// Around a message's points: names, fields, lengths; far more than they take.
+// Upper limit of a message's size without its points: names, fields, lengths.
 constexpr std::size_t k_heading_bytes = 1024;
 
 template <class Sequence, class Item>

@@ -1,8 +1,9 @@
-// A map, what it leaves free, and a drawn path, for whoever listens, now or later.
+// DDS publisher of a map's points, its octomap and a drawn path, for present and later readers.
 //
-// Everything is reliable and transient_local: a listener that comes later gets it, too, as long as
-// this lives. A cloud goes in messages of at most 64 kB, all with one stamp: larger ones break up
-// on the way over a wireless network. A listener that wants all of them keeps as many as there are.
+// All topics are reliable and transient_local: late readers receive them while this object exists.
+// A point cloud is split into messages of at most 64 kB with the same stamp, since larger ones are
+// fragmented on wireless networks. To receive all of them, a reader's keep_last depth must be at
+// least their number.
 #pragma once
 
 #include <array>
@@ -27,24 +28,25 @@ class SurroundingsPublisher {
   explicit SurroundingsPublisher(const DdsSettings& settings);
 
   // sensor_msgs/PointCloud2 on rt/PREFIX/map_points: float32 x, y, z, and normal_x, normal_y,
-  // normal_z where there are as many normals as points. Gives how many points were left out, beyond
-  // k_cloud_messages_max. Once.
+  // normal_z if there are as many normals as points. Returns the number of omitted points beyond
+  // k_cloud_messages_max. Call once.
   std::size_t publish_cloud(FloatTriples points, FloatTriples normals, Time unix_time);
 
-  // octomap_msgs/Octomap on rt/PREFIX/octomap; `data` as Occupancy::message_bytes() has it. In one
-  // message: the type cannot be divided. Throws InputError beyond 16 MiB. Once.
+  // octomap_msgs/Octomap on rt/PREFIX/octomap, in one message, since the type cannot be divided;
+  // `data` from Occupancy::message_bytes(). Throws InputError beyond 16 MiB. Call once.
   void publish_octomap(std::span<const std::int8_t> data, double resolution_m, Time unix_time);
 
-  // nav_msgs/Path on rt/PREFIX/path: T_robot_tip with each point's own time. Once.
+  // nav_msgs/Path on rt/PREFIX/path: T_robot_tip with each point's own time. Call once.
   void publish_path(std::span<const UncertainPose> points, Duration unix_minus_board,
                     Time unix_time);
 
-  // tf_static: world to robot and whatever else stands still, all in one message. Once.
+  // tf_static: world to robot and all other static transforms, in one message. Call once.
   void publish_static(std::span<const StaticTransform> transforms, Time unix_time);
 
-  // How many listeners the topic that has fewest has found.
+  // Number of matched readers; the minimum over all topics.
   [[nodiscard]] int listeners() const;
-  // Waits until all of them have everything, at most so long. False: not all do.
+  // Waits at most `limit` for the acknowledgements of all readers; returns false if some are
+  // missing.
   bool wait_for_receipts(Duration limit) const;
 
  private:

@@ -1,5 +1,5 @@
-// How many tick periods lie between two ticks. A period need not be whole nanoseconds (300 Hz), so
-// it is rounded: between neighbours the error is far below half a period.
+// Number of tick periods between two ticks, rounded. A period need not be a whole number of
+// nanoseconds (300 Hz): between consecutive ticks the error is far below half a period.
 #pragma once
 
 #include "kernels/units.hpp"

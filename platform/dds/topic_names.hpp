@@ -1,6 +1,6 @@
-// Topic and frame names, made from a tool's name.
+// DDS topic names and frame names from a tool's name.
 //
-// ROS 2 puts "rt" before a topic's name and allows letters, digits and underscores, no digit first
+// ROS 2 prefixes topic names with "rt" and allows letters, digits and underscores, no digit first
 // (rmw_cyclonedds, namespace_prefix.hpp; ROS 2 design article "Topic and Service name mapping").
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace glint {
 
-// Any other character becomes '_'; "tool_" goes in front of a leading digit or an empty name.
+// Replaces any other character by '_'; prefixes "tool_" to a leading digit or an empty name.
 [[nodiscard]] std::string ros_name(std::string_view text);
 
 struct ToolTopics {
@@ -25,10 +25,10 @@ inline constexpr const char* k_tf_topic = "rt/tf";
 inline constexpr const char* k_tf_static_topic = "rt/tf_static";
 inline constexpr const char* k_diagnostics_topic = "rt/diagnostics";
 
-// A ROS topic's name in DDS: "/ir/image" is "rt/ir/image". Empty: no name of a topic.
+// DDS name of a ROS topic: "/ir/image" becomes "rt/ir/image". Empty if the name is invalid.
 [[nodiscard]] std::string dds_topic(std::string_view ros_topic);
 
-// Under a prefix as tools' topics are: rt/PREFIX/NAME.
+// Topic under a prefix: rt/PREFIX/NAME.
 [[nodiscard]] std::string topic_under(std::string_view prefix, std::string_view name);
 inline constexpr const char* k_map_points_name = "map_points";
 inline constexpr const char* k_octomap_name = "octomap";

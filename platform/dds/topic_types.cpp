@@ -2,7 +2,7 @@
 
 namespace glint {
 
-// Hashes as published with ROS 2; made again from the definitions by a test.
+// Hashes as published with ROS 2; a test recomputes them from the definitions.
 TopicType cloud_type() {
   return {&sensor_msgs_msg_dds__PointCloud2__desc,
           "9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5"};

@@ -1,4 +1,4 @@
-// What Glint says of a robot's surroundings and hears of the robot, as ROS 2's types.
+// ROS 2 message types for maps, paths, images and the robot's inputs.
 #pragma once
 
 #include "nav_msgs.h"
