@@ -1,5 +1,5 @@
-// What a board does not run is refused before it starts: otherwise it would run less than was asked
-// for.
+// Checks of a cell and a loop before a run on the companion computer. Rejects what it cannot run,
+// instead of running less than requested.
 #pragma once
 
 #include "platform/boards/frame_loop.hpp"
@@ -7,9 +7,9 @@
 
 namespace glint {
 
-// Throws InputError where the cell changes tools.
+// Throws InputError if the cell changes its tools during a run.
 void check_for_board(const Cell& cell);
-// Throws InputError where the loop's frames are not the cell's camera's.
+// Throws InputError if the loop's frames do not have the format of the cell's camera.
 void check_camera(const Cell& cell, const FrameLoop& loop);
 
 }  // namespace glint

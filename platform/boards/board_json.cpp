@@ -19,7 +19,7 @@ Json as_json(const LatencyFigures& figures) {
           {"max", figures.max_us}};
 }
 
-// Percentiles of plain nanoseconds, by the same ranks.
+// Percentiles of plain nanoseconds, by nearest rank.
 Json spread_us(const std::vector<std::int64_t>& nanoseconds) {
   std::vector<FrameToCan> entries;
   entries.reserve(nanoseconds.size());
@@ -41,7 +41,7 @@ Json recording_of(const SinkOutcome& sinks) {
           {"bytes", sinks.recording.bytes}};
 }
 
-// Of the first tool, as the decoded CAN log shows it.
+// Output of the first tool, as in the decoded CAN log.
 Json output_of(const TicksLeft& left) {
   const ToolTicks& tool = left.tools[0];
   return {{"ticks_left", left.ticks},

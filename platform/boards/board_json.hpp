@@ -1,4 +1,4 @@
-// A board's figures as JSON: what was observed in a run, and the operating system's share.
+// JSON of a companion computer's figures: observations of a run, and the operating system's share.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,8 +9,8 @@
 namespace glint {
 
 [[nodiscard]] nlohmann::ordered_json as_json(const BoardResult& result);
-// Includes "system": the rows of schedules/task_model.hpp's SystemShare, each the largest observed,
-// but the smallest gap.
+// Includes "system", the fields of SystemShare (schedules/task_model.hpp): each the observed
+// maximum, except the gap, which is the minimum.
 [[nodiscard]] nlohmann::ordered_json as_json(const SystemShareFigures& figures);
 
 }  // namespace glint

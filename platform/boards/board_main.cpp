@@ -1,5 +1,5 @@
-// glint_board: Glint as a board runs it. Frames come from memory or a live source, poses go to CAN
-// and DDS, and what the cell maps and follows goes on beneath.
+// glint_board: Glint on a companion computer. Frames from memory or a live source; poses to CAN and
+// DDS; mapping and robot following in the background.
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <cstdio>
@@ -33,7 +33,7 @@ struct Arguments {
   BoardOptions options;
 };
 
-// By node, of the problem that the cell takes on.
+// Node bounds, by node, for the cell's limits.
 BoardBounds bounds_on(const std::string& name, const Cell& cell) {
   if (name.empty()) return {};
   const Board board = load_board(name, expected_board(), BoardUse::run_here);
@@ -55,7 +55,7 @@ void write(const std::string& file, const nlohmann::ordered_json& figures) {
   }
 }
 
-// Why the run ends with 1, one line each.
+// Reasons for exit code 1, one per line.
 std::vector<std::string> failures_of(const BoardResult& result, const BoardOptions& options) {
   std::vector<std::string> lines = lines_of(losses_of(result));
   if (!result.fault.empty()) lines.push_back(result.fault);
@@ -67,7 +67,7 @@ std::vector<std::string> failures_of(const BoardResult& result, const BoardOptio
   return lines;
 }
 
-// Of the loop, or of the cell's live source.
+// Runs on the loop, or on the cell's live source.
 BoardResult run_on_frames(const std::string& loop_file, Cell cell, const BoardOptions& options) {
   if (!loop_file.empty()) return run_board(std::move(cell), FrameLoop(loop_file), options);
   cell.realtime = true;
@@ -106,7 +106,7 @@ int run(const Arguments& arguments) {
   std::vector<std::string> failures = failures_of(result, options);
   try {
     write(arguments.json_file, as_json(result));
-  } catch (const InputError& error) {  // the figures are not lost with the file
+  } catch (const InputError& error) {  // print the figures if the file fails
     write("", as_json(result));
     failures.emplace_back(error.what());
   }

@@ -36,7 +36,7 @@ BoardResult run_board(Cell cell, FrameSource& source, const BoardOptions& option
 
 BoardResult run_board(Cell cell, const FrameLoop& loop, const BoardOptions& options) {
   check_camera(cell, loop);
-  // The first frame's exposure must not lie before the session's clock began.
+  // The first frame's exposure must not precede the start of the session's clock.
   const Duration period{loop.header().period_ns};
   LoopSource source(
       loop, {options.frames, period, period, k_arrival_priority, options.core, options.stop});

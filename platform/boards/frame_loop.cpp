@@ -79,7 +79,7 @@ FrameLoop::FrameLoop(const std::string& path) {
     refuse(path, size_, "the end",
            "a header of " + std::to_string(padded(sizeof header_)) + " bytes");
   }
-  // Populated: no frame is fetched when it is first looked at.
+  // MAP_POPULATE: no page fault at the first access to a frame.
   void* const mapped = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE | MAP_POPULATE, descriptor, 0);
   const int error = errno;
   ::close(descriptor);
@@ -99,7 +99,7 @@ FrameLoop::~FrameLoop() { ::munmap(const_cast<std::byte*>(bytes_), size_); }
 std::uint32_t FrameLoop::place_of(std::uint64_t shown) const noexcept {
   const std::uint64_t last = header_.frames - 1;
   if (last == 0) return 0;
-  const std::uint64_t step = shown % (2 * last);  // the turning frames are shown once
+  const std::uint64_t step = shown % (2 * last);  // shows the end frames once
   return static_cast<std::uint32_t>(step <= last ? step : 2 * last - step);
 }
 

@@ -1,5 +1,5 @@
-// Frames held in memory, shown to and fro for as long as one likes: a camera for a board that has
-// none. The file is made on the host by glint_board_frames and mapped here as it is.
+// Loop of frames in memory, repeated forward and backward without limit: a simulated camera for a
+// companion computer. glint_board_frames writes the file on the host; here it is memory-mapped.
 //
 // File, little endian, every part padded with zeros to a multiple of 64 bytes:
 //   header   "GLNTLOOP" | u32 layout 1 | u32 width | u32 height | u32 bits of reflectivity (8, 16)
@@ -22,7 +22,7 @@ namespace glint {
 
 enum class LoopFrameKind : std::uint32_t {
   rendered = 0,  // by the simulator
-  worst = 1,     // drawn to drive a loop to its maximum
+  worst = 1,     // drawn to reach a loop's maximum
 };
 
 struct FrameLoopHeader {
@@ -47,10 +47,10 @@ static_assert(sizeof(LoopFrame) == 72);
 
 inline constexpr std::size_t k_loop_alignment = 64;
 
-// Writes such a file frame by frame; it gets its name when it is whole.
+// Writes such a file frame by frame; renames it to its final name when it is complete.
 class FrameLoopWriter {
  public:
-  // Throws InputError where the file cannot be made.
+  // Throws InputError if the file cannot be created.
   FrameLoopWriter(std::string path, const FrameLoopHeader& header);
   ~FrameLoopWriter();
   FrameLoopWriter(const FrameLoopWriter&) = delete;
@@ -68,7 +68,7 @@ class FrameLoopWriter {
   int descriptor_ = -1;
 };
 
-// The same file in memory.
+// The file, mapped into memory.
 class FrameLoop {
  public:
   // Throws InputError: "path:byte N: found; expected ...".
@@ -78,10 +78,11 @@ class FrameLoop {
   FrameLoop& operator=(const FrameLoop&) = delete;
 
   [[nodiscard]] const FrameLoopHeader& header() const noexcept { return header_; }
-  // Which of the file's frames is shown as number `shown`: to and fro, so that a pen never jumps.
+  // Index in the file of the frame shown as number `shown`: forward, then backward, so that a pen
+  // never jumps.
   [[nodiscard]] std::uint32_t place_of(std::uint64_t shown) const noexcept;
   [[nodiscard]] const LoopFrame& entry(std::uint32_t place) const noexcept;
-  // Its pixels and head pose, stamped as arriving now.
+  // Pixels and head pose of a frame, with the given arrival time.
   [[nodiscard]] Frame view(std::uint32_t place, Time arrival,
                            std::uint64_t sequence) const noexcept;
   [[nodiscard]] HeadPose head(std::uint32_t place, Time arrival) const noexcept;

@@ -51,6 +51,6 @@ bool LoopSource::wait(ArrivedFrame& arrived) {
   return true;
 }
 
-void LoopSource::give_back(const ArrivedFrame& /*arrived*/) noexcept {}  // the loop keeps them all
+void LoopSource::give_back(const ArrivedFrame& /*arrived*/) noexcept {}  // frames stay in the loop
 
 }  // namespace glint

@@ -1,5 +1,5 @@
-// A loop of frames as a camera: a thread of its own lets each frame arrive at its absolute time and
-// wakes whoever waits for it, as a driver's interrupt would. Nobody polls.
+// Frame source from a loop in memory. A thread of its own releases each frame at its absolute time
+// and wakes the waiting thread, like a driver's interrupt. No polling.
 #pragma once
 
 #include <atomic>
@@ -16,9 +16,9 @@
 namespace glint {
 
 struct ArrivalSettings {
-  std::int64_t frames = 0;  // how many arrive in all; 0: until `stop`
+  std::int64_t frames = 0;  // total number; 0: until `stop`
   Duration period;
-  Duration first;  // of the first one's arrival, of the session's time
+  Duration first;  // session time of the first arrival
   int priority = 0;
   int core = -1;
   const std::atomic<bool>* stop = nullptr;  // set: no further frame arrives
@@ -27,9 +27,9 @@ struct ArrivalSettings {
 class LoopSource final : public FrameSource {
  public:
   LoopSource(const FrameLoop& loop, const ArrivalSettings& settings);
-  ~LoopSource() override;  // at the next arrival
+  ~LoopSource() override;  // returns at the next arrival
 
-  void start(const SourceClock& clock) override;  // frames begin to arrive
+  void start(const SourceClock& clock) override;  // starts the arrivals
   [[nodiscard]] std::size_t frame_count() const noexcept override {
     return static_cast<std::size_t>(settings_.frames);
   }
@@ -37,18 +37,18 @@ class LoopSource final : public FrameSource {
     return settings_.period * settings_.frames;
   }
 
-  // A frame that waits in memory while an older one is worked on is not lost: it comes next, and
-  // its latency counts from its own arrival.
+  // Queued frames are not lost: the next call returns them, and their latency counts from their own
+  // arrival.
   [[nodiscard]] bool wait(ArrivedFrame& arrived) override;
   void give_back(const ArrivedFrame& arrived) noexcept override;
 
-  // From a frame's nominal arrival to the first instruction of who waited for it; only for frames
-  // that found their group waiting.
+  // Time from a frame's nominal arrival to the first instruction of the waiting thread; only for
+  // frames that arrived during wait().
   [[nodiscard]] const std::vector<std::int64_t>& wake_ups_ns() const {
     return wake_ups_ns_.entries();
   }
   [[nodiscard]] std::int64_t worst_shown() const { return worst_shown_; }
-  // Of the thread that lets frames arrive, in a live run.
+  // Report of the arrival thread, in a live run.
   [[nodiscard]] const ThreadReport& thread_report() const { return arrivals_->report(); }
 
  private:

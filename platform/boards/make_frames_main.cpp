@@ -1,4 +1,4 @@
-// glint_board_frames: renders a loop of frames for a board, on the host.
+// glint_board_frames: renders a loop of frames for a companion computer, on the host.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
@@ -30,7 +30,7 @@ LoopFrame entry_of(const sim::SimFrame& frame) {
   return entry;
 }
 
-// Raw reflectivity on either side of the threshold, and a depth in the middle of the range.
+// Draws raw reflectivity on either side of the threshold, and depth at the centre of the range.
 void draw_worst(WorstFrame kind, const Camera& camera, FrameBuffer& pixels) {
   const auto bright = static_cast<std::uint16_t>(camera.threshold + 1);
   const double middle_m = 0.5 * (camera.range_min_m + camera.range_max_m);

@@ -1,4 +1,5 @@
-// glint_board_pictures: renders depth pictures with a robot for a board's background, on the host.
+// glint_board_pictures: renders depth images with a robot for a companion computer's background
+// group, on the host.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -17,8 +18,8 @@ struct Arguments {
   std::string cell_file, folder;
   RobotFiles robot;
   int pictures = 13;
-  int first = 450;  // as glint_board_frames has it
-  int every = 9;    // frames: 200 ms of 45 Hz
+  int first = 450;  // as in glint_board_frames
+  int every = 9;    // in frames: 200 ms at 45 Hz
 };
 
 void write(const std::filesystem::path& path, const std::string& bytes) {
@@ -28,7 +29,7 @@ void write(const std::filesystem::path& path, const std::string& bytes) {
   if (!stream) throw InputError(path.string() + ": cannot be written; expected a folder for it");
 }
 
-// A pinhole for pixels whose centres are at integers.
+// Pinhole camera matrix with pixel centres at integers.
 std::string camera_text() {
   char text[128];
   std::snprintf(text, sizeof text, "%.17g 0 %.17g\n0 %.17g %.17g\n0 0 1\n", k_long_throw.fx,

@@ -11,7 +11,7 @@
 namespace glint {
 namespace {
 
-// A reading of the clock that takes this many times as long as usual was interrupted.
+// A clock reading that takes this many times the median was interrupted.
 constexpr std::int64_t k_disturbed = 4;
 constexpr int k_undisturbed_readings = 1000;
 
@@ -96,7 +96,7 @@ SystemShareFigures measure_system_share(CanSink& can, const SystemShareOptions& 
   figures.frame_wake_up_ns.reserve(wake_ups);
   figures.can_write_ns.reserve(
       static_cast<std::size_t>(options.can_bursts * options.can_frames_a_burst));
-  // An interrupt each microsecond would fill this; more are not kept.
+  // Capacity for one interrupt per microsecond; more are not stored.
   figures.interrupt_ns.reserve(
       static_cast<std::size_t>(options.interrupts_watched.nanoseconds / 1000));
   figures.interrupt_gap_ns.reserve(figures.interrupt_ns.capacity());

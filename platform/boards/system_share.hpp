@@ -1,9 +1,10 @@
-// What the operating system adds to a chain on this board, measured: an estimate, never a bound.
+// Measurement of the operating system's contribution to the latency of a chain on this machine: an
+// estimate, not a bound.
 //
-// What:     four figures, each as a distribution, on an otherwise idle board with the priorities
-//           of a run: lateness of an absolute sleep; release of one thread by another; how long a
-//           thread that only reads the clock is kept from doing so, and how far apart that
-//           happens; one write of one CAN frame, in bursts as a tick sends them.
+// What:     four distributions, on an otherwise idle machine with a run's priorities: lateness of
+//           an absolute sleep; release of one thread by another; duration and distance of
+//           interruptions of a thread that only reads the clock; write of one CAN frame, in bursts
+//           as at a tick.
 // Cost:     some seconds.
 #pragma once
 
@@ -16,7 +17,7 @@ namespace glint {
 
 struct SystemShareOptions {
   int core = -1;
-  int wake_ups = 1000;  // and as many releases
+  int wake_ups = 1000;  // and the same number of releases
   Duration tick_period = milliseconds(4);
   Duration interrupts_watched = milliseconds(1000);
   int can_bursts = 200;
@@ -24,10 +25,10 @@ struct SystemShareOptions {
 };
 
 struct SystemShareFigures {
-  std::vector<std::int64_t> tick_wake_up_ns;   // due -> the sleeping thread runs
-  std::vector<std::int64_t> frame_wake_up_ns;  // due -> the thread released by another runs
-  std::vector<std::int64_t> interrupt_ns;      // taken from a thread that never gives up the core
-  std::vector<std::int64_t> interrupt_gap_ns;  // from one such loss to the next
+  std::vector<std::int64_t> tick_wake_up_ns;   // due time to start of the sleeping thread
+  std::vector<std::int64_t> frame_wake_up_ns;  // due time to start of the released thread
+  std::vector<std::int64_t> interrupt_ns;      // time taken from a busy thread
+  std::vector<std::int64_t> interrupt_gap_ns;  // between two interruptions
   std::int64_t clock_read_ns = 0;              // between two undisturbed readings
   std::vector<std::int64_t> can_write_ns;
 };

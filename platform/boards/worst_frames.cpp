@@ -4,9 +4,9 @@ namespace glint {
 namespace {
 
 constexpr int k_marker_pitch = 16;  // pixels between the centres of drawn markers
-constexpr int k_marker_radius = 5;  // as a 10 mm ball at half a metre shows, rounded up
+constexpr int k_marker_radius = 5;  // of a 10 mm ball at 0.5 m, rounded up
 
-// A fixed scramble of a pixel's number: the finaliser of MurmurHash3 (Appleby, public domain).
+// Hash of a pixel's index: the finaliser of MurmurHash3 (Appleby, public domain).
 std::uint32_t scrambled(std::uint32_t value) {
   value ^= value >> 16;
   value *= 0x85EBCA6Bu;
