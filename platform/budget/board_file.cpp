@@ -12,8 +12,8 @@
 namespace glint {
 namespace {
 
-constexpr double k_cost_max = 1e9;                // a count: one second, or a thousand million
-constexpr std::int64_t k_second = 1'000'000'000;  // the largest system share in nanoseconds
+constexpr double k_cost_max = 1e9;                // a count: one second, or 1e9 instructions
+constexpr std::int64_t k_second = 1'000'000'000;  // largest system share in nanoseconds
 
 class BoardReader {
  public:
@@ -73,7 +73,7 @@ class BoardReader {
     for (const GraphName& graph : expected_.graphs) read_graph(graph, table, reader, board);
     for (const BoardExpectation::Optional& optional : expected_.optional) {
       const char* const name = optional.graph.name.c_str();
-      (void)reader.text(name, "");  // known, whether it is there or not
+      (void)reader.text(name, "");  // marks the key as known, present or not
       if (table.get(name) == nullptr) continue;
       read_graph(optional.graph, table, reader, board);
       kernels_.insert(kernels_.end(), optional.kernels.begin(), optional.kernels.end());
@@ -109,7 +109,7 @@ class BoardReader {
 
   void read_system(Board& board) {
     const toml::table* table = reader_.table("system");
-    if (table == nullptr) return;  // then it is declared to be nothing
+    if (table == nullptr) return;  // absent: every share is zero
     TomlReader reader(*table, file_, "system.");
     board.system.wake_up_ns = reader.integer("wake_up_ns", 0, 0, k_second);
     board.system.interrupt_ns = reader.integer("interrupt_ns", 0, 0, k_second);
@@ -161,7 +161,7 @@ class BoardReader {
   TomlReader reader_;
   const std::string& file_;
   const BoardExpectation& expected_;
-  std::vector<KernelLoops> kernels_;  // of the graphs that the board prices
+  std::vector<KernelLoops> kernels_;  // of the graphs in the board file
 };
 
 }  // namespace

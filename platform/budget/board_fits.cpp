@@ -1,5 +1,5 @@
-// Compiled when the build is made for a board (-DGLINT_BOARD=NAME): the usual cell's chains must
-// meet their deadlines there, or this file does not compile.
+// Compile-time check for a build with -DGLINT_BOARD=NAME: this file compiles only if the usual
+// cell's chains meet their deadlines on that board.
 #include "glint_board_costs.hpp"
 #include "nodes/output.hpp"
 #include "nodes/tracker.hpp"

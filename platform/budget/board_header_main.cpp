@@ -1,6 +1,6 @@
-// glint_board_header BOARD HEADER: a board file as constants, for a build that is made for it.
+// glint_board_header BOARD HEADER: writes a board file as constants, for a build for that board.
 //
-// A file that is not of this build's graphs, compiler and flags stops the build with its line.
+// A file for other graphs, another compiler or other flags stops the build with its line.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

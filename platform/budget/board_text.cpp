@@ -1,4 +1,4 @@
-// A board as a file that a person can read and a reviewer can compare line by line.
+// Writes a board as TOML, one value per line, for readers and line-by-line review.
 #include <cstdio>
 #include <sstream>
 
@@ -16,7 +16,7 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
-// Three decimals: a thousandth of an instruction or nanosecond a count is below any margin.
+// Three decimals: a thousandth of an instruction or nanosecond per count is below any margin.
 std::string number(double value) {
   char digits[64];
   std::snprintf(digits, sizeof digits, "%.3f", value);

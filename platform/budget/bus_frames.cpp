@@ -129,7 +129,7 @@ std::vector<CanMessage> own_frames_of(const Cell& cell, int tools) {
   add("time", base + k_can_time_sync, {}, k_time_pair_gap_ns);
   add("time follow-up", base + k_can_time_follow_up, {}, k_time_pair_gap_ns);
   for (int t = 0; t < tools; ++t) {
-    // Lost, found a tick later at the earliest, and not lost again within lost_after.
+    // Lost; found one tick later at the earliest; not lost again within lost_after.
     add("emergency, tool " + std::to_string(t + 1), k_emergency_identifier + node, {},
         cell.lost_after.nanoseconds / 2);
     frames.back().jitter_ns = std::max<std::int64_t>(0, cell.lost_after.nanoseconds / 2 - tick_ns);

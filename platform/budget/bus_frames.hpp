@@ -1,4 +1,4 @@
-// What is on a cell's CAN bus: what Glint sends itself, and what others do.
+// Messages on a cell's CAN bus: Glint's own, and those of other nodes.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace glint {
 
-// Poses, heartbeat, time and emergencies for `tools` tools, from one first-in first-out queue, as
-// SocketCAN has it. Their deadline is the tick's.
+// Glint's messages: poses, heartbeat, time and emergencies for `tools` tools, from one FIFO queue,
+// as in SocketCAN. Their deadline is the tick's.
 [[nodiscard]] std::vector<CanMessage> own_frames_of(const Cell& cell, int tools);
 
-// A file of other nodes' frames (TOML):
+// Reads a file of other nodes' frames (TOML):
 //
 //   [[frame]]
 //   name = "joint torque"
@@ -21,13 +21,13 @@ namespace glint {
 //   extended = false           # the default, as for fd and bit_rate_switch
 //   bytes = 8
 //   period_ms = 4
-//   jitter_ms = 0.2            # 0 where left out
-//   deadline_ms = 4            # the period where left out
-//   node = "drive"             # who sends it; one node's frames share a queue
-//   queue = "priority"         # or "fifo": one kind a node
+//   jitter_ms = 0.2            # default: 0
+//   deadline_ms = 4            # default: the period
+//   node = "drive"             # sender; frames of one node share a queue
+//   queue = "priority"         # or "fifo": one kind per node
 //
-// Throws InputError: file:line, what was found, what was expected. An identifier that Glint uses
-// itself is refused.
+// Throws InputError: file:line, what was found, what was expected. Rejects an identifier that Glint
+// uses.
 [[nodiscard]] std::vector<CanMessage> foreign_frames(const std::string& file,
                                                      const std::vector<CanMessage>& own);
 [[nodiscard]] std::vector<CanMessage> foreign_frames_from_text(const std::string& text,

@@ -42,7 +42,7 @@ void check_scale(const Question& question, const CheckOptions& options) {
   }
 }
 
-// A question about another number of tools or pixels, with the same plan.
+// Repeats the check with the same schedule for other limits (tools or pixels).
 bool fits(const CheckInput& input, const CheckOptions& options, const Limits& limits) {
   CheckInput other{input.cell, input.board, input.plan, limits, input.foreign};
   return assess(question_of(other, options)).holds();
@@ -73,7 +73,7 @@ void add_largest(const CheckInput& input, const CheckOptions& options, CheckResu
     limits.tools = tools;
     if (fits(input, options, limits)) result.tools_largest = tools;
   }
-  // Whole rows: the largest number under which everything is still in time.
+  // Bisection in rows: the largest number for which all deadlines are met.
   int low = 0, high = k_height_max;
   while (low < high) {
     const int rows = (low + high + 1) / 2;
@@ -143,7 +143,7 @@ CheckResult check(const CheckInput& input, const CheckOptions& options) {
     result.groups.push_back(largest_factor(
         result.question, [g](std::size_t group, std::size_t) { return group == g; }));
   }
-  // Both chains run through the frame and the tick group.
+  // Both chains include the frame and the tick group.
   const auto chain = largest_factor(result.question, [](std::size_t group, std::size_t) {
     return group == k_frame_group_index || group == k_tick_group_index;
   });

@@ -1,5 +1,5 @@
-// What `glint budget check` finds: an assessment, how far each part of it may grow, and what else
-// would still fit.
+// Result of `glint budget check`: an assessment, the slack of each part, and the largest problem
+// that still fits.
 #pragma once
 
 #include <map>
@@ -15,15 +15,15 @@
 namespace glint {
 
 struct CheckOptions {
-  std::map<std::string, double> scale;  // by kernel: what if it were so much slower
-  double clock = 1;                     // what if the board ran at this fraction of its clock
-  double margin_percent = 0;            // policy: the least slack of the whole system
-  std::string foreign;                  // a file of other nodes' frames; empty: none
-  std::string observed;                 // a summary.json; empty: none
+  std::map<std::string, double> scale;  // what-if factor on a kernel's bound, by kernel
+  double clock = 1;                     // what-if fraction of the board's clock
+  double margin_percent = 0;            // policy: minimum slack of the whole system
+  std::string foreign;                  // file of other nodes' frames; empty: none
+  std::string observed;                 // summary.json of a run; empty: none
 };
 
-// Throws InputError for a plan that does not fit the cell and the board, or a scale of a kernel
-// that there is not.
+// Input of check(), which throws InputError for a scale of an unknown kernel. validated_plan()
+// rejects a schedule that does not match the cell and the board.
 struct CheckInput {
   const Cell& cell;
   const Board& board;
@@ -32,11 +32,12 @@ struct CheckInput {
   std::vector<CanMessage> foreign;
 };
 
-// As loaded and validated for this model, which takes its number of cores. Throws InputError for a
-// plan of another graph, one that cannot run, or one that was made for fewer tools than `limits`.
+// Loads and validates a schedule for this model; sets the model's number of cores from it. Throws
+// InputError for a schedule of another graph, an infeasible one, or one made for fewer tools than
+// `limits`.
 [[nodiscard]] Plan validated_plan(const std::string& file, TaskModel& model, const Limits& limits);
 
-// The question as the options make it.
+// The question with the options applied.
 [[nodiscard]] Question question_of(const CheckInput& input, const CheckOptions& options);
 
 struct KernelSlack {
@@ -56,17 +57,17 @@ struct CheckResult {
   int tools_largest = 0;                      // that still fit; 0: not even one
   long long roi_pixels_largest = 0;           // searched pixels that still fit
   double bus_load = 0;
-  std::vector<std::string> what_if;  // the options that make this no statement of fact
-  std::vector<std::string> fails;    // what breaks deadlines, bounds or the policy
+  std::vector<std::string> what_if;  // options for which the result is hypothetical
+  std::vector<std::string> fails;    // violated deadlines, bounds or policy
 };
 
 [[nodiscard]] CheckResult check(const CheckInput& input, const CheckOptions& options);
 
-// Why the bounds are no statement about this plan on this board.
+// Reasons why the bounds do not hold for this schedule on this board.
 [[nodiscard]] std::vector<std::string> void_reasons(const CheckInput& input,
                                                     const CheckResult& result);
 
-// Adds to `fails` where what was observed is above its bound.
+// Adds to `fails` each observation above its bound.
 void compare_observed(const std::string& summary_file, CheckResult& result);
 
 [[nodiscard]] nlohmann::ordered_json check_json(const CheckInput& input,

@@ -1,4 +1,4 @@
-// What a run saw, held against what a check computed.
+// Compares a run's observations with the bounds of a check.
 #include <cstdio>
 #include <nlohmann/json.hpp>
 

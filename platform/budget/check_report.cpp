@@ -1,4 +1,4 @@
-// What a check found, as JSON for programs and as a table for people.
+// Result of a check as JSON and as a text table.
 #include <cstdarg>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -14,7 +14,7 @@ using nlohmann::ordered_json;
 
 double us(std::int64_t ns) { return static_cast<double>(ns) * 1e-3; }
 
-// Nothing where there is no bound, or no factor at which everything is in time.
+// Null if there is no bound, or no factor for which all deadlines are met.
 ordered_json us_or_null(const std::optional<std::int64_t>& ns) {
   return ns ? ordered_json(us(*ns)) : ordered_json();
 }

@@ -1,4 +1,4 @@
-// What this program's own graphs and build need a board file to be.
+// The properties that this program's graphs and build require of a board file.
 #pragma once
 
 #include "platform/budget/board_file.hpp"
@@ -7,7 +7,7 @@ namespace glint {
 
 [[nodiscard]] BoardExpectation expected_board();
 
-// "0x" and 16 digits, as board files and plans write a graph's signature.
+// "0x" and 16 digits, the form of a graph's signature in board files and schedules.
 [[nodiscard]] std::string signature_text(std::uint64_t signature);
 
 }  // namespace glint

@@ -1,8 +1,8 @@
-// What a graph needs of static memory, node by node, from its type alone.
+// Static memory of a graph by node, computed from its type.
 //
-// A node's state is its object with all copies of a split; its tokens are those that it writes,
-// both buffers of one that is fed back. Tokens handed in from outside are nobody's: `inputs_bytes`.
-// What is left of sizeof(G) is padding between the two.
+// The state of a node is its object, with all copies of a split. Its tokens are those that it
+// writes, with both buffers of a fed-back token. Tokens written from outside belong to no node:
+// `inputs_bytes`. The rest of sizeof(G) is padding.
 #pragma once
 
 #include <array>
@@ -39,7 +39,7 @@ struct Footprint {
   using Wires = typename G::Wires;
   static constexpr std::size_t total_bytes = sizeof(G);
 
-  // In the order of execution; a split's copies together.
+  // In the order of execution; the copies of a split in one row.
   static constexpr std::array<NodeFootprint, Wires::unit_count> nodes = [] {
     std::array<NodeFootprint, Wires::unit_count> rows{};
     constexpr auto names = graph::detail::unit_names(typename Wires::Listed{});

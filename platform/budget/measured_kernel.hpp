@@ -1,8 +1,7 @@
-// A kernel as `glint budget measure` sees it: inputs by number, one call, and its loop counts.
+// Interface of a kernel for `glint budget measure`: numbered inputs, one call, and its loop counts.
 //
-// Each kernel ships the inputs that are typical for it, the one that drives every loop to its
-// maximum, and a search that tries to beat that one. All of them follow from a number alone, so
-// that every machine and every run measures the same.
+// Each kernel has typical inputs, an input that drives every loop to its maximum, and a search for
+// a worse one. All depend only on a number, so that every machine and every run measures the same.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +16,10 @@
 namespace glint {
 
 enum class InputKind : std::uint8_t {
-  typical,   // drawn at random like a day's work
+  typical,   // random, as in normal use
   recorded,  // from simulated or recorded frames
-  worst,     // every loop at its declared maximum, in a few variants
-  searched,  // the best that a bounded search found, starting from input `number`
+  worst,     // every loop at its declared maximum, in several variants
+  searched,  // worst result of a bounded search from input `number`
 };
 [[nodiscard]] constexpr bool at_its_worst(InputKind kind) {
   return kind == InputKind::worst || kind == InputKind::searched;
@@ -34,19 +33,19 @@ class MeasuredKernel {
   [[nodiscard]] virtual std::span<const std::string_view> loops() const = 0;
   [[nodiscard]] virtual graph::LoopCounts worst(const Limits& limits) const = 0;
 
-  // Builds input `number` of a kind; run() then works on it. May allocate and take its time.
+  // Builds input `number` of a kind for run(). May allocate; not time-critical.
   virtual void set_input(InputKind kind, std::uint64_t number, const Limits& limits) = 0;
-  // Back to the state that set_input left, so that every run() of one input does the same.
+  // Restores the state after set_input(), so that every run() of one input does the same work.
   virtual void rewind() {}
-  // The kernel's call and nothing else.
+  // Only the kernel's call.
   virtual void run() noexcept = 0;
   [[nodiscard]] virtual graph::LoopCounts counts() const = 0;
 };
 
-// One of each kernel, in the order in which a frame and a tick meet them.
+// One of each kernel, in the order of the frame and tick graphs.
 [[nodiscard]] std::vector<std::unique_ptr<MeasuredKernel>> measured_kernels();
 
-// The parts of that list, by the room of their kernels.
+// The parts of that list, by folder of the kernels.
 void add_image_kernels(std::vector<std::unique_ptr<MeasuredKernel>>& kernels);
 void add_pose_kernels(std::vector<std::unique_ptr<MeasuredKernel>>& kernels);
 void add_output_kernels(std::vector<std::unique_ptr<MeasuredKernel>>& kernels);

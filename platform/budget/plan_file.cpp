@@ -136,7 +136,7 @@ class PlanParser {
     orders[static_cast<std::size_t>(core)].push_back(*n);
   }
 
-  // Starts that are given must be possible; those that are not are computed.
+  // Checks the given start times; computes the missing ones.
   void settle(std::size_t g, std::map<int, Place>& places,
               const std::vector<std::vector<int>>& orders, PlannedGroup& group) {
     TaskGroup bounded = model_.groups[g];
@@ -162,7 +162,7 @@ class PlanParser {
     group.makespan_ns = times->makespan_ns;
   }
 
-  // Names the first node that waits for one which the same or another core runs only after it.
+  // Names the first node that waits for one which its core or another runs only after it.
   [[noreturn]] void complain_of_cycle(std::size_t g, const std::map<int, Place>& places,
                                       const std::vector<std::vector<int>>& orders) const {
     std::vector<bool> ran(model_.groups[g].nodes.size(), false);

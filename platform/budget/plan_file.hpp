@@ -1,11 +1,11 @@
-// A plan as a file that a person can read and edit.
+// Schedule file: an editable text form of a static schedule.
 //
-//   graph = "0x..+0x.."          # of every graph in it: a plan of other graphs is refused
+//   graph = "0x..+0x.."          # signatures of all its graphs; others are rejected
 //   board = "cortex-a72-emulated"
-//   board_sha256 = "..."         # of the costs that the bounds come from
+//   board_sha256 = "..."         # of the costs behind the bounds
 //   cores = 2
 //
-//   [bus]                        # what is to be sent at most, and on which bus
+//   [bus]                        # maximum traffic, and the bus
 //   frames = "classic"           # or "fd"
 //   bit_rate = 1000000
 //   data_bit_rate = 4000000
@@ -14,15 +14,15 @@
 //
 //   [[group]]
 //   name = "frame"
-//   priority = 45                # larger is more urgent
-//   optimal = true               # no plan has a shorter makespan
-//   least_possible_ns = 81200    # a bound on any plan's makespan from below
+//   priority = 45                # larger number: higher priority
+//   optimal = true               # no schedule has a shorter makespan
+//   least_possible_ns = 81200    # lower bound of every schedule's makespan
 //   nodes = [                    # a core runs its nodes in the order of these lines
 //     { node = "StampFrame", core = 0, start_ns = 0, bound_ns = 120 },
 //     { node = "RoiThreshold#1", core = 1, start_ns = 900, bound_ns = 40000 },
 //   ]
 //
-// Move a line or change its core, and leave out start_ns: it is then computed.
+// To edit, move a line or change its core, and omit start_ns: it is then computed.
 #pragma once
 
 #include <string>
@@ -33,8 +33,9 @@
 
 namespace glint {
 
-// `signature` and the model's nodes are what the plan has to fit; bounds may differ, the board's
-// check is check_plan(). Throws InputError: file:line, what was found, what was expected.
+// Requires a schedule for the graphs with `signature` and for the model's nodes. Its bounds may
+// differ: check_plan() compares them with the board's. Throws InputError: file:line, what was
+// found, what was expected.
 [[nodiscard]] Plan load_plan(const std::string& file, const TaskModel& model,
                              const std::string& signature);
 [[nodiscard]] Plan plan_from_text(const std::string& text, const std::string& file,

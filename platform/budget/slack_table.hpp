@@ -1,5 +1,5 @@
-// How much slower each node, each chain and the system may become before a deadline is missed, as
-// rows for a terminal.
+// Text rows of the slack of each node, each chain and the system: the growth of bounds up to the
+// first missed deadline.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace glint {
 
-// "   +38.0" in percent, from the largest factor; "none": not even work without time would do.
+// "   +38.0" in percent, from the largest factor; "none": infeasible even with zero times.
 [[nodiscard]] std::string shown_slack(const std::optional<double>& factor);
 
-// The nodes, a split's copies in one row: they grow together.
+// Rows of the nodes; the copies of a split in one row, scaled together.
 [[nodiscard]] std::string node_slack_rows(const CheckResult& result);
 
 [[nodiscard]] std::string slack_table(const CheckResult& result);

@@ -88,7 +88,7 @@ TaskModel task_model_of(const Cell& cell, const CostTable& costs, const SystemSh
   if (cell.background) {
     TaskGroup& background = model.groups[k_background_group_index];
     give(background, node_bounds<Background>(costs, limits));
-    // An activation is one slice, and gives up at its end only.
+    // An activation is one slice, without a preemption point before its end.
     for (const TaskNode& node : background.nodes) background.longest_slice_ns += node.bound_ns;
   }
   return model;
@@ -96,7 +96,7 @@ TaskModel task_model_of(const Cell& cell, const CostTable& costs, const SystemSh
 
 int can_frames_per_tick_max(const Cell& cell, int tools) {
   constexpr int k_classic_pose_frames = 5;
-  // Beside the poses: a heartbeat, an emergency for each tool, the pair of time frames.
+  // In addition to the poses: a heartbeat, an emergency for each tool, the pair of time frames.
   return tools * (cell.can.fd ? 1 : k_classic_pose_frames) + 1 + tools + 2;
 }
 

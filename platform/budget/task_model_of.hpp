@@ -1,5 +1,5 @@
-// The task model of a cell: the groups that `glint run` runs, what releases them and when they have
-// to be done. Node and group indices are those of the graphs' orders of execution.
+// Task model of a cell: the groups of `glint run`, their releases and deadlines. Indices of groups
+// and nodes are those of the graphs' orders of execution.
 #pragma once
 
 #include <string>
@@ -13,20 +13,20 @@ namespace glint {
 
 inline constexpr int k_frame_group_index = 0;  // in TaskModel::groups
 inline constexpr int k_tick_group_index = 1;
-inline constexpr int k_background_group_index = 2;  // where the cell has a background
+inline constexpr int k_background_group_index = 2;  // if the cell has a background
 
-// Groups, nodes and edges, rates and deadlines; every bound is 0 until a board gives it.
+// Groups, nodes, edges, rates and deadlines; every bound is 0 until a board's costs are applied.
 [[nodiscard]] TaskModel task_structure_of(const Cell& cell);
 
-// The same with every node's bound on a board under given limits, and the system's share there.
-// Throws InputError where the table does not price a node.
+// The same with every node's bound from the cost table under the given limits, and with the
+// system's share. Throws InputError if the table lacks a node.
 [[nodiscard]] TaskModel task_model_of(const Cell& cell, const CostTable& costs,
                                       const SystemShare& system, const Limits& limits);
 
-// Of the graphs in that model, "0x..+0x..", one for each group: what plans are made for.
+// Signatures of the graphs in the model, "0x..+0x..", one per group; a schedule is made for them.
 [[nodiscard]] std::string graphs_signature(const TaskModel& model);
 
-// What one tick may write at most: poses, and all that comes beside them at once.
+// Maximum number of CAN frames written in one tick: poses and all others at once.
 [[nodiscard]] int can_frames_per_tick_max(const Cell& cell, int tools);
 
 [[nodiscard]] CanTraffic traffic_of(const Cell& cell);

@@ -18,7 +18,7 @@ TaskModel typical_load(const TaskModel& model, const std::string& trace_file) {
   }
   TaskModel typical = model;
   for (std::size_t g = 0; g < model.groups.size(); ++g) {
-    if (model.groups[g].resumable) continue;  // its slices take what is declared
+    if (model.groups[g].resumable) continue;  // keeps the declared bound of its slices
     auto& nodes = typical.groups[g].nodes;
     for (std::size_t n = 0; n < nodes.size(); ++n) {
       const std::string name = node_name(nodes[n]);

@@ -1,4 +1,4 @@
-// A group's typical load: what its nodes took in a run, by the median.
+// Typical load of a group: median execution times of its nodes in a run.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace glint {
 
-// The model with each node's bound replaced by the median of its spans in a trace file; copies of a
-// split, which take turns at being the longest, all get the largest of theirs; what runs in slices
-// keeps its bound, for their length is declared. Observed, so that what is made of it is no bound.
-// Throws InputError for a trace of other nodes, or without spans of one.
+// Replaces each node's bound by the median of its spans in a trace file. All copies of a split get
+// the largest of their medians, since the longest copy varies. A group that runs in slices keeps
+// its declared bound. The result is observed, not a bound. Throws InputError for a trace of other
+// nodes, or without spans of one.
 [[nodiscard]] TaskModel typical_load(const TaskModel& model, const std::string& trace_file);
 
 }  // namespace glint

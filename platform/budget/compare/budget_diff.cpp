@@ -51,7 +51,7 @@ void judge_counts(const std::string& name, const char* what, double before, doub
   diff.rows.push_back(row);
 }
 
-// A histogram's values at their bins' centres: as coarse as its bins, which a report says.
+// Values of a histogram at their bins' centres; resolution: the bin width, which a report states.
 std::vector<double> values_of(const JsonView& kernel) {
   std::vector<double> values;
   if (!kernel.has("histogram")) return values;
@@ -64,7 +64,7 @@ std::vector<double> values_of(const JsonView& kernel) {
   return values;
 }
 
-// Pairs what both name; the rest is listed.
+// Pairs the items with equal names; lists the others.
 template <class Item, class Judge>
 void pair_up(const std::vector<Item>& before, const std::vector<Item>& after,
              const std::string& (*name)(const Item&), BudgetDiff& diff, Judge&& judge) {
@@ -82,7 +82,7 @@ void pair_up(const std::vector<Item>& before, const std::vector<Item>& after,
   for (const auto& [left, item] : others) diff.only_after.push_back(left);
 }
 
-// Confidence of all rows together, shared out evenly (Bonferroni).
+// Confidence per row for a given joint confidence (Bonferroni).
 double confidence_of_each(const DiffSettings& settings, std::size_t rows) {
   return 1 - (1 - settings.confidence) / static_cast<double>(std::max<std::size_t>(1, rows));
 }
@@ -120,7 +120,7 @@ BudgetDiff diff_measurements(const std::string& before, const std::string& after
       [&](const NamedKernel& x, const NamedKernel& y) {
         judge_counts(x.name, "bound", x.view.number("bound"), y.view.number("bound"), settings,
                      diff);
-        // A bound of times is an envelope of noise: it is shown, and judged by the times below.
+        // A bound of times is an envelope of noise: it is shown; the times below are judged.
         if (!diff.exact) diff.rows.back().worse_beyond = false;
         if (diff.exact) {
           judge_counts(x.name, "largest", x.view.number("observed_max"),

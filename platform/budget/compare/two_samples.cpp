@@ -50,7 +50,7 @@ double mann_whitney(std::span<const double> a, std::span<const double> b) {
   const double u = rank_sum - n * (n + 1) / 2;
   const double total = n + m;
   const double variance = n * m / 12 * (total + 1 - ties / (total * (total - 1)));
-  if (variance <= 0) return 1;  // all values are one and the same
+  if (variance <= 0) return 1;  // all values are equal
   return std::erfc(std::abs(u - n * m / 2) / std::sqrt(2 * variance));
 }
 

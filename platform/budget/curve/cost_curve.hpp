@@ -1,4 +1,4 @@
-// What a frame costs against the number of tools and strays, beside its bound.
+// Cost of a frame as a function of the numbers of tools and stray reflections, with its bound.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ struct CurveRow {
 
 [[nodiscard]] std::vector<CurveRow> cost_curve(const Observations& seen, const Board& board);
 
-// Two panels' worth of lines as SVG text: cost against strays, and against tools.
+// Line plots as SVG text: cost against stray reflections, and against tools.
 [[nodiscard]] std::string strays_plot(const std::vector<CurveRow>& rows, const std::string& unit);
 [[nodiscard]] std::string tools_plot(const std::vector<CurveRow>& rows, const std::string& unit);
 

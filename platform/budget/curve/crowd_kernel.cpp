@@ -24,7 +24,7 @@ void CrowdKernel::prepare() {
   tool_set_.publish(1, 0);
   tracker_->latest<ToolSet>().bind(tool_set_);
   tracker_->sample();
-  // Found in the first frame, looked for around its prediction from the second on.
+  // The first frame finds the tools; from the second on they are searched around their predictions.
   for (int i = 0; i < 2; ++i) {
     shown_ = frames_[0].get();
     rewind();

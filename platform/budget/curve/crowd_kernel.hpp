@@ -1,7 +1,8 @@
-// The whole frame group as one measured call, on simulated frames of a crowd.
+// The complete frame group as one measured call, on simulated frames of many tools and stray
+// reflections.
 //
-// run() is one activation: graph, every node, nothing else. Its frames come one camera period after
-// the other, so that the tools are tracked and the ROIs are on, as in a run.
+// run() is one activation of the graph with all its nodes. The frames are one camera period apart,
+// so that the tools are tracked and the ROIs are active, as in a run.
 #pragma once
 
 #include <array>
@@ -22,20 +23,20 @@ class CrowdKernel final : public MeasuredKernel {
   [[nodiscard]] std::string_view name() const override { return name_; }
   [[nodiscard]] std::span<const std::string_view> loops() const override { return k_loops; }
   [[nodiscard]] graph::LoopCounts worst(const Limits& /*limits*/) const override { return {{1}}; }
-  // The kind does not matter: frame `number` of the crowd, shown to and fro.
+  // Ignores the kind. Frame `number` of the sequence, forward, then backward.
   void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override;
-  // The next delivery of the same picture: one that came twice would be refused.
+  // New delivery of the same frame: a repeated one would be rejected.
   void rewind() override;
   void run() noexcept override { tracker_->activate(); }
   [[nodiscard]] graph::LoopCounts counts() const override { return {{1}}; }
 
-  // Frame `number`, as the next delivery: whatever activates tracker() next sees it.
+  // Sets frame `number` as the next delivery, for any caller that activates tracker().
   void show(std::uint64_t number) {
     set_input(InputKind::typical, number, {});
     rewind();
   }
   [[nodiscard]] Tracker& tracker() { return *tracker_; }  // after the first input
-  // Of the last run.
+  // In the last run.
   [[nodiscard]] int tools_seen() const;
 
  private:

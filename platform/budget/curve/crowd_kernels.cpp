@@ -1,4 +1,4 @@
-// What glint_measure_crowd measures: the frame group at every point of the curve.
+// Kernels of glint_measure_crowd: the frame group at every point of the cost curve.
 #include "platform/budget/curve/crowd_kernel.hpp"
 
 namespace glint {

@@ -1,4 +1,4 @@
-// One point of the cost curve: so many tools and so many strays in a whole AHAT frame.
+// One point of the cost curve: a number of tools and of stray reflections in a full AHAT frame.
 #pragma once
 
 #include <string>
@@ -16,11 +16,11 @@ struct CrowdPoint {
   }
 };
 
-// Along both axes through the usual cell (5 tools, 20 strays), and the two far corners.
+// Points along both axes through the usual cell (5 tools, 20 strays), and the two far corners.
 [[nodiscard]] std::vector<CrowdPoint> crowd_points();
 
-// The default cell with these tools. Up to five tools it has the default's 64 blobs; with more it
-// takes the most there are, for 16 tools alone have 80 markers.
+// The default cell with these tools. With up to five tools it has the default's 64 blobs; with more
+// it has the maximum, since 16 tools alone have 80 markers.
 [[nodiscard]] Cell crowd_cell(int tools);
 
 }  // namespace glint

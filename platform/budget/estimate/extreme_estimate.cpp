@@ -19,7 +19,7 @@ std::string p_text(double p) {
   return text;
 }
 
-// Each assumption by two tests, since a test is blind to what it was not made for.
+// Two tests per assumption, since each test is blind to some violations.
 bool series_may_be_fitted(std::span<const double> series, const ExtremeSettings& settings,
                           ExtremeEstimate& estimate) {
   estimate.values = series.size();
@@ -46,7 +46,8 @@ bool series_may_be_fitted(std::span<const double> series, const ExtremeSettings&
   return true;
 }
 
-// Whether the other half agrees: its whole shape, and how many lie beyond the fitted 90 % quantile.
+// Verifies the fit on the other half: its distribution, and the count above the fitted 90 %
+// quantile.
 bool other_half_agrees(const Values& judged, const ExtremeSettings& settings,
                        ExtremeEstimate& estimate) {
   const double shape_p = drawn_from_p(judged, estimate.distribution);
@@ -81,12 +82,12 @@ bool too_few_distinct(const Values& values, ExtremeEstimate& estimate) {
   return true;
 }
 
-// The level's interval: draws from the fit, fitted again. Source: Efron and Tibshirani 1993, An
-// introduction to the bootstrap, section 13.3 (percentiles).
+// Parametric bootstrap interval of the level. Source: Efron and Tibshirani 1993, An introduction to
+// the bootstrap, section 13.3 (percentiles).
 template <class Fit, class Level>
 void add_interval(const ExtremeSettings& settings, ExtremeEstimate& estimate, Fit&& fit,
                   Level&& level) {
-  std::mt19937_64 random(20240229);  // any: so that a report says the same twice
+  std::mt19937_64 random(20240229);  // fixed, so that a report is reproducible
   Values levels, sample(estimate.fitted);
   for (int r = 0; r < settings.resamples; ++r) {
     for (double& x : sample) {
@@ -141,7 +142,7 @@ ExtremeEstimate estimate_by_maxima(std::span<const double> series,
   if (too_few_distinct(fitted, estimate)) return estimate;
   estimate.distribution = fit_maxima(fitted);
   if (!other_half_agrees(judged, settings, estimate)) return estimate;
-  // A block stays below the level when all its values do.
+  // A block is below the level if all its values are.
   const auto level = [&](const ExtremeDistribution& d) {
     return d.quantile(std::pow(1 - settings.exceedance, settings.block));
   };
@@ -175,7 +176,8 @@ ExtremeEstimate estimate_by_exceedances(std::span<const double> series,
   if (too_few_distinct(fitted, estimate)) return estimate;
   estimate.distribution = fit_exceedances(fitted, threshold);
   if (!other_half_agrees(judged, settings, estimate)) return estimate;
-  // Coles 2001, eq. (4.12): the value is beyond the threshold first, then beyond the level.
+  // Coles 2001, eq. (4.12): probability of exceeding the threshold, times that of exceeding the
+  // level.
   const double beyond = static_cast<double>(fitted.size()) / static_cast<double>(first.size());
   const auto level = [&](const ExtremeDistribution& d) {
     return d.quantile(1 - settings.exceedance / beyond);

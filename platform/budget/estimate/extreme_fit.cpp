@@ -11,7 +11,7 @@ namespace glint {
 namespace {
 
 constexpr double k_euler = 0.57721566490153286;
-constexpr double k_no_shape = 1e-6;  // nearer to zero the limit forms are the more exact ones
+constexpr double k_no_shape = 1e-6;  // closer to zero the limit forms are more accurate
 
 // b_0, b_1, b_2: unbiased estimates of E[x F(x)^r].
 std::array<double, 3> weighted_moments(std::span<const double> values) {

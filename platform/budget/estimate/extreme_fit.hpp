@@ -1,8 +1,9 @@
-// The distributions of extremes, fitted by probability-weighted moments.
+// Extreme-value distributions (GEV, Gumbel, generalized Pareto), fitted by probability-weighted
+// moments.
 //
-// Shape in Coles' sign: above zero a heavy tail, zero Gumbel (or exponential), below zero a tail
-// that ends. Source of the forms: Coles 2001, An introduction to statistical modeling of extreme
-// values, eq. (3.2) for maxima, eq. (4.2) for exceedances.
+// Shape in Coles' sign: positive: heavy tail; zero: Gumbel (or exponential); negative: bounded
+// tail. Source of the forms: Coles 2001, An introduction to statistical modeling of extreme values,
+// eq. (3.2) for maxima, eq. (4.2) for exceedances.
 #pragma once
 
 #include <span>
@@ -17,24 +18,26 @@ struct ExtremeDistribution {
   double shape = 0;
 
   [[nodiscard]] double cumulative(double x) const;
-  // The value that is exceeded with probability 1 - p. Coles 2001, eq. (3.4); the inverse of (4.2).
+  // Value exceeded with probability 1 - p. Coles 2001, eq. (3.4); the inverse of (4.2).
   [[nodiscard]] double quantile(double p) const;
 };
 
-// Generalized extreme values of maxima. Source: Hosking, Wallis and Wood 1985, Estimation of the
-// generalized extreme-value distribution by the method of probability-weighted moments, eq. (14)
-// and the two after it; b_r as in its eq. (6). Their k is minus our shape.
+// Fits the generalized extreme-value distribution to maxima. Source: Hosking, Wallis and Wood 1985,
+// Estimation of the generalized extreme-value distribution by the method of probability-weighted
+// moments, eq. (14) and the two after it; b_r as in its eq. (6). Their k is minus our shape.
 [[nodiscard]] ExtremeDistribution fit_maxima(std::span<const double> maxima);
 
 // The same with shape zero. Source: Landwehr, Matalas and Wallis 1979, Probability weighted moments
 // compared with some traditional techniques in estimating Gumbel parameters and quantiles.
 [[nodiscard]] ExtremeDistribution fit_gumbel(std::span<const double> maxima);
 
-// Generalized Pareto of the values above a threshold. Source: Hosking and Wallis 1987, Parameter
-// and quantile estimation for the generalized Pareto distribution, section 4.
+// Fits the generalized Pareto distribution to the values above a threshold. Source: Hosking and
+// Wallis 1987, Parameter and quantile estimation for the generalized Pareto distribution, section
+// 4.
 [[nodiscard]] ExtremeDistribution fit_exceedances(std::span<const double> values, double threshold);
 
-// Kolmogorov-Smirnov: the values are draws from the distribution (fitted to others). A p-value.
+// Kolmogorov-Smirnov test that the values are draws from the distribution (fitted to others);
+// p-value.
 [[nodiscard]] double drawn_from_p(std::span<const double> values,
                                   const ExtremeDistribution& distribution);
 

@@ -9,8 +9,7 @@
 namespace glint {
 namespace {
 
-// For an even number of degrees of freedom the chi-squared tail is a finite sum: that of a Poisson
-// distribution's first terms.
+// For an even number of degrees of freedom the chi-squared tail is a finite sum of Poisson terms.
 double chi_squared_p(double value, int degrees) {
   double term = std::exp(-value / 2), sum = term;
   for (int i = 1; i < degrees / 2; ++i) {
@@ -20,7 +19,7 @@ double chi_squared_p(double value, int degrees) {
   return std::min(1.0, sum);
 }
 
-// Pairs of the range that stand in the wrong order (strictly), by merging; sorts it.
+// Number of inversions (strictly decreasing pairs), by merge sort; sorts the range.
 std::int64_t inversions(std::span<double> values, std::span<double> room) {
   if (values.size() < 2) return 0;
   const std::size_t middle = values.size() / 2;
@@ -52,7 +51,7 @@ double two_sided_normal_p(double z) { return std::erfc(std::abs(z) / std::sqrt(2
 double kolmogorov_p(double d, double n) {
   const double root = std::sqrt(n);
   const double lambda = (root + 0.12 + 0.11 / root) * d;
-  if (lambda < 0.2) return 1;  // the sum below is 1 to more digits than a double has
+  if (lambda < 0.2) return 1;  // the sum below equals 1 in double precision
   double sum = 0;
   for (int k = 1; k <= 100; ++k) {
     sum += (k % 2 == 1 ? 2 : -2) * std::exp(-2.0 * k * k * lambda * lambda);
@@ -65,7 +64,7 @@ double ljung_box(std::span<const double> series, int lags) {
   double mean = 0, energy = 0;
   for (const double x : series) mean += x / n;
   for (const double x : series) energy += (x - mean) * (x - mean);
-  if (energy <= 0) return 0;  // a constant is no draw from anything
+  if (energy <= 0) return 0;  // a constant series fails
   double q = 0;
   for (int lag = 1; lag <= lags; ++lag) {
     double product = 0;
@@ -110,7 +109,7 @@ double mann_kendall(std::span<const double> series) {
   const double s = n * (n - 1) / 2 - tied_pairs - 2 * falling;
   const double variance = (n * (n - 1) * (2 * n + 5) - tied_variance) / 18;
   if (variance <= 0) return 0;
-  const double nearer = s > 0 ? s - 1 : s < 0 ? s + 1 : 0;  // continuity
+  const double nearer = s > 0 ? s - 1 : s < 0 ? s + 1 : 0;  // continuity correction
   return two_sided_normal_p(nearer / std::sqrt(variance));
 }
 

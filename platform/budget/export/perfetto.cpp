@@ -63,15 +63,14 @@ struct Edge {
   const TraceSpan* span;
 };
 
-// Perfetto wants each track's slices in time and properly nested: an end before the next begin.
+// Perfetto requires each track's slices in order and properly nested: an end before the next begin.
 std::vector<Edge> edges_of(const TraceFile& file) {
   std::vector<Edge> edges;
   for (const TraceSpan& span : file.spans) {
     edges.push_back({span.begin_ns, true, &span});
     edges.push_back({span.end_ns, false, &span});
   }
-  // At one time: what ends, then what takes no time (its two edges stand side by side), then what
-  // begins.
+  // Order at equal times: ends, then both edges of empty spans, then begins.
   const auto order = [](const Edge& edge) {
     if (edge.span->begin_ns == edge.span->end_ns) return 1;
     return edge.begins ? 2 : 0;

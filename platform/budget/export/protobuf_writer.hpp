@@ -1,6 +1,6 @@
-// The three kinds of field that a Perfetto trace needs, in protobuf's wire format.
-// Source: Protocol Buffers, Encoding: a field is the varint (number << 3 | wire type), then its
-// value; wire type 0 is a varint, 2 a varint of the length and that many bytes.
+// Protobuf wire format for the three field kinds of a Perfetto trace. Source: Protocol Buffers,
+// Encoding: a field is the varint (number << 3 | wire type), then its value; wire type 0 is a
+// varint, 2 a varint of the length and that many bytes.
 #pragma once
 
 #include <cstdint>

@@ -15,7 +15,7 @@ using nlohmann::ordered_json;
 
 double microseconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-3; }
 
-// Names stand between commas there.
+// Names in BTF must not contain commas.
 std::string btf_name(std::string_view name) {
   std::string text(name);
   std::replace(text.begin(), text.end(), ',', '_');
@@ -33,11 +33,11 @@ std::string date_of(std::int64_t unix_ns) {
 
 struct BtfLine {
   std::int64_t time_ns;
-  int order;  // at one time: what ends, then what begins
+  int order;  // at equal times: ends, then begins
   std::string text;
 };
 
-// One activation's calls on one worker: a task's instance.
+// Calls of one activation on one worker: an instance of a BTF task.
 struct TaskInstance {
   std::int64_t begin_ns = 0, end_ns = 0;
   int core = 0;
@@ -121,7 +121,7 @@ std::string btf_trace(const TraceFile& trace) {
     const std::string core = "Core_" + std::to_string(task.core) + ",0" + target;
     add(task.begin_ns, 2, "STI_" + key.first + ',' + instance + target + "activate,");
     add(task.begin_ns, 3, core + "start,");
-    // After the end of its last runnable, also where that one took no time.
+    // After the end of its last runnable, also if that one took no time.
     add(task.end_ns, task.begin_ns == task.end_ns ? 6 : 1, core + "terminate,");
   }
   std::stable_sort(lines.begin(), lines.end(), [](const BtfLine& a, const BtfLine& b) {

@@ -1,4 +1,4 @@
-// A trace file in memory: who ran on which core, and every span of the run.
+// A trace file in memory: allocation of nodes to cores, and every span of the run.
 #pragma once
 
 #include <cstdint>
@@ -25,21 +25,21 @@ struct TraceFile {
   std::vector<TraceSpan> spans;
 
   [[nodiscard]] std::string_view group_name(const TraceSpan& span) const;
-  // The node's name; "release" or "send" for the spans that are of no node.
+  // Name of the node; "release" or "send" for spans without a node.
   [[nodiscard]] std::string_view node_name(const TraceSpan& span) const;
 };
 
-// Whether the span is a node's call, and neither a release nor a sending.
+// Whether the span is a node's call; false: a release or a sending.
 [[nodiscard]] constexpr bool is_node(const TraceSpan& span) {
   return (span.flags & (k_span_release | k_span_sent)) == 0;
 }
 
-// Throws InputError for a file that is no trace: where it stops being one, and what was expected.
-// A cut last span is left out: a run that was ended early leaves one.
+// Throws InputError for a file that is no trace, with the position of the fault and what was
+// expected. Skips a truncated last span, as an aborted run leaves one.
 [[nodiscard]] TraceFile read_trace(const std::string& path);
 
-// What ran from the release of the activation that decided this frame until it left: spans of all
-// groups in that time. Throws InputError where no span is of that frame.
+// All groups' spans from the start of the activation that processed this frame until the frame was
+// sent. Throws InputError if the frame has no span.
 [[nodiscard]] TraceFile around_frame(const TraceFile& trace, std::uint32_t frame);
 
 void write_trace(const std::string& path, const TraceFile& trace);

@@ -1,4 +1,4 @@
-// BackProject's inputs: a frame with depth, its blobs, and the lens.
+// Measurement inputs of BackProject: a frame with depth, its blobs, and the lens.
 #include <algorithm>
 #include <cmath>
 
@@ -9,11 +9,11 @@
 namespace glint {
 namespace {
 
-// Of a blob whose middle is blind: with it the inner square has 8 x 8 pixels, the ring's, every
-// second in both directions, 8 x 8 too, and 24 of these lie in the ring.
+// Area of a blob with a saturated centre. With it the inner square has 8 x 8 pixels. The annulus
+// samples every second pixel in both directions, also 8 x 8, of which 24 are in the annulus.
 constexpr std::uint32_t k_blind_area_px = 143;
 
-// A lens so wide that finding a ray takes `steps` at a pixel, which lies far out on it.
+// Distorted lens for which the ray search needs `steps` at a pixel far from the principal point.
 CameraModel wide_lens(const Vector2& pixel, int steps) {
   CameraModel camera;
   camera.lens = Lens::rational;
@@ -71,7 +71,7 @@ class MeasuredBackProject final : public MeasuredKernel {
   [[nodiscard]] graph::LoopCounts counts() const override { return node_->counts(); }
 
  private:
-  // Blobs, all alike, with their middles saturated as far as blind_px.
+  // Identical blobs whose centres are saturated out to blind_px.
   struct Blind {
     int blobs = 1;
     std::uint32_t area_px = k_blind_area_px;
@@ -79,10 +79,10 @@ class MeasuredBackProject final : public MeasuredKernel {
     int lens_steps = k_ray_steps_max;
     DepthKind kind = DepthKind::z;
     double nominal_radius_m = 0.05;
-    double off_px = 0;  // of the middle from a corner of four pixels
+    double off_px = 0;  // offset of the centre from a corner of four pixels
   };
 
-  // The first drives every loop to its maximum.
+  // Variant 0 drives every loop to its maximum.
   static Blind worst_blind(std::uint64_t variant, const Limits& limits) {
     Blind blind;
     blind.blobs = limits.blobs;

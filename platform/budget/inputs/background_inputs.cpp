@@ -1,5 +1,5 @@
-// A map at each of its stages: of a room, of a clump, of points far apart, of a shell of points
-// that are all just too far from each other.
+// Measurement inputs of ExtendMap at each stage. Scenes: a room, a clump, sparse points, and a
+// shell of points just too far from each other.
 #include <array>
 #include <map>
 #include <vector>
@@ -15,8 +15,8 @@ namespace {
 constexpr int k_side = 48, k_pictures = 2, k_voxels = 4096;
 constexpr int k_scenes = 4, k_stages = 7;
 
-// Where a slice may begin and be dear: at a stage, or so many steps behind its beginning, when the
-// points are sorted. Of layers no outlier is left.
+// Expensive starts of a slice: at the beginning of a stage, or after a number of steps, when the
+// points are sorted. The outlier filter leaves no points of the layers (scene 3).
 using Stage = MapSlices::Stage;
 struct Beginning {
   int scene;
@@ -53,7 +53,7 @@ MapSettings measured_settings() {
   return in_slices(settings);
 }
 
-// Depth of the scenes. The clump's voxels are so small that each cell is full of points.
+// Depth image of each scene. The clump's voxels are so small that each cell is full of points.
 struct MeasuredScene {
   std::vector<float> depth;
   std::vector<LeftOut> left_out;
@@ -77,7 +77,7 @@ struct MeasuredScene {
     if (kind == 3) settings.outliers.neighbours_min = k_map_candidates_max;
     if (kind == 2) left_out.assign(k_left_out_max, {Vector3(9, 9, 9), Vector3(9, 8, 9), 0.1});
     if (kind == 2) {
-      camera.lens = Lens::brown;  // its rays are searched for
+      camera.lens = Lens::brown;  // its rays need a search
       camera.distortion = {-0.28, 0.07, 1e-3, -1e-3, 0.0};
     }
   }
@@ -88,7 +88,7 @@ class MapKernel final : public inputs::NodeKernel<ExtendMap> {
   MapKernel() : NodeKernel("ExtendMap") {}
   void set_input(InputKind kind, std::uint64_t number, const Limits& limits) override {
     inputs::Numbers numbers(kind, number);
-    // Worst 0 smooths a clump: every candidate is a neighbour.
+    // Worst input 0 smooths a clump: every candidate is a neighbour.
     const bool worst = at_its_worst(kind);
     const Beginning drawn{numbers.below(k_scenes), static_cast<Stage>(1 + numbers.below(k_stages)),
                           numbers.one_in(2) ? k_sorted : 0};
@@ -105,7 +105,7 @@ class MapKernel final : public inputs::NodeKernel<ExtendMap> {
   void run() noexcept override { node_(begun_->shown, progress_); }
 
  private:
-  // A node with its memory as a stage begins.
+  // A node and its memory at the beginning of a stage.
   struct Begun {
     ExtendMap node;
     ShownDepth shown;
@@ -147,7 +147,7 @@ class MapKernel final : public inputs::NodeKernel<ExtendMap> {
   }
 
   std::map<int, MeasuredScene> scenes_;
-  std::map<int, std::vector<std::byte>> memory_;  // of the nodes of a scene: one at a time
+  std::map<int, std::vector<std::byte>> memory_;  // shared by a scene's nodes, one at a time
   std::map<Beginning, Begun> begun_at_;
   const Begun* begun_ = nullptr;
   MapProgress progress_;

@@ -1,4 +1,4 @@
-// FindBlobs' inputs: a frame with its runs, and where markers are predicted.
+// Measurement inputs of FindBlobs: a frame with its runs, and the predicted markers.
 #include <algorithm>
 #include <array>
 
@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_wide_px = k_grown_box_max;  // the widest blob that still has a grown box
+constexpr int k_wide_px = k_grown_box_max;  // widest blob with a grown box
 constexpr int k_wide_pitch_px = 64;
 
 class MeasuredFindBlobs final : public MeasuredKernel {
@@ -64,7 +64,7 @@ class MeasuredFindBlobs final : public MeasuredKernel {
     }
   }
 
-  // With a tool that is searched for everywhere: a distance more for each four candidates.
+  // Includes a tool that is searched for everywhere: one more distance per four candidates.
   void predict_at_random(CounterRandom& random) {
     predictions_->everywhere = true;
     predictions_->turn = static_cast<std::uint32_t>(random.below(1 << 20));
@@ -76,9 +76,10 @@ class MeasuredFindBlobs final : public MeasuredKernel {
     }
   }
 
-  // Single dots, as many as there are runs, all of them candidates; and blobs as wide as a box may
-  // be, as many as may stay in each band. The predictions and the focus, the first candidate of
-  // turn 0, lie between these, and dots misfit so large a marker: only wide blobs stay.
+  // Draws single-pixel dots, as many as there are runs, all of them candidates, and blobs of the
+  // maximum box width, as many as each band may keep. Predictions and focus (the first candidate of
+  // turn 0) are between the wide blobs, and dots do not match so large a marker: only wide blobs
+  // are kept.
   void draw_dots_and_bars(int gap) {
     const int per_row = std::max(limits_.width / k_wide_pitch_px, 1);
     const int wide_a_band = limits_.blobs;
@@ -93,7 +94,7 @@ class MeasuredFindBlobs final : public MeasuredKernel {
       const int bottom = limits_.height * (band + 1) / k_row_bands;
       drawn_.pattern({k_wide_px, k_wide_pitch_px - k_wide_px, 1, 1, 0, 0, limits_.width, top,
                       std::min(top + 2 * wide_rows, bottom)});
-      // The lower end of the band, as far from the bars as can be, but for the next band's.
+      // At the lower end of the band: far from its bars, and far from the next band's.
       const int first = std::max(top + 2 * wide_rows, bottom - 40 - 2 * dot_rows);
       drawn_.pattern({1, gap, 1, 1, 0, 0, limits_.width, first, bottom - 1});
       for (int i = predicted * band / k_row_bands; i < predicted * (band + 1) / k_row_bands; ++i) {
@@ -117,7 +118,7 @@ class MeasuredFindBlobs final : public MeasuredKernel {
         break;  // squares
       case 3:
         drawn_.pattern({1, 4, 60, 2, 0, 0, side, 0, side});
-        break;  // bars upright
+        break;  // vertical bars
       case 4:
         draw_dots_and_bars(2);
         break;
@@ -139,7 +140,7 @@ class MeasuredFindBlobs final : public MeasuredKernel {
     }
   }
 
-  // Short runs at random, nearly as many as fit; some touch.
+  // Random short runs, nearly as many as the capacity; some touch.
   void draw_scattered(CounterRandom& random, int longest) {
     const int rows = limits_.height / k_row_bands;
     for (int band = 0; band < k_row_bands; ++band) {
@@ -151,7 +152,7 @@ class MeasuredFindBlobs final : public MeasuredKernel {
     }
   }
 
-  // Teeth on a back, a component of many runs, four pixels apart.
+  // Comb: vertical teeth, four pixels apart, on a horizontal bar: a component of many runs.
   void draw_comb() {
     for (int y = 0; y + 60 < limits_.height; y += 64) {
       drawn_.pattern({60, 4, 1, 0, 0, 0, limits_.width, y, y + 1});

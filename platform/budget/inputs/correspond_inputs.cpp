@@ -1,4 +1,4 @@
-// What makes the correspondence search work: crowds of tools, and arrangements made to mislead it.
+// Measurement inputs of Correspond: scenes of many tools, and adversarial marker arrangements.
 #include <algorithm>
 
 #include "nodes/pose_nodes.hpp"
@@ -9,14 +9,14 @@
 namespace glint::inputs {
 namespace {
 
-// The slice with the most tools.
+// The partition with the most tools.
 constexpr graph::Slice k_slice{0, k_tool_slices};
-constexpr int k_trials = 3000;  // until the worst input uses every budget to its end
-constexpr int k_climbs = 5;     // of the search for a worse one
+constexpr int k_trials = 3000;  // until the worst input uses up every budget
+constexpr int k_climbs = 5;     // of the search for a worse input
 
 enum class Shape { crowd, line, swarm, copies };
 
-// Of a few tools the one with the most equal distances: more of them are near any pair's.
+// Of several random tools, the one with the most equal distances: more of them match any pair.
 Tool even_tool(Numbers& numbers, int markers) {
   Tool best;
   double least = 1e9;
@@ -59,7 +59,7 @@ class CorrespondKernel final : public NodeKernel<Correspond> {
     }
     rewind();
   }
-  // The scratch is as the last call left it; nothing reads what was not written since.
+  // Scratch keeps the last call's values; each call writes before it reads.
   void rewind() override {
     node_.limits = start_.limits;
     node_.settings = start_.settings;
@@ -98,8 +98,9 @@ class CorrespondKernel final : public NodeKernel<Correspond> {
     tools_.set(set_, 1, 0);
   }
 
-  // Blobs on a line: any two have the distance of some of the tool's markers, no three have their
-  // shape. The search finds partners everywhere and never comes to a fit.
+  // Blobs on a line: each pair has the distance of some pair of the tool's markers, but no three
+  // blobs have the shape of three markers. The search finds partners everywhere and never reaches a
+  // fit.
   void add_line(Numbers& numbers, const Limits& limits) {
     const Vector3 along = (numbers.rotation() * Vector3::UnitX()).normalized();
     const double gap = numbers.within(0.15, 0.5) / limits.blobs;
@@ -116,7 +117,7 @@ class CorrespondKernel final : public NodeKernel<Correspond> {
     }
   }
 
-  // Several blobs where each marker of the slice's first tool is: every choice of them fits.
+  // Several blobs at each marker of the partition's first tool: every combination fits.
   void add_copies(const Tool& tool, const Pose& pose, Numbers& numbers, const Limits& limits) {
     if (markers_.count > 0) return;
     while (markers_.count < limits.blobs) {
@@ -125,7 +126,7 @@ class CorrespondKernel final : public NodeKernel<Correspond> {
     }
   }
 
-  // Input 0 uses up every budget; the next ones are lines, swarms and copies in turn.
+  // Input 0 uses up every budget; the others are lines, swarms and copies in turn.
   void set_worst(std::uint64_t number, const Limits& limits) {
     constexpr Shape shapes[] = {Shape::line, Shape::swarm, Shape::copies};
     if (number > 0) {
@@ -142,7 +143,7 @@ class CorrespondKernel final : public NodeKernel<Correspond> {
     }
   }
 
-  // Of a few neighbours the one that makes the search work most.
+  // Keeps the most expensive of several candidate inputs.
   void climb(std::uint64_t number, const Limits& limits) {
     constexpr Shape shapes[] = {Shape::line, Shape::swarm, Shape::copies};
     std::uint64_t best_seed = 0;

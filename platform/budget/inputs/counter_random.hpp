@@ -1,4 +1,4 @@
-// Random numbers that follow from what they are for: the same on every machine, in any order.
+// Counter-based random numbers for inputs: the same on every machine, in any order.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace glint {
 
-// Splitmix64 (Steele, Lea, Flood 2014, fig. 13), begun at a place that purpose, kind and number
-// give.
+// SplitMix64 (Steele, Lea, Flood 2014, fig. 13), with an initial state from purpose, kind and
+// number.
 class CounterRandom {
  public:
   CounterRandom(std::uint64_t purpose, InputKind kind, std::uint64_t number)

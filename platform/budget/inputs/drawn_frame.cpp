@@ -13,7 +13,7 @@ constexpr std::uint16_t k_dark = 200;
 constexpr std::uint16_t k_wall = 900;  // millimetres
 constexpr int k_recorded_frames = 8;
 
-// With hands and clutter, from ten seconds into the run on, a second apart.
+// Simulated frames with hands and clutter, one second apart, from ten seconds into the run on.
 const std::vector<FrameBuffer>& rendered() {
   static const std::vector<FrameBuffer> frames = [] {
     std::vector<FrameBuffer> out;
@@ -101,7 +101,7 @@ void DrawnFrame::scene(CounterRandom& random) {
 void DrawnFrame::recorded(CounterRandom& random) {
   const FrameBuffer& from = rendered()[static_cast<std::size_t>(random.below(k_recorded_frames))];
   const int columns = std::min(from.width, width());
-  const int first = random.below(from.height);  // rows go round: the markers meet every band
+  const int first = random.below(from.height);  // rotates rows: markers reach every band
   for (int y = 0; y < height(); ++y) {
     const auto source = static_cast<std::ptrdiff_t>((y + first) % from.height) * from.width;
     const auto target = static_cast<std::ptrdiff_t>(y) * width();

@@ -1,4 +1,5 @@
-// Tools that were predicted and not found, with markers in and beside their gates.
+// Measurement inputs of NameFew: predicted tools without a labeling, with markers inside and
+// outside their gates.
 #include "nodes/name_few.hpp"
 #include "platform/budget/inputs/node_kernel.hpp"
 #include "platform/budget/inputs/pose_kernels.hpp"

@@ -1,4 +1,4 @@
-// Labelings to share out, and labelled markers to fit.
+// Measurement inputs of AssignMarkers (labelings) and RefinePose (labelled markers).
 #include <algorithm>
 
 #include "kernels/pose/agreed_pose.hpp"
@@ -29,7 +29,8 @@ class AssignKernel final : public NodeKernel<AssignMarkers> {
         labeling.marker.fill(-1);
         labeling.count = 3 + numbers.below(limits.markers_per_tool - 2);
         labeling.rms_m = numbers.within(0, 0.004);
-        // Of contested ones the last alone lies elsewhere: all are tested before a rival is found.
+        // Of contested labelings only the last has another pose: all are tested before an
+        // alternative is found.
         if (!contested || k + 1 == k_labelings_max)
           labeling.T_camera_tool.rotation = numbers.rotation();
         if (contested) {
@@ -46,8 +47,8 @@ class AssignKernel final : public NodeKernel<AssignMarkers> {
   void run() noexcept override { node_(verdict_, tools_, labelings_, assignment_); }
 
  private:
-  // All want marker 0; once it is given away, each finds its last labeling free. Which markers
-  // those have, and which tool is served first, differ from input to input.
+  // All tools want marker 0; after its assignment, each finds only its last labeling free. The
+  // markers of that labeling, and the order of the tools, differ between inputs.
   static void contest(int t, int k, Numbers& numbers, Labeling& labeling) {
     labeling.count = 3;
     labeling.rms_m = numbers.within(0, 0.004);
@@ -60,7 +61,7 @@ class AssignKernel final : public NodeKernel<AssignMarkers> {
   Assignment assignment_;
 };
 
-// As the node fits markers that lie where they were predicted.
+// The node's settings for markers at their predicted positions.
 constexpr RefineSettings k_predicted = {.markers_left_least = k_predicted_left_least};
 
 WeightedMarker weighed(const Tool& tool, int m, const Marker& seen, const MarkerNoise& noise) {
@@ -69,8 +70,8 @@ WeightedMarker weighed(const Tool& tool, int m, const Marker& seen, const Marker
   return weigh_marker(tool.markers_m[m], sight.rays, range_m, sight.variance).value;
 }
 
-// How much of its loops the fit of one tool runs, with what few whole markers tell near where they
-// were expected.
+// Number of marker steps in the fits of one tool, including the MAP pose from isolated markers near
+// the prediction.
 int marker_steps_of(const Tool& tool, const Marker* seen, const MarkerNoise& noise,
                     const Prediction& prediction) {
   std::array<WeightedMarker, k_markers_per_tool_max> markers;
@@ -108,7 +109,7 @@ class RefineKernel final : public NodeKernel<RefinePose> {
       Prediction& prediction = predictions_.tools[t];
       prediction.follows_motion = all || numbers.one_in(2);
       prediction.T_camera_tool = any_view(numbers);
-      // Unsure enough that no pose is unexpected.
+      // A covariance so large that no pose fails its test.
       prediction.covariance = (all ? 10 : 1e-4) * Matrix6::Identity();
       if (all) {
         set_.items[t] = add_hardest(limits.markers_per_tool, prediction, numbers);
@@ -139,11 +140,11 @@ class RefineKernel final : public NodeKernel<RefinePose> {
   }
 
  private:
-  // The surer the markers the longer every fit walks.
+  // The smaller the markers' noise, the more steps every fit takes.
   static constexpr MarkerNoise k_surest = {k_range_sigma_least_m, k_pixel_sigma_least_px, 0};
   static constexpr int k_tries = 200;
 
-  // As a pinhole of the declared focal length turns rays: only with an image are there residuals.
+  // Pinhole geometry with the declared focal length: residuals need an image.
   void show_in_image() {
     for (int m = 0; m < markers_.count; ++m) {
       Marker& marker = markers_.items[static_cast<std::size_t>(m)];
@@ -152,8 +153,8 @@ class RefineKernel final : public NodeKernel<RefinePose> {
     }
   }
 
-  // A tool whose markers were seen where no pose has them, with all or without any one, and no fit
-  // ends before its last step: the hardest of some.
+  // Returns the most expensive of several tools. Its markers are at positions that fit no pose,
+  // with all or without any one of them, so that fits use their maximum number of steps.
   Tool add_hardest(int count, const Prediction& prediction, Numbers& numbers) {
     const int first = markers_.count;
     const int most =
@@ -180,7 +181,7 @@ class RefineKernel final : public NodeKernel<RefinePose> {
     return hardest;
   }
 
-  // The same markers under other names: of some, the ones whose fits walk longest.
+  // Permutes the markers' labels; returns the permutation whose fits take the most steps.
   Labeling rival_to(const Labeling& labeling, const Tool& tool, Numbers& numbers) {
     constexpr RefineSettings k_all_count = {.left_out_max = 0};
     const int most = refine_work_max(labeling.count, k_all_count).marker_steps;

@@ -1,6 +1,6 @@
-// A robot that is followed: a slice begins with a picture, or so many steps behind. Half of the
-// pictures come when its links were moved: its points are posed first, each on another link than
-// the one before.
+// Measurement inputs of FollowRobot: a slice at the beginning of an image or a number of steps
+// after it. In half of the images the links have moved: the points are transformed first, each with
+// another link than the one before.
 #include <algorithm>
 #include <vector>
 
@@ -12,22 +12,22 @@ namespace glint {
 namespace {
 
 constexpr int k_view_side = 40, k_views = 5, k_behind_steps = 20'000;
-constexpr int k_behinds = 48;  // as many slices as the longest picture of the small model has
-// The last view is of more points than one slice poses.
+constexpr int k_behinds = 48;  // slices of the longest image of the small model
+// The last view has more points than one slice transforms.
 constexpr int k_small_side = 24, k_large_side = 48;
 static_assert(k_large_side * k_large_side * k_posed_item_steps_max > k_background_steps_max);
 
-// A bent sheet with a rim, and the depth that a camera has of it before a wall.
+// A curved surface with an edge, and its depth image in front of a wall.
 struct SheetScene {
   std::vector<Vector3f> points, normals;
-  std::vector<std::uint16_t> links;  // in turn
+  std::vector<std::uint16_t> links;  // alternating
   float spacing_m;
   std::vector<float> depth;
   Pose T_camera_sheet;
 
   explicit SheetScene(int kind) {
     inputs::Numbers numbers(InputKind::worst, static_cast<std::uint64_t>(kind) + 100);
-    // The last two are so near that they fill the picture.
+    // The last two are so near that they fill the image.
     T_camera_sheet.translation = Vector3(0, 0, kind >= k_views - 2 ? 0.25 : 0.6 + 0.1 * kind);
     const int side = kind == k_views - 1 ? k_large_side : k_small_side;
     const double spacing = 0.24 / side;
@@ -83,20 +83,20 @@ class RobotKernel final : public inputs::NodeKernel<FollowRobot> {
     behind_ = worst ? static_cast<int>(number / k_views % k_behinds) : numbers.below(k_behinds);
     rewind();
   }
-  // What a slice under way points at is the node's own: it gets there again.
+  // A slice in progress refers to the node's own memory, so the slices are run again.
   void rewind() override {
     NodeKernel::rewind();
     node_.limits = limits_;
     node_.limits.reference_steps = k_behind_steps;
     for (int i = 0; i < behind_; ++i) node_(shown_, progress_);
-    if (behind_ > 0 && progress_.free) NodeKernel::rewind();  // the picture has no more of them
+    if (behind_ > 0 && progress_.free) NodeKernel::rewind();  // the image has fewer slices
     node_.limits = limits_;
   }
   void run() noexcept override { node_(shown_, progress_); }
 
  private:
   std::vector<SheetScene> scenes_;
-  LinkPoses poses_;  // of links that all lie in the base: what they are costs nothing
+  LinkPoses poses_;  // links at the base: their values do not affect the cost
   ShownDepth shown_;
   RobotProgress progress_;
   Limits limits_;

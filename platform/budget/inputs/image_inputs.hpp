@@ -1,4 +1,4 @@
-// The kernels that touch pixels, each with its inputs: see image_inputs.cpp for the list.
+// Measured kernels that process pixels, with their inputs; image_inputs.cpp has the list.
 #pragma once
 
 #include <memory>
@@ -11,18 +11,18 @@ namespace glint {
 [[nodiscard]] std::unique_ptr<MeasuredKernel> measured_find_blobs();
 [[nodiscard]] std::unique_ptr<MeasuredKernel> measured_back_project();
 
-// The threshold in the units of a drawn frame of so many bytes a pixel.
+// Threshold in the units of a drawn frame with the limits' bytes per pixel.
 [[nodiscard]] constexpr std::uint16_t drawn_threshold(const Limits& limits) {
   return limits.reflectivity_bytes == 1 ? k_drawn_threshold >> 8 : k_drawn_threshold;
 }
 
-// A pattern at random: what a bounded search begins with and changes.
+// A random pattern: initial value and mutations of a bounded search.
 [[nodiscard]] RunPattern random_pattern(CounterRandom& random, const Limits& limits);
 
 inline constexpr int k_search_tries = 4;
 
-// Draws parameters, then keeps what scores more: first(), then k_search_tries times
-// change(parameters); score() builds the input and runs the kernel once.
+// Hill climbing: starts from `best`, then tries change(best) k_search_tries times and keeps a
+// higher score. score() builds the input and runs the kernel once.
 template <class Parameters, class Change, class Score>
 [[nodiscard]] Parameters climb(Parameters best, Change change, Score score) {
   std::int64_t most = score(best);

@@ -1,5 +1,5 @@
-// A head to anchor, and poses to follow: tools that have long been at rest, that move, or that
-// begin.
+// Measurement inputs of AnchorHead (head poses) and FollowMotion (tools that have long been static,
+// move, or start).
 #include <array>
 
 #include "kernels/motion/interpolate.hpp"
@@ -15,9 +15,9 @@ namespace {
 
 constexpr double k_shift_sigma_m = 0.0005, k_turn_sigma_rad = 0.004;
 constexpr int k_frames_to_fill = k_rest_frames_max + 2;
-constexpr int k_rests = 4;  // full windows that the worst inputs begin from
+constexpr int k_rests = 4;  // full static windows from which the worst inputs start
 
-// The slice with the most tools, and the frame that it is given next.
+// The partition with the most tools, and its next frame.
 class FollowKernel final : public NodeKernel<FollowMotion> {
  public:
   FollowKernel() : NodeKernel("FollowMotion") {
@@ -55,7 +55,7 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
     tools_.set(set_, 1, 0);
     rewind();
   }
-  // Tools have just left every slot, which each call is charged with clearing.
+  // All slots were occupied before: each call includes the cost of clearing them.
   void rewind() override {
     NodeKernel::rewind();
     const int places = tools_of(start_.limits, {0, k_tool_slices});
@@ -89,7 +89,7 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
     anchor_.now.fresh = Matrix6::Identity() * 1e-9;
     tools_.set(set_, 1, 0);
   }
-  // One tool in `missed` is not found, none for 0.
+  // Misses one in `missed` tools; none for 0.
   void see(Numbers& numbers, const Vector3& velocity, int missed) {
     verdict_ = admitted(static_cast<std::uint64_t>(++frame_));
     anchor_.now.head.time = verdict_.stamp.mid_exposure;
@@ -109,7 +109,7 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
       tool.covariance = moved_covariance(tool.covariance, tool.T_camera_tool.rotation * arm);
     }
   }
-  // Where the tool rests, by as many of its markers.
+  // Sets `count` visible markers of a tool at its static pose.
   void show_few(int t, int count) {
     FewMarkers& few = few_.tools[t];
     few.count = count;
@@ -140,7 +140,7 @@ class FollowKernel final : public NodeKernel<FollowMotion> {
   FollowedTools followed_;
 };
 
-// A headset that drifts before a body that does not, or without one.
+// A headset with drift in front of a fixed reference body, or without one.
 class AnchorKernel final : public NodeKernel<AnchorHead> {
  public:
   AnchorKernel() : NodeKernel("AnchorHead") {}
@@ -164,7 +164,7 @@ class AnchorKernel final : public NodeKernel<AnchorHead> {
       head_.T_world_camera = {T_world_camera.rotation,
                               T_world_camera.translation + 0.001 * numbers.in_box(1)};
       FittedTool& body = fitted_[0].tools[0];
-      // Hidden in the frame before the last: poses then move along.
+      // Occluded in the frame before the last: poses then follow the head.
       const bool seen = all ? frame != before - 1 : !numbers.one_in(4);
       body.reason = seen ? Reason::none : Reason::no_labeling;
       body.T_camera_tool = {T_camera_body.rotation,

@@ -1,4 +1,4 @@
-// What all nodes have in common as measured kernels.
+// Common base of all nodes as measured kernels.
 #pragma once
 
 #include <type_traits>
@@ -16,15 +16,15 @@ class NodeKernel : public MeasuredKernel {
   [[nodiscard]] graph::LoopCounts worst(const Limits& limits) const override {
     return Node::worst(limits);
   }
-  // One that cannot be copied has no state that a run would change.
+  // A node that cannot be copied has no state that run() changes.
   void rewind() override {
     if constexpr (std::is_copy_assignable_v<Node>) node_ = start_;
   }
   [[nodiscard]] graph::LoopCounts counts() const override { return node_.counts(); }
 
  protected:
-  Node start_;  // as the input begins
-  Node node_;   // as it runs
+  Node start_;  // state at the start of the input
+  Node node_;   // state during run()
 
  private:
   std::string_view name_;

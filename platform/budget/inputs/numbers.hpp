@@ -1,4 +1,4 @@
-// Random numbers of an input: they follow from its kind and number alone, on every machine.
+// Random numbers of an input, from its kind and number only: the same on every machine.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace glint::inputs {
 
-// splitmix64 (Steele, Lea and Flood 2014).
+// SplitMix64 (Steele, Lea and Flood 2014).
 class Numbers {
  public:
   Numbers(InputKind kind, std::uint64_t number)
@@ -28,7 +28,7 @@ class Numbers {
   double within(double low, double high) {
     return low + (high - low) * (static_cast<double>(bits() >> 11) * 0x1p-53);
   }
-  // The sum of twelve: normal enough for noise, and without a logarithm.
+  // Sum of twelve uniform numbers: approximately normal, without a logarithm.
   double normal() {
     double sum = -6;
     for (int i = 0; i < 12; ++i) sum += within(0, 1);

@@ -1,4 +1,4 @@
-// The tick group's kernels: estimates of any age, and samples of any state.
+// Measurement inputs of the tick group's kernels: estimates of any age, and samples of any state.
 #include <stdexcept>
 
 #include "nodes/output.hpp"
@@ -71,8 +71,8 @@ class PackCanKernel final : public NodeKernel<PackCan> {
     start_.limits = limits;
     start_.settings.format = number % 2 == 0 ? CanFormat::classic : CanFormat::fd;
     samples_.count = all ? limits.tools : 1 + numbers.below(limits.tools);
-    // The tick before: some tools were lost, at worst all, and the periodic frames were sent or
-    // not.
+    // The tick before: some tools were lost (in the worst case all), and the periodic frames were
+    // sent or not.
     for (int t = 0; t < samples_.count; ++t) {
       samples_.items[t] = {};
       samples_.items[t].tool = static_cast<std::uint8_t>(t);

@@ -1,4 +1,5 @@
-// The frame group's kernels from the stamp to the track, each with its inputs.
+// Measured kernels of the frame group from stamp to track, and of the tick group, with their
+// inputs.
 #pragma once
 
 #include <memory>

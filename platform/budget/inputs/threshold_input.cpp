@@ -1,4 +1,4 @@
-// RoiThreshold's inputs: one band of a frame, and where to look in it.
+// Measurement inputs of RoiThreshold: one band of a frame, and the ROIs in it.
 #include <algorithm>
 
 #include "nodes/image_nodes.hpp"
@@ -7,19 +7,19 @@
 namespace glint {
 namespace {
 
-// Runs at even distances, as many in all rows together as fit a band's buffer, so that none ends
-// the search before the last block.
+// Runs at equal distances. Their number over all rows is the capacity of a band's buffer, so that
+// none ends the search before the last block.
 struct SpreadRuns {
-  int a_band = 0;          // 0: none; the layout's pattern instead
-  int length = 1;          // but they never touch
-  bool scattered = false;  // each somewhere in its part of the row
+  int a_band = 0;          // runs per band; 0: none, but the layout's pattern
+  int length = 1;          // limited so that runs never touch
+  bool scattered = false;  // at a random position in its part of the row
 };
 
 struct Layout {
   RunPattern pattern;
   SpreadRuns spread;
   int strips = 1;       // ROIs side by side
-  bool narrow = false;  // all but one of them a pixel wide
+  bool narrow = false;  // all but one of them one pixel wide
 };
 
 class MeasuredRoiThreshold final : public MeasuredKernel {
@@ -58,8 +58,8 @@ class MeasuredRoiThreshold final : public MeasuredKernel {
   [[nodiscard]] graph::LoopCounts counts() const override { return node_->counts(); }
 
  private:
-  // The first: every row has as many stretches, each as many blocks, as there may be, and all runs
-  // fit just so. The others drive one loop further away from the rest.
+  // Variant 0: every row has the maximum number of stretches, each with the maximum number of
+  // blocks, and all runs just fit. Each of the others drives one loop beyond the others.
   static Layout worst_layout(std::uint64_t variant, const Limits& limits) {
     Layout layout;
     layout.pattern.x1 = limits.width;
@@ -76,7 +76,7 @@ class MeasuredRoiThreshold final : public MeasuredKernel {
         layout.spread.length = limits.width;
         break;
       case 3:
-        layout.spread.a_band = 0;  // a checkerboard, which fills the buffer soon
+        layout.spread.a_band = 0;  // a checkerboard, which fills the buffer early
         layout.pattern.shift = 1;
         break;
       case 4:
@@ -110,7 +110,8 @@ class MeasuredRoiThreshold final : public MeasuredKernel {
     }
   }
 
-  // Narrow: single pixels at even columns, where the patterns have theirs, then one wide strip.
+  // Narrow: single-pixel ROIs at even columns, where the patterns have their runs, then one wide
+  // ROI.
   void lay_out(const Layout& layout) {
     drawn_.clear(node_->limits);
     if (layout.spread.a_band > 0) {

@@ -1,4 +1,4 @@
-// Frames' stamps, tracks and predictions: from one frame to the next.
+// Measurement inputs of the nodes for stamps, tracks and predictions from frame to frame.
 #include <vector>
 
 #include "nodes/check_frame.hpp"
@@ -37,7 +37,8 @@ class StampKernel final : public NodeKernel<StampFrame> {
   FrameStamp stamp_;
 };
 
-// A few frames before the one that counts: in order, doubled, late, or with a clock that restarted.
+// Several frames before the measured one: in order, duplicate, late, or after a restart of the
+// clock.
 class CheckKernel final : public NodeKernel<CheckFrame> {
  public:
   CheckKernel() : NodeKernel("CheckFrame") {}
@@ -68,7 +69,7 @@ class CheckKernel final : public NodeKernel<CheckFrame> {
   FrameVerdict verdict_;
 };
 
-// What several nodes read: tools that move, and a head that does.
+// Input of several nodes: moving tools and a moving head.
 struct Tracked {
   FrameVerdict verdict = admitted(2);
   HeadPose head;
@@ -107,7 +108,7 @@ struct Tracked {
     tools.set(set, 1, 0);
   }
 
-  // As a filter leaves it.
+  // Track state as after the motion filter.
   static void follow(const Pose& T_base_tool, Numbers& numbers, const Tool& tool, Track& track) {
     MotionState& motion = track.motion;
     motion.time = track.newest.time;
@@ -153,7 +154,7 @@ class PredictTracksKernel final : public NodeKernel<PredictTracks> {
   }
 
  private:
-  // A table so narrow that every marker lies beside it: the search for its pixel never ends early.
+  // A lens table so narrow that every marker is outside it: the pixel search never ends early.
   void look_beside_the_table() {
     start_.camera.lens = Lens::lut;
     start_.camera.width = start_.camera.height = k_table_side;
@@ -206,8 +207,8 @@ class LocateRoisKernel final : public NodeKernel<LocateRois> {
   void run() noexcept override { node_(verdict_, tools_, predictions_, rois_); }
 
  private:
-  // Bars below each other, each reaching two columns into the next one's: the last box, as high as
-  // all of them, meets one bar, and only with that one's columns the next.
+  // Boxes below each other, each overlapping two columns of the next. The last box, as high as all
+  // of them, meets one box, and only after merging with it the next.
   static void place_in_a_chain(int t, int count, Prediction& prediction) {
     const bool last = t == count - 1;
     const int from_right = count - 1 - t;
@@ -241,7 +242,7 @@ class TrackToolsKernel final : public NodeKernel<TrackTools> {
     anchor_.now.moved_along = at_its_worst(kind) || numbers.one_in(20);
     rewind();
   }
-  // Tools have just left every slot, which each call is charged with clearing.
+  // All slots were occupied before: each call includes the cost of clearing them.
   void rewind() override {
     NodeKernel::rewind();
     estimates_.tool_count = start_.limits.tools;

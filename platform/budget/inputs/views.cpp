@@ -9,7 +9,7 @@ Tool any_tool(Numbers& numbers, int markers) {
     Tool tool;
     tool.marker_radius_m = 0.0055;
     tool.tip_m = {0, 0, -0.12};
-    tool.depth_bias = {0, 0, 0, 0.1, 2};  // of its own, which costs, though it changes nothing
+    tool.depth_bias = {0, 0, 0, 0.1, 2};  // its own table: costs time, changes nothing
     tool.marker_count = markers;
     for (int i = 0; i < markers; ++i) tool.markers_m[i] = numbers.in_box(0.16);
     bool apart = prepare_tool(tool) == Reason::none;
@@ -31,7 +31,7 @@ void add_marker(Markers& markers, const Vector3& centre, const Tool& tool, int a
   marker = {};
   marker.ray = centre.normalized();
   marker.surface_range_m = centre.norm() - tool.centre_offset_m();
-  marker.peak = 800;  // of an image: a tool's own depth bias is looked up
+  marker.peak = 800;  // as from an image, so that the tool's depth bias is applied
 }
 
 void add_tool(Markers& markers, const Tool& tool, const Pose& pose, double sigma_m,

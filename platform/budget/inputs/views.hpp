@@ -1,4 +1,4 @@
-// Tools and views of them, as the pose kernels' inputs are made of.
+// Random tools and views of them, for the pose kernels' inputs.
 #pragma once
 
 #include "graph/latest.hpp"
@@ -9,23 +9,23 @@
 
 namespace glint::inputs {
 
-// Markers in a box of 160 mm, 30 mm apart and on no line; prepared.
+// Markers in a box of 160 mm, at least 30 mm apart and not collinear; prepared.
 [[nodiscard]] Tool any_tool(Numbers& numbers, int markers);
 
-// Half a metre in front of the camera, in view.
+// Pose about half a metre in front of the camera, in view.
 [[nodiscard]] Pose any_view(Numbers& numbers);
 
-// A candidate at `centre`, its surface as far before it as the tool's markers have it.
+// Adds a candidate at `centre`; its surface range differs by the tool's centre offset.
 void add_marker(Markers& markers, const Vector3& centre, const Tool& tool, int at_most);
 
-// The tool's markers as a camera with AHAT's noise sees them.
+// Adds the tool's markers with AHAT's range noise.
 void add_tool(Markers& markers, const Tool& tool, const Pose& pose, double sigma_m,
               Numbers& numbers, int at_most);
 
-// Where a hand may have carried it 22 ms on.
+// A pose that a hand can reach within 22 ms.
 [[nodiscard]] Pose moved(const Pose& from, Numbers& numbers);
 
-// A verdict that admits frame `sequence`.
+// A verdict that accepts frame `sequence`.
 [[nodiscard]] FrameVerdict admitted(std::uint64_t sequence);
 
 }  // namespace glint::inputs

@@ -19,7 +19,7 @@ int start_program(const std::vector<std::string>& command, const std::string& fo
   if (out < 0 || chdir(folder.c_str()) != 0) _exit(126);
   dup2(out, STDOUT_FILENO);
   dup2(out, STDERR_FILENO);
-  (void)personality(ADDR_NO_RANDOMIZE);  // refused in some containers: counts then still repeat
+  (void)personality(ADDR_NO_RANDOMIZE);  // refused in some containers; counts still repeat
   char* no_environment[] = {nullptr};
   execvpe(arguments[0], arguments.data(), no_environment);
   _exit(127);

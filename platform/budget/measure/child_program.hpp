@@ -1,4 +1,4 @@
-// Runs another program so that its memory lies the same in every run.
+// Runs another program with the same memory layout in every run.
 #pragma once
 
 #include <string>
@@ -6,12 +6,12 @@
 
 namespace glint {
 
-// Starts it with an empty environment, without address randomisation, in `folder`, its output in
-// `folder`/`output`. The process id; -1 where no process can be made.
+// Starts it in `folder` with an empty environment, without address randomisation, with its output
+// in `folder`/`output`. Returns the process id; -1 if no process can be created.
 [[nodiscard]] int start_program(const std::vector<std::string>& command, const std::string& folder,
                                 const std::string& output);
 
-// Waits for any of the programs started; its process id, and its exit status (127: not found).
+// Waits for any of the started programs. Returns its process id and exit status (127: not found).
 struct EndedProgram {
   int process = -1;
   int status = 0;

@@ -8,9 +8,9 @@
 namespace glint {
 namespace {
 
-// Upwards to what a board file keeps, so that writing one loses nothing that was covered.
+// Rounds up to the resolution of a board file, so that writing preserves the envelope.
 double thousandths_up(double cost) {
-  return cost > 0 ? std::ceil(cost * 1000 - 1e-6) / 1000 : 0;  // never a negative zero
+  return cost > 0 ? std::ceil(cost * 1000 - 1e-6) / 1000 : 0;  // avoids a negative zero
 }
 
 }  // namespace
@@ -23,12 +23,12 @@ double quantile(const std::vector<double>& sorted, double share) {
 }
 
 MeasuredCosts costs_of(const KernelObservations& kernel, const BoardKernel* board, double margin) {
-  std::array<std::vector<ObservedCall>, 2> half;  // 0: fitted on, 1: judged on
+  std::array<std::vector<ObservedCall>, 2> half;  // 0: fitted, 1: judged
   MeasuredCosts result;
   result.name = kernel.name;
   result.loops = kernel.loops;
   result.declared = kernel.worst[0];
-  std::array<ProblemSize, k_limit_sets> sizes;  // as the half that is fitted on shows them
+  std::array<ProblemSize, k_limit_sets> sizes;  // from the fitted half
   for (std::size_t i = 0; i < k_limit_sets; ++i) sizes[i].maximum = kernel.worst[i];
   double dearest = -1;
   for (const Observation& seen : kernel.calls) {

@@ -1,4 +1,4 @@
-// The processor's own steady counter: the time-stamp counter, or arm64's virtual count.
+// Constant-rate counter of the processor: the time-stamp counter, or arm64's virtual count.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace glint {
 
-// Waits for what was begun before, so that nothing is counted outside its own interval.
+// Serialising read: earlier instructions are complete, so that each counts in its own interval.
 [[nodiscard]] inline std::uint64_t cycle_count() noexcept {
 #if defined(__x86_64__)
   unsigned core = 0;
@@ -27,7 +27,7 @@ namespace glint {
 #endif
 }
 
-// Nanoseconds a count, against the system's clock over 50 ms.
+// Nanoseconds per count, calibrated against the system's clock over 50 ms.
 [[nodiscard]] inline double nanoseconds_of_a_count() {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
@@ -39,8 +39,8 @@ namespace glint {
   return elapsed.count() / static_cast<double>(last - first);
 }
 
-// The least by which two readings differ that are not the same: some machines' counters go in steps
-// of many counts.
+// Smallest nonzero difference of two readings: on some machines the counter advances in steps of
+// many counts.
 [[nodiscard]] inline std::uint64_t step_of_the_count() {
   std::uint64_t least = ~std::uint64_t{0};
   std::uint64_t before = cycle_count();

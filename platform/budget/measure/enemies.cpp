@@ -9,8 +9,8 @@
 namespace glint {
 namespace {
 
-constexpr std::size_t k_cache_bytes = 4u << 20;    // more than a core's own caches
-constexpr std::size_t k_stream_bytes = 64u << 20;  // more than a shared cache's usual share
+constexpr std::size_t k_cache_bytes = 4u << 20;    // larger than a core's private caches
+constexpr std::size_t k_stream_bytes = 64u << 20;  // larger than a usual share of a shared cache
 constexpr long k_interrupt_gap_ns = 100'000;
 
 void thrash(const std::atomic<bool>& stop) {
@@ -49,7 +49,7 @@ void stay_on_core(int core) {
   cpu_set_t cores;
   CPU_ZERO(&cores);
   CPU_SET(static_cast<unsigned>(core), &cores);
-  (void)sched_setaffinity(0, sizeof cores, &cores);  // refused: then the measurement is noisier
+  (void)sched_setaffinity(0, sizeof cores, &cores);  // if refused, the measurement is noisier
 }
 
 Enemy::Enemy(const std::string& name) {

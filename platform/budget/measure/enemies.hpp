@@ -1,8 +1,8 @@
-// Named disturbances that a kernel is measured beside.
+// Interference workloads that run beside a measured kernel.
 //
-//   cache       another core writes all over a buffer of the size of its caches
+//   cache       another core writes to a buffer of the size of its caches, at random
 //   bandwidth   another core streams through memory
-//   other_core  another core computes, without memory
+//   other_core  another core computes, without memory accesses
 //   interrupts  a thread on the measured core wakes up every 100 us
 #pragma once
 
@@ -16,7 +16,7 @@ inline constexpr int k_measured_core = 0;
 
 class Enemy {
  public:
-  // "none" is nobody. With one core only, all of them share it.
+  // "none" starts no thread. On a single-core machine, all workloads share the core.
   explicit Enemy(const std::string& name);
   ~Enemy();
   Enemy(const Enemy&) = delete;

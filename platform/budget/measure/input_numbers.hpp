@@ -1,8 +1,8 @@
-// Which inputs a measurement takes, from their running number alone.
+// Selection of the inputs of a measurement, from their running number only.
 //
-// Of every twenty inputs, twelve are typical, four recorded, two worst and two searched; twenty by
-// twenty they take turns between the largest limits and a cell's. Halves are drawn by a hash, so
-// that no variant of an input falls into one of them only.
+// Of every twenty inputs, twelve are typical, four recorded, two worst and two searched. Blocks of
+// twenty alternate between the largest limits and a cell's. A hash selects the halves, so that both
+// halves contain every variant.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ inline constexpr std::uint64_t k_limit_sets = 2;  // 0: Limits{}, 1: measured_ce
 
 struct MeasuredInput {
   InputKind kind = InputKind::typical;
-  std::uint64_t number = 0;  // among its kind and limits
+  std::uint64_t number = 0;  // among inputs of its kind and limits
   std::uint64_t limits = 0;
 };
 
@@ -51,8 +51,8 @@ struct MeasuredInput {
   return input;
 }
 
-// Whether the envelope is fitted on this input; it is judged on the others.
-// Source: SplitMix64's finalizer, Steele, Lea, Flood 2014, fig. 14.
+// Returns whether the envelope is fitted on this input; it is judged on the others. Source:
+// SplitMix64's finalizer, Steele, Lea, Flood 2014, fig. 14.
 [[nodiscard]] constexpr bool fits_on(const MeasuredInput& input) {
   std::uint64_t bits = input.number * 8 + static_cast<std::uint64_t>(input.kind) * 2 + input.limits;
   bits += 0x9E3779B97F4A7C15u;

@@ -1,4 +1,4 @@
-// Two empty functions that an instruction counter finds by their symbols.
+// Two empty marker functions that an instruction counter locates by their symbols.
 #pragma once
 
 extern "C" {

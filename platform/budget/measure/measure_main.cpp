@@ -1,15 +1,15 @@
-// glint_measure: runs kernels over numbered inputs and writes what each call did and cost.
+// glint_measure: runs kernels on numbered inputs and writes each call's loop counts and cost.
 //
 //   glint_measure --list            # its build, then its kernels
 //   glint_measure --kernel FindBlobs --inputs 10000 --counter time|marks --out FILE
 //     [--cache warm|cold] [--enemy cache] [--repeat 7]
 //
-// It links the kernels and nothing else and knows no files but its own, so that it runs on a bare
-// board and, with `marks`, in an emulator that counts the instructions between two markers.
+// It links only the kernels and reads no other files. It therefore runs on a bare computer and,
+// with `marks`, in an emulator that counts the instructions between two markers.
 //
-// The file: "loops NAME..", "worst LIMITS COUNT.." for each set of limits, then for each input
-// "input LIMITS KIND NUMBER COUNT.. COST" with COST in nanoseconds. With `marks`, COST is 0 and the
-// counter's file has one number for the empty call that comes first and one for each input.
+// Output file: "loops NAME..", "worst LIMITS COUNT.." for each set of limits, then for each input
+// "input LIMITS KIND NUMBER COUNT.. COST", COST in nanoseconds. With `marks`, COST is 0; the
+// counter's file has one number for an initial empty call and one for each input.
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
@@ -29,7 +29,7 @@
 namespace glint {
 namespace {
 
-constexpr std::size_t k_evicting_bytes = 16u << 20;  // more than the private caches of a core
+constexpr std::size_t k_evicting_bytes = 16u << 20;  // larger than the private caches of a core
 
 struct MeasureArguments {
   std::string kernel, out, counter = "time", cache = "warm", enemy = "none";
@@ -38,7 +38,7 @@ struct MeasureArguments {
   bool list = false;
 };
 
-// What measuring itself costs is what this one costs.
+// Its measured cost is the overhead of the measurement.
 class EmptyKernel : public MeasuredKernel {
  public:
   [[nodiscard]] std::string_view name() const override { return "empty"; }
@@ -69,7 +69,7 @@ class Meter {
     repeat_ = arguments.repeat;
   }
 
-  // Nanoseconds; with marks 0, and the counter outside has seen one call.
+  // Cost in nanoseconds; with marks 0, while the external counter counts one call.
   [[gnu::noinline]] double cost_of_input(MeasuredKernel& kernel) {
     if (marks_) {
       kernel.rewind();
@@ -105,7 +105,7 @@ class Meter {
   int repeat_;
   double ns_of_a_count_ = 1;
   double empty_counts_ = 0;
-  double step_counts_ = 0;  // a reading may lag by as much: each call counts it as its own
+  double step_counts_ = 0;  // maximum lag of a reading; added to each call
   std::vector<unsigned char> evicting_;
   std::vector<double> counts_;
 };

@@ -1,4 +1,4 @@
-// One measurement as a board file and as figures.
+// Result of one measurement, converted to a board file and to JSON.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -7,7 +7,7 @@
 
 namespace glint {
 
-// How often a kernel's median grew beside an enemy.
+// Growth factor of a kernel's median beside an interference workload.
 struct InterferenceFactor {
   std::string enemy, kernel;
   double factor = 1;
@@ -15,7 +15,7 @@ struct InterferenceFactor {
 
 struct Measurement {
   std::string arch, cache, version, machine, build;
-  std::string board;  // whose costs are judged; empty: they are fitted now
+  std::string board;  // board whose costs are judged; empty: costs are fitted
   bool count_instructions = true;
   std::vector<MeasuredCosts> kernels;
   std::vector<InterferenceFactor> interference;
@@ -30,20 +30,20 @@ struct BoardRequest {
   double ns_per_instruction = 1;
   double margin_percent = 5;
   std::int64_t inputs = 0;
-  SystemShare system;  // as it was; it is measured elsewhere
+  SystemShare system;  // unchanged; measured separately
 };
 
-// Throws InputError where a kernel of the graphs was not measured.
+// Throws InputError if a kernel of the graphs was not measured.
 [[nodiscard]] Board measured_board(const Measurement& measurement, const BoardRequest& request,
                                    const BoardExpectation& expected);
 
-// A board with these kernels' costs in place of its own, all others as they are; kernels of a graph
-// that it did not price come with their graph. Throws InputError where the measurement is not of
-// the same build, machine and kind as the board's.
+// Replaces the measured kernels' costs in `old`; keeps all others. Adds kernels of a graph that
+// `old` lacks together with that graph. Throws InputError if the measurement differs in build,
+// machine or kind from the board's.
 [[nodiscard]] Board with_kernels(const Board& old, const Measurement& measurement,
                                  const BoardRequest& request, const BoardExpectation& expected);
 
-// The [system] of a board file that is about to be replaced; nothing where there is none.
+// The [system] of a board file that will be replaced; all zero if there is none.
 [[nodiscard]] SystemShare system_share_in(const std::string& file);
 
 }  // namespace glint

@@ -40,7 +40,7 @@ std::string today() {
   return text;
 }
 
-// The kernel's costs, where they are of the loops that the graph's node has.
+// Costs of a measured kernel; requires that its loops are those of the graph's node.
 const std::vector<double>& costs_in(const Measurement& measurement, const KernelLoops& kernel) {
   for (const MeasuredCosts& one : measurement.kernels) {
     if (one.name == kernel.kernel &&

@@ -1,4 +1,4 @@
-// The problems that costs are measured on: the largest there is, and a usual cell's.
+// Limits for cost measurements: the largest possible, and those of a usual cell.
 #pragma once
 
 #include <array>
@@ -7,9 +7,9 @@
 
 namespace glint {
 
-// Five tools of five markers and 64 blobs in a whole AHAT frame, a lens without a table: the
-// built-in cell's budgets. One set of costs has to cover both this and Limits{}, as costs are of a
-// count and not of a cell.
+// Limits of the built-in cell: five tools of five markers and 64 blobs in a full AHAT frame, a lens
+// without a table. One set of costs must cover both this and Limits{}, since costs are per count,
+// not per cell.
 [[nodiscard]] constexpr Limits measured_cell_limits() {
   Limits limits;
   limits.tools = 5;

@@ -1,4 +1,5 @@
-// What measuring found: for every kernel its loops, their maxima, and each call's counts and cost.
+// Runs the measuring program; stores each kernel's loops, their maxima, and each call's counts and
+// cost.
 #pragma once
 
 #include <array>
@@ -24,10 +25,10 @@ struct KernelObservations {
 };
 
 struct MeasureRequest {
-  std::string program;  // glint_measure of the architecture
+  std::string program;  // glint_measure for the architecture
   bool count_instructions = true;
   std::string emulator;   // "qemu-aarch64"; empty: none
-  std::string cpu_model;  // its processor: what a program's start-up code chooses by
+  std::string cpu_model;  // emulated processor; a program's start-up code may depend on it
   std::string plugin;     // glint_count_instructions.so
   std::string kernel;     // empty: all
   std::string cache = "warm", enemy = "none";
@@ -40,20 +41,20 @@ struct Observations {
   std::vector<KernelObservations> kernels;
 };
 
-// Runs the program once for each kernel, in a folder of its own that is removed afterwards, with no
-// environment and without address randomisation, so that its memory lies the same in every run.
-// Calls progress(done, all). Throws InputError for what a user can mend, MissingDevice where the
-// emulator or the program is not there.
+// Runs the program once per kernel in a temporary folder, without environment and without address
+// randomisation, so that its memory layout is the same in every run. Calls progress(done, all).
+// Throws InputError for errors that a user can correct, MissingDevice if the emulator or the
+// program does not exist.
 [[nodiscard]] Observations measure(const MeasureRequest& request,
                                    const std::function<void(int, int)>& progress);
 
-// Keeps the lesser cost of each call. Times of several passes: minutes apart a shared machine's
-// neighbours are others, and what they take is not the kernel's own. Throws InputError where a call
-// of the other pass did something else.
+// Keeps the smaller cost of each call from several passes. On a shared machine, other processes
+// differ between passes, and their time is not the kernel's. Throws InputError if a call of the
+// other pass has other counts.
 void keep_least(Observations& kept, const Observations& pass);
 
-// One kernel's file, with the costs of `counted` (an empty call first) where it is not empty.
-// Throws InputError where the two do not belong together.
+// Parses one kernel's file, with the costs of `counted` (an empty call first) if it is not empty.
+// Throws InputError if the two do not match.
 [[nodiscard]] KernelObservations parse_observations(const std::string& name,
                                                     const std::string& file,
                                                     const std::string& text,

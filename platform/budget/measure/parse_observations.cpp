@@ -74,7 +74,7 @@ class ObservationParser {
     expect(!words.fail(), "a cost at the end");
     const std::size_t index = found_.calls.size() + 1;
     if (index < counted_.size()) {
-      // The same markers around nothing cost counted[0].
+      // counted[0] is the cost of the markers without a kernel.
       expect(counted_[index] >= counted_[0], "a count that is not below the empty call's");
       seen.call.cost = static_cast<double>(counted_[index] - counted_[0]);
     }

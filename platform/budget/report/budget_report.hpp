@@ -1,4 +1,4 @@
-// The timing report: one page for a person, and the same as Markdown.
+// Timing report: one document, written as HTML and as Markdown.
 #pragma once
 
 #include "platform/budget/report/document.hpp"

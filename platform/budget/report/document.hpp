@@ -1,5 +1,5 @@
-// A report as headings, sentences, tables and figures, before it becomes HTML or Markdown: both say
-// the same because both are written from this.
+// Format-independent report: headings, sentences, tables and figures. HTML and Markdown are written
+// from it, so that both have the same content.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace glint {
 
-// What a number is. A reader must never take one for another, so every figure's column says it.
+// Kind of a number; every figure's column states it, so that readers do not confuse them.
 enum class NumberKind { none, bound, estimate, observed };
 
 enum class Tone { plain, good, bad, faint };
@@ -36,17 +36,17 @@ struct Sentence {
 };
 
 struct Command {
-  std::string text;  // one that a reader can paste
+  std::string text;  // can be pasted into a shell
 };
 
 struct Illustration {
   std::string name;     // of its file beside the Markdown
-  std::string caption;  // also what a reader hears who does not see it
+  std::string caption;  // also the alternative text
   std::string svg;
 };
 
 struct FigureGrid {
-  std::vector<Illustration> figures;  // small ones, side by side
+  std::vector<Illustration> figures;  // small, side by side
 };
 
 using Block = std::variant<Sentence, Table, Command, Illustration, FigureGrid>;
@@ -78,16 +78,16 @@ struct Document {
 [[nodiscard]] std::string name_of(NumberKind kind);
 [[nodiscard]] std::string name_of(Verdict verdict);
 
-// One page that needs nothing else: no network, no script, no font, no picture.
+// One self-contained page: no network, no script, no font, no image from outside.
 [[nodiscard]] std::string html_of(const Document& document);
 
-// The same; its figures are files of their names beside it (in `figures/`).
+// The same as Markdown; it refers to figures as files in `figures/`.
 [[nodiscard]] std::string markdown_of(const Document& document);
 
 // All figures, in order.
 [[nodiscard]] std::vector<Illustration> figures_of(const Document& document);
 
-// A figure as a file of its own, with the colours that the page would give it.
+// A figure as a separate file, with the page's colours.
 [[nodiscard]] std::string standalone_svg(const Illustration& figure);
 
 }  // namespace glint

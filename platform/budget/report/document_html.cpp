@@ -23,7 +23,7 @@ std::string_view class_of(Verdict verdict) {
   return names[static_cast<std::size_t>(verdict)];
 }
 
-// A mark of its own for each kind, for readers and printers without colour.
+// A separate symbol for each kind, for display and print without colour.
 std::string_view mark_of(NumberKind kind) {
   constexpr std::string_view marks[] = {"", "&#9632;&#160;", "&#9670;&#160;", "&#9679;&#160;"};
   return marks[static_cast<std::size_t>(kind)];
@@ -64,7 +64,7 @@ struct BlockHtml {
   std::string operator()(const Illustration& figure) const { return figure_html(figure); }
   std::string operator()(const FigureGrid& grid) const {
     std::string html = "<div class=\"grid\">\n";
-    // What a small figure's caption says stands in its drawing; a pointer or a voice reads it out.
+    // The caption of a small figure is part of its drawing; pointers and screen readers show it.
     for (const Illustration& figure : grid.figures) {
       html += "<figure id=\"figure-" + figure.name + "\">" + figure.svg + "</figure>\n";
     }
@@ -105,7 +105,7 @@ std::string headline_html(const Headline& headline) {
 }  // namespace
 
 std::string html_of(const Document& document) {
-  // The policy forbids every request, whatever may get into the page.
+  // The policy forbids every request, whatever the page contains.
   std::string html =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "

@@ -15,7 +15,7 @@ std::string class_attribute(std::string_view classes) {
   return classes.empty() ? "" : " class=\"" + std::string(classes) + '"';
 }
 
-// Of a character, as a part of the type's size; a little more than the mean of usual sans serifs.
+// Width of a character relative to the font size; slightly above the mean of usual sans serifs.
 constexpr double k_character = 0.56;
 
 }  // namespace

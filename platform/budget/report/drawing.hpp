@@ -1,5 +1,5 @@
-// Shapes of a figure on the page. Colours are classes of the page's style, so that a figure follows
-// it from light to dark and onto paper. Picture units are CSS pixels, y down.
+// SVG drawing for the report's figures. Colours are CSS classes of the page, so that a figure
+// follows light mode, dark mode and print. Units are CSS pixels, y down.
 #pragma once
 
 #include <string>
@@ -13,11 +13,11 @@ struct Box {
 
 class Drawing {
  public:
-  // `spoken`: what a reader hears who does not see it.
+  // `spoken`: alternative text for screen readers.
   Drawing(double width, double height, std::string_view spoken);
 
   void line(double x1, double y1, double x2, double y2, std::string_view classes);
-  // `hint` appears under a pointer; may be empty.
+  // `hint`: tooltip; may be empty.
   void box(const Box& box, std::string_view classes, std::string_view hint = {});
   void text(double x, double y, std::string_view words, std::string_view classes = {});
   // Grid lines and numbers at round values between 0 and `high`, below the plotted area.
@@ -29,7 +29,7 @@ class Drawing {
   std::string body_;
 };
 
-// Shortened with an ellipsis where it would be wider than this, at the style's 12 pixels.
+// Shortens the text with an ellipsis if it is wider than `width`, at the style's 12 pixels.
 [[nodiscard]] std::string fitting(std::string_view words, double width, double size = 12);
 
 }  // namespace glint

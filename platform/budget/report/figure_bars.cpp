@@ -48,7 +48,7 @@ Illustration slack_figure(const std::string& name, const std::string& caption,
   constexpr double width = 1080, left = 250, right = 90, row = 20;
   double least = 0;
   for (const SlackBar& bar : bars) least = std::min(least, bar.percent);
-  least = std::max(least, -100.0);  // an overshoot beyond that is a number at its bar, not a length
+  least = std::max(least, -100.0);  // larger overshoots are shown as a number only
   const double scale = (width - left - right) / (100 - least);
   const double zero = left - least * scale;
   const double height = row * static_cast<double>(bars.size());
@@ -78,7 +78,7 @@ Illustration histogram_figure(const NodeTimes& node) {
   constexpr double width = 340, height = 150, left = 10, right = 12, top = 40, bottom = 32;
   constexpr int bins = 64;
   const double most = *std::max_element(node.us.begin(), node.us.end());
-  // Far beyond the bound only a count is drawn, so that one hiccup does not hide the shape.
+  // Values far beyond the bound are only counted, so that one outlier does not hide the shape.
   const double range =
       1.08 * (node.bound_us > 0 ? std::max(node.bound_us, std::min(most, 1.5 * node.bound_us))
                                 : std::max(most, 1e-3));

@@ -12,7 +12,7 @@ namespace {
 constexpr double k_width = 1080, k_left = 76, k_right = 16;
 constexpr double k_lane = 24, k_gap = 4, k_title = 24, k_axis = 34;
 constexpr int k_shades = 8;
-// Beyond this ratio one axis for all would press the shorter strips to nothing.
+// Beyond this ratio a common axis would compress the shorter strips too much.
 constexpr double k_one_axis_up_to = 2.5;
 
 // Copies of a node share its shade.
@@ -24,7 +24,7 @@ double end_of(const GanttStrip& strip) {
   return end;
 }
 
-// Words that fit whole, else the capitals that name it, else the copy's number or nothing.
+// The longest form that fits: full name, name without copy number, capitals, or nothing.
 std::string label_in(const std::string& name, double width) {
   if (fitting(name, width - 6, 11) == name) return name;
   const std::string stem = stem_of(name);

@@ -1,4 +1,4 @@
-// The report's figures, as SVG that takes its colours from the page.
+// Figures of the report, as SVG with the page's colours.
 #pragma once
 
 #include <string>
@@ -10,24 +10,24 @@
 
 namespace glint {
 
-// One bar of a schedule: a node on a core, from and to in microseconds after the release.
+// One bar of a schedule: a node on a core; times in microseconds after the release.
 struct GanttBar {
   std::string name;  // copies as Name#i
   int core = 0;
   double from_us = 0, to_us = 0;
-  bool late = false;   // overran, or was injected with a delay
-  bool other = false;  // of another group: in between, not part of the chain
+  bool late = false;   // overran, or had an injected delay
+  bool other = false;  // node of another group that ran in between
 };
 
-// A plan or one activation of a run.
+// A schedule or one activation of a run.
 struct GanttStrip {
   std::string title;
   NumberKind kind = NumberKind::none;
   std::vector<GanttBar> bars;
 };
 
-// All strips above one axis, unless one is so long that the others would vanish: each then has its
-// own, and the caption says so. A deadline of 0 is not drawn.
+// Draws all strips on one axis. If one strip is so long that the others would vanish, each has its
+// own axis, and the caption states it. A deadline of 0 is not drawn.
 [[nodiscard]] Illustration gantt_figure(const std::string& name, const std::string& caption,
                                         const std::vector<GanttStrip>& strips, double deadline_us);
 
@@ -37,7 +37,7 @@ struct StageBar {
   double us = 0;
 };
 
-// A chain's stages one after the other, to the deadline.
+// Stages of a chain one after the other, up to the deadline.
 [[nodiscard]] Illustration stages_figure(const std::string& name, const std::string& caption,
                                          const std::vector<StageBar>& stages, double deadline_us);
 
@@ -48,11 +48,11 @@ struct SlackBar {
 [[nodiscard]] Illustration slack_figure(const std::string& name, const std::string& caption,
                                         const std::vector<SlackBar>& bars);
 
-// How often a node took how long, with its bound; counts on a logarithmic scale, since the rare
-// ones are the ones that matter.
+// Histogram of a node's times with its bound; counts on a logarithmic scale, so that rare long
+// calls are visible.
 [[nodiscard]] Illustration histogram_figure(const NodeTimes& node);
 
-// The judged half's values over what the fit says they should be.
+// Quantile-quantile plot of the judged half's values against the fit.
 [[nodiscard]] Illustration quantile_figure(const std::string& name, const std::string& title,
                                            const ExtremeEstimate& estimate);
 

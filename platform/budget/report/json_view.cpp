@@ -12,7 +12,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-// Copying and writing a value recurse as deep as the file nests; glint nests less deep than this.
+// Copying and writing recurse to the file's nesting depth; glint's files are less deep than this.
 constexpr int k_max_depth = 32;
 
 ordered_json parse(const std::string& text, const std::string& path) {
@@ -35,7 +35,7 @@ JsonView JsonView::of_file(const std::string& path) {
         content.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, content.size()));
     throw InputError(path + ":" + std::to_string(1 + std::count(content.begin(), end, '\n')) +
                      ": no JSON here; expected a file that glint wrote with --json");
-  } catch (const nlohmann::json::out_of_range&) {  // says which, but not where
+  } catch (const nlohmann::json::out_of_range&) {  // states no position
     throw InputError(path +
                      ": a number that no double holds; expected a file that glint wrote with "
                      "--json");

@@ -1,5 +1,5 @@
-// A JSON file read with its place at hand: what is missing or of another kind ends with the file,
-// the way to the value and what was expected.
+// JSON reader with error positions: a missing value or a wrong type throws with the file, the path
+// to the value and what was expected.
 #pragma once
 
 #include <memory>
@@ -11,24 +11,24 @@ namespace glint {
 
 class JsonView {
  public:
-  // Throws InputError with file and line where it cannot be read or is no JSON object.
+  // Throws InputError with file and line if the file cannot be read or is no JSON object.
   [[nodiscard]] static JsonView of_file(const std::string& path);
 
   [[nodiscard]] bool has(const char* key) const;
-  // The value at a key; all of these throw InputError where it is not there or of another kind.
+  // Value at a key; these functions throw InputError if it is missing or has another type.
   [[nodiscard]] JsonView at(const char* key) const;
   [[nodiscard]] std::string text(const char* key) const;
   [[nodiscard]] double number(const char* key) const;
-  // The items of a list, or of an object in the file's order; none where the key is absent.
+  // Items of a list, or of an object in the file's order; empty if the key is absent.
   [[nodiscard]] std::vector<JsonView> list(const char* key) const;
 
-  // The same, where a file may leave the key out.
+  // The same for an optional key.
   [[nodiscard]] std::string text_or(const char* key, const std::string& otherwise) const;
   [[nodiscard]] double number_or(const char* key, double otherwise) const;
-  // Where null or nothing stands for "there is none": not a number.
+  // For a value that may be null or absent: then NaN.
   [[nodiscard]] double number_or_none(const char* key) const;
 
-  // Of the value itself: its key in the object it was listed from, its text or number.
+  // Properties of this value: its key in the object it was listed from, its text or number.
   [[nodiscard]] const std::string& key() const { return key_; }
   [[nodiscard]] bool is_number() const { return value_->is_number(); }
   [[nodiscard]] std::string as_text() const;

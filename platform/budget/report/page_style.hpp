@@ -1,12 +1,12 @@
-// The page's look. Colours are those of Okabe and Ito 2008, Color universal design, which people
-// with any colour vision tell apart; no meaning hangs on a colour alone.
+// Style of the page. Colours by Okabe and Ito 2008, Color universal design, distinguishable with
+// any colour vision; no meaning depends on colour alone.
 #pragma once
 
 #include <string_view>
 
 namespace glint {
 
-// What figures need, on the page and in files of their own. Light first; dark where asked for.
+// Style of figures, on the page and in separate files. Light by default; dark by preference.
 inline constexpr std::string_view k_figure_colours = R"css(
 :root{--ink:#1b1f24;--faint:#5b6570;--line:#d5dae0;--grid:#e9ecef;--paper:#ffffff;--panel:#f6f7f9;
 --bound:#0066a8;--estimate:#a35a00;--observed:#00795a;--bad:#b5400a;--good:#00795a;

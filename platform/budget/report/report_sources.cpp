@@ -20,7 +20,7 @@ std::string sha256_of_file(const std::string& path) {
   return hash.hex();
 }
 
-// A file of another part of glint has none of the keys that this one is read for.
+// Rejects a file of another glint command, which lacks this key.
 void expect_key(const JsonView& view, const char* key, const char* command) {
   if (view.has(key)) return;
   throw InputError(view.file() + ": no \"" + key + "\"; expected what " + command + " wrote");

@@ -1,5 +1,4 @@
-// The files a report is made of. Each may be absent; what it would have shown is then said to be
-// not given.
+// Input files of a report. Each is optional; the report states which are missing.
 #pragma once
 
 #include <optional>
@@ -30,17 +29,16 @@ struct ReportSources {
   std::string run_folder;
   std::vector<ReportInput> inputs;
 
-  // A summary of a run that kept real time: a clock measured its latencies.
+  // Whether the summary is of a real-time run, whose latencies were measured by a clock.
   [[nodiscard]] bool run_was_live() const;
-  // The largest frame to CAN that the run's summary saw, in microseconds; negative: none.
+  // Largest frame-to-CAN latency in the run's summary, in microseconds; negative: none.
   [[nodiscard]] double observed_frame_to_can_us() const;
-  // What it is held against: the run's own bound, else the checked chain of that name; negative:
-  // none.
+  // Bound for that latency: the run's own, else that of the checked chain; negative: none.
   [[nodiscard]] double bound_frame_to_can_us() const;
   [[nodiscard]] std::vector<std::string> best_effort() const;
 };
 
-// Throws InputError where a file cannot be read or is another, or where none is given.
+// Throws InputError if a file cannot be read or is of another kind, or if no file is given.
 [[nodiscard]] ReportSources read_sources(const ReportPaths& paths);
 
 }  // namespace glint

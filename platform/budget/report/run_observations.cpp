@@ -36,7 +36,7 @@ std::vector<Activation> activations_of(const TraceFile& trace, std::size_t group
   return list;
 }
 
-// A frame's way ends with the first sending that carries it.
+// The latency of a frame ends with the first sending that carries it.
 std::vector<FrameLatency> latencies_of(const TraceFile& trace,
                                        const std::vector<Activation>& activations) {
   std::map<std::uint32_t, std::int64_t> sent;

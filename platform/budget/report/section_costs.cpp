@@ -1,5 +1,5 @@
-// What was measured of the kernels: counts against their declared maxima, the cost envelope, and
-// what neighbours on the machine do to it; and what the nodes take in memory.
+// Report sections from measurements: loop counts against declared maxima, cost envelopes,
+// interference, and memory of the nodes.
 #include <algorithm>
 
 #include "platform/budget/report/sections.hpp"
@@ -36,7 +36,7 @@ Section loops_section(const ReportSources& sources) {
     section.blocks.push_back(not_given("--measure F", k_measure_command));
     return section;
   }
-  // Counts are the code's, not a board's: the first file shows them, all must agree on them.
+  // Counts depend on the code, not on the computer: the first file is shown; all must agree.
   const JsonView& measure = sources.measures.front();
   Table table{
       "Declared: the most a loop may run in one call, by the code. Observed: the most it did "

@@ -1,4 +1,4 @@
-// Statistical estimates of values not seen yet, or why there are none.
+// Report section of extreme-value estimates, or of the reasons why they do not apply.
 #include <cstdio>
 
 #include "platform/budget/report/figures.hpp"
@@ -31,7 +31,7 @@ void add_series(const std::string& what, const std::vector<double>& series,
                                     std::to_string(estimate.judged) + " extremes; shape " +
                                     us_text(estimate.distribution.shape)
                               : "not applicable: " + estimate.why}});
-    // The assumptions are the series' own, and so the same for both methods.
+    // Tests of the assumptions are of the series, and therefore the same for both methods.
     const std::size_t first = number == 1 ? 0 : std::min<std::size_t>(4, estimate.tests.size());
     for (std::size_t i = first; i < estimate.tests.size(); ++i) {
       const TestResult& test = estimate.tests[i];

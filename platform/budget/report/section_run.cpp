@@ -1,4 +1,4 @@
-// What a run showed: its schedule beside the plan, every node's times, its worst frames.
+// Report sections of a run: its schedule beside the planned one, node times, worst frames.
 #include <algorithm>
 
 #include "platform/budget/report/figures.hpp"
@@ -22,7 +22,7 @@ GanttStrip plan_strip(const JsonView& check, const std::string& group) {
   return strip;
 }
 
-// One activation, and what other groups did on its cores meanwhile.
+// One activation, with other groups' nodes on its cores during it.
 GanttStrip run_strip(const TraceFile& trace, std::size_t group, const Activation& activation,
                      const std::string& which) {
   GanttStrip strip{which + ": activation " + std::to_string(activation.number) + ", frame " +

@@ -1,4 +1,5 @@
-// What the analysis says: chains, slack, response times, the bus; beside each what was observed.
+// Report sections of the analysis: chains, slack, response times, CAN bus, with observations
+// beside.
 #include <algorithm>
 #include <cstdio>
 
@@ -11,7 +12,7 @@ namespace {
 
 const char* k_check_command = "glint budget check --json F";
 
-// Sums of a chain's stages by what they are.
+// Sums of a chain's stages by kind.
 struct Shares {
   double bound = 0, estimate = 0, declared = 0;
 };

@@ -14,7 +14,7 @@ std::string board_of(const ReportSources& sources) {
          (hash.empty() ? "" : ", table " + short_hash(hash));
 }
 
-// The nodes that took longer than the bound that their spans name.
+// Nodes that took longer than the bound in their spans.
 std::vector<std::string> nodes_above(const RunObservations& run) {
   std::vector<std::string> above;
   for (const NodeTimes& node : run.nodes) {
@@ -27,7 +27,7 @@ std::vector<std::string> nodes_above(const RunObservations& run) {
   return above;
 }
 
-// The chain's sum holds more than what is computed: said beside it.
+// Parts of the chain's sum by kind, since not all of it is computed.
 std::string shares_text(const ReportSources& sources) {
   if (!sources.check) return "";
   for (const JsonView& chain : sources.check->list("chains")) {
@@ -70,7 +70,7 @@ Headline observed_headline(const ReportSources& sources) {
   return headline;
 }
 
-// What of the main chain was measured and not computed.
+// Part of the main chain that was measured, not computed.
 Headline estimate_headline(const ReportSources& sources) {
   Headline headline{NumberKind::estimate, "not given", "Measured share within the chain", ""};
   if (!sources.check) return headline;

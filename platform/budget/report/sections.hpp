@@ -1,5 +1,5 @@
-// The report's sections, each from the files that it needs. A file that was not given leaves a
-// sentence that says which command makes it.
+// Sections of the report, each from its input files. For a missing file, a sentence names the
+// command that makes it.
 #pragma once
 
 #include "platform/budget/report/document.hpp"
@@ -7,7 +7,7 @@
 
 namespace glint {
 
-// Fills the top of the page: the verdict with its reasons, and the three figures.
+// Fills the top of the page: the verdict with its reasons, and three figures.
 void judge(const ReportSources& sources, Document& document);
 
 [[nodiscard]] Section reading_section(const ReportSources& sources);
@@ -26,14 +26,14 @@ void judge(const ReportSources& sources, Document& document);
 [[nodiscard]] Section spoiled_section(const ReportSources& sources);
 [[nodiscard]] Section inputs_section(const ReportSources& sources);
 
-// Words shared by them.
-[[nodiscard]] std::string us_text(double us);    // "12.34"; "none" where it is not finite
+// Text shared by the sections.
+[[nodiscard]] std::string us_text(double us);    // "12.34"; "none" if not finite
 [[nodiscard]] std::string count_text(double n);  // "12 345", with thin spaces
 [[nodiscard]] std::string percent_text(double percent);
-// What is left of a deadline, in percent of it; not a number where there is no bound.
+// Remaining part of a deadline in percent; NaN if there is no deadline.
 [[nodiscard]] double left_percent(double bound_us, double deadline_us);
 [[nodiscard]] Tone tone_of_left(double percent);
-// A node of check.json with the number of its copy, where its group has more than one of it.
+// Name of a node of check.json, with its copy number if its group has several copies.
 [[nodiscard]] std::string node_label(const JsonView& node, const std::vector<JsonView>& all);
 [[nodiscard]] Sentence not_given(const std::string& option, const std::string& command);
 
