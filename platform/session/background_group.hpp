@@ -80,13 +80,13 @@ struct RobotSinks {
   DdsSink* dds = nullptr;
 };
 
-// Map settings of the cell. Throws InputError if a setting breaks a slice's bound.
+// Map settings of a cell with [mapping]; candidate limits are reduced to those of a slice.
 [[nodiscard]] MapSettings map_settings_of(const Cell& cell);
 
 class BackgroundGroup {
  public:
   // Requires a cell with a background. `trace` may be null and must not be started yet. Allocates
-  // all memory here.
+  // all memory here. Throws InputError for map sizes that no map can have.
   BackgroundGroup(const Cell& cell, const GroupPlan<Background>& plan, TraceWriter* trace,
                   BackgroundScene scene, RobotSinks sinks = {});
 
