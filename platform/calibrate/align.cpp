@@ -16,7 +16,7 @@ namespace {
 
 constexpr double k_grid_s = 0.01;
 constexpr double k_contrast_shift_s = 0.1;
-constexpr std::size_t k_start_samples = 200;  // of the grid search
+constexpr std::size_t k_start_samples = 200;  // in the grid search
 constexpr double k_alignment_sigma_min_m = 1e-6;
 constexpr double k_alignment_sigma_min_rad = 1e-6;
 constexpr int k_refinements = 3;
@@ -95,8 +95,8 @@ void check_turns(const AlignResult& result, const AlignSettings& settings,
                    ": turn the tool about two axes, or say --no-lever where both see one frame");
 }
 
-// How much worse the series fit when they are shifted: the median chi-square, as a multiple of the
-// one where they fit. At rest it is one, whatever the noise seems to tell.
+// Ratio of misfit: smallest median chi-square of series shifted by k_contrast_shift_s, over that of
+// the aligned series. A static tool gives 1, independent of the noise estimate.
 double offset_contrast(std::span<const StampedPose> poses, std::span<const StampedPose> reference,
                        const AlignStart& found, const Noise& noise, const AlignSettings& settings) {
   std::vector<double> medians;

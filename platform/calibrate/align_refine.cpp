@@ -10,9 +10,9 @@ namespace glint {
 namespace {
 
 constexpr int k_alignment_iterations_max = 100;
-// Of the information scaled to a diagonal of one: what is smaller is not determined.
+// Relative to the information scaled to a unit diagonal; a smaller eigenvalue means undetermined.
 constexpr double k_eigenvalue_min = 1e-10;
-constexpr std::size_t k_block_residuals = 6 * 5;  // five samples' noise may hang together
+constexpr std::size_t k_block_residuals = 6 * 5;  // five samples' noise may be correlated
 
 struct AlignCost {
   AlignSample sample;
@@ -32,8 +32,8 @@ struct AlignCost {
 
 using Matrix13 = Eigen::Matrix<double, 13, 13>;
 
-// How the unknowns hang on the samples, in tangents: J^T J, and the same with each block of
-// samples' own residuals between, which knows of correlated and unequal noise.
+// J^T J in tangents, and the sum of outer products of the scores of blocks of samples, which
+// accounts for correlated and unequal noise.
 struct Information {
   Matrix13 jacobians = Matrix13::Zero();
   Matrix13 scores = Matrix13::Zero();
@@ -65,7 +65,7 @@ Information information_of(ceres::Problem& problem,
   return information;
 }
 
-// J^-1 S J^-1 over the unknowns that are free.
+// J^-1 S J^-1 over the free unknowns.
 // Source: Liang and Zeger 1986, Biometrika 73(1), the robust covariance of theorem 1.
 void invert(const Information& information, LeverArm lever_arm, AlignFit& fit) {
   std::vector<Eigen::Index> free{0, 1, 2, 3, 4, 5, 12};

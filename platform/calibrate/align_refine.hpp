@@ -1,4 +1,4 @@
-// The nonlinear part of aligning two trackers.
+// Nonlinear refinement of the alignment of two trackers.
 #pragma once
 
 #include <span>
@@ -11,13 +11,13 @@ enum class AlignLoss { none, cauchy };
 
 struct AlignFit {
   AlignStart found;
-  // Of x (rotation vector, translation), y (the same) and the offset; without a lever arm y's are
-  // 0.
+  // Of x (rotation vector, translation), y (the same) and the offset; y's entries are 0 without a
+  // lever arm.
   Eigen::Matrix<double, 13, 13> covariance = Eigen::Matrix<double, 13, 13>::Zero();
-  bool determined = false;  // whether the samples fix all of it
+  bool determined = false;  // the samples determine all unknowns
 };
 
-// The samples' sigmas weigh position against rotation.
+// The samples' sigmas set the relative weight of position and rotation.
 [[nodiscard]] AlignFit refined_alignment(std::span<const AlignSample> samples,
                                          const AlignStart& start, LeverArm lever_arm,
                                          AlignLoss loss);

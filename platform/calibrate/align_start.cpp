@@ -11,8 +11,8 @@ namespace glint {
 namespace {
 
 constexpr int k_reweightings = 10;
-constexpr double k_turn_min_rad = 0.03;         // smaller turns tell little of their axis
-constexpr double k_turn_difference_rad = 0.04;  // both trackers see the same angle
+constexpr double k_turn_min_rad = 0.03;         // smaller rotations determine their axis poorly
+constexpr double k_turn_difference_rad = 0.04;  // both trackers observe the same angle
 
 MotionPiece piece_of(std::span<const StampedPose> four) {
   MotionPiece piece;
@@ -31,7 +31,7 @@ Pose reference_of(const AlignSample& sample, double offset_s) {
   return {seen.rotation, seen.translation};
 }
 
-// The body's turn between two samples, beta = R_y^T alpha of the tool's: y's rotation aligns them.
+// Rotation of y, which aligns the body's relative rotations with the tool's: beta = R_y^T alpha.
 Quaternion rotation_y(std::span<const AlignSample> samples, double offset_s) {
   Matrix3 sum = Matrix3::Zero();
   const std::size_t n = samples.size();
@@ -62,7 +62,7 @@ Quaternion rotation_x(std::span<const AlignSample> samples, const Quaternion& y,
   return best_rotation(sum);
 }
 
-// R_x R t_y + t_x = t_reference - R_x t, reweighted; without a lever arm t_y = 0.
+// Solves R_x R t_y + t_x = t_reference - R_x t, reweighted; t_y = 0 without a lever arm.
 void translations(std::span<const AlignSample> samples, LeverArm lever_arm, AlignStart& start) {
   std::vector<double> weights(samples.size(), 1), distances(samples.size());
   for (int round = 0; round < k_reweightings; ++round) {
@@ -101,7 +101,7 @@ std::vector<AlignSample> paired(std::span<const StampedPose> poses,
   const auto seconds_of = [](const StampedPose& pose) {
     return 1e-9 * static_cast<double>(pose.time.nanoseconds);
   };
-  std::size_t after = 2;  // the first reference sample behind the time
+  std::size_t after = 2;  // the first reference sample after the time
   for (const StampedPose& pose : poses) {
     const double seconds = seconds_of(pose);
     while (after + 1 < reference.size() && seconds_of(reference[after]) <= seconds + offset_s) {

@@ -1,5 +1,5 @@
-// The closed part of aligning two trackers: pairs of poses at an offset, and the transforms that
-// carry one into the other.
+// Closed-form initial guess for the alignment of two trackers: pairs of poses at a given offset,
+// and the transforms between them.
 #pragma once
 
 #include <span>
@@ -9,7 +9,8 @@
 
 namespace glint {
 
-// The poses whose time, with the offset, lies within the reference, each with its piece of it.
+// Returns the poses whose time plus the offset is inside the reference, each with the reference
+// samples around it.
 [[nodiscard]] std::vector<AlignSample> paired(std::span<const StampedPose> poses,
                                               std::span<const StampedPose> reference,
                                               double offset_s, double gap_max_s);
@@ -19,11 +20,13 @@ struct AlignStart {
   double offset_s = 0;
 };
 
-// Rotations of both from the turns between samples, then translations by reweighted least squares.
+// Both rotations from relative rotations between samples, then both translations by iteratively
+// reweighted least squares.
 [[nodiscard]] AlignStart closed_form(std::span<const AlignSample> samples, double offset_s,
                                      LeverArm lever_arm);
 
-// The body's place by X pose Y, less the reference's; and the rotation between both.
+// align_miss: the body's position by X pose Y, minus the reference's. align_turn: the rotation
+// between the two.
 [[nodiscard]] Vector3 align_miss(const AlignSample& sample, const AlignStart& start);
 [[nodiscard]] Vector3 align_turn(const AlignSample& sample, const AlignStart& start);
 

@@ -1,4 +1,4 @@
-// The frames and clocks of two trackers as `glint calibrate align` wrote them down.
+// Alignment of two trackers (frames and clocks), read from a file of `glint calibrate align`.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@ namespace glint {
 struct Alignment {
   Pose T_reference_poses;  // of the poses' frame in the reference's
   Pose T_tool_body;        // of the reference's body in the tool's frame
-  double offset_s = 0;     // the reference's stamp of an instant, less the poses' stamp
+  double offset_s = 0;     // reference's time stamp of an instant, less the poses' time stamp
 };
 
 // Throws InputError: file:line, what was found, what was expected.
 [[nodiscard]] Alignment load_alignment(const std::string& file);
 
-// What the reference saw, as the poses' tracker would have: the tool, in the poses' frame and time.
+// Converts the reference's body poses into tool poses, in the poses' frame and time.
 [[nodiscard]] std::vector<StampedPose> in_poses_frame(std::vector<StampedPose> reference,
                                                       const Alignment& alignment);
 

@@ -15,13 +15,13 @@ namespace glint {
 namespace {
 
 constexpr double k_speed_window_s = 0.1;  // to both sides
-constexpr double k_sigma_min = 1e-9;      // metres and radians: the samples are all alike
+constexpr double k_sigma_min = 1e-9;      // metres and radians: floor for identical samples
 
 Time later(Time time, double seconds) {
   return time + Duration{static_cast<std::int64_t>(std::llround(1e9 * seconds))};
 }
 
-// The reference between its two samples around the time; nothing in a gap or outside.
+// Interpolates the reference between the two samples around the time; empty in a gap or outside.
 std::optional<Pose> at(std::span<const StampedPose> reference, Time time, double gap_max_s) {
   const auto after =
       std::lower_bound(reference.begin(), reference.end(), time,
@@ -38,7 +38,7 @@ struct Sample {
   Pose measured, truth;
 };
 
-// What has to be done to the measured pose: shift, then turn, along the frame's axes.
+// Correction of the measured pose: translation, then rotation, along the frame's axes.
 Vector6 error_of(const Sample& sample, CorrectionFrame frame) {
   Vector6 error;
   if (frame == CorrectionFrame::tool) {
@@ -89,7 +89,7 @@ Middle robust_middle(const std::vector<Vector6>& errors) {
   return middle;
 }
 
-// Mean, and its sigma by the spread and by how many samples tell as one.
+// Mean, and its sigma from the spread and the effective number of independent samples.
 void take_mean(const std::vector<Vector6>& errors, BiasResult& result) {
   Vector6 mean = Vector6::Zero(), square = Vector6::Zero();
   const auto n = static_cast<double>(errors.size());

@@ -15,10 +15,10 @@
 namespace glint {
 namespace {
 
-const cv::Size k_corner_window(4, 4);         // half of it: no neighbour is so near
-constexpr double k_white_percentile = 0.999;  // a lamp does not make the board dark
+const cv::Size k_corner_window(4, 4);         // half size; smaller than the corners' spacing
+constexpr double k_white_percentile = 0.999;  // a lamp in the image does not darken the target
 
-// Eight bits, the brightest thousandth white.
+// Returns an 8-bit image, scaled so that the brightest thousandth saturates.
 cv::Mat eight_bits(const cv::Mat& picture) {
   cv::Mat values;
   picture.reshape(1, 1).convertTo(values, CV_32F);
@@ -48,7 +48,8 @@ cv::Mat load(const std::string& path, const cv::Size& size) {
 bool find(const cv::Mat& picture, const BoardSettings& settings, std::vector<cv::Point2f>& found) {
   const cv::Size size(settings.columns, settings.rows);
   if (settings.pattern == BoardPattern::circles) return cv::findCirclesGrid(picture, size, found);
-  // Brightness made equal finds a board in a bright room, and loses one before a dark background.
+  // CALIB_CB_NORMALIZE_IMAGE finds a target in a bright scene but misses one before a dark
+  // background: it is the second attempt.
   if (!cv::findChessboardCornersSB(picture, size, found, 0) &&
       !cv::findChessboardCornersSB(picture, size, found, cv::CALIB_CB_NORMALIZE_IMAGE))
     return false;
@@ -57,7 +58,7 @@ bool find(const cv::Mat& picture, const BoardSettings& settings, std::vector<cv:
   return true;
 }
 
-// How far the boards' normals spread: the root mean square of their angle to the mean one.
+// Spread of the target normals: root mean square of the angle to their mean.
 double tilt_of(const std::vector<cv::Mat>& rotations) {
   std::vector<Vector3> normals;
   Vector3 sum = Vector3::Zero();
@@ -72,7 +73,7 @@ double tilt_of(const std::vector<cv::Mat>& rotations) {
   return std::sqrt(squares / static_cast<double>(normals.size()));
 }
 
-// A board that was found.
+// One detection of the target.
 struct View {
   std::vector<cv::Point2f> seen;
   std::size_t frame = 0;

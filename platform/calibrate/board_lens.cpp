@@ -10,7 +10,7 @@ namespace glint {
 namespace {
 
 constexpr int k_board_parts = 9;
-constexpr std::size_t k_corners_left = 3;  // one of so many: fewer, near a line, fix no board
+constexpr std::size_t k_corners_left = 3;  // uses a target only if a third of its corners remain
 
 CameraModel model_of(const cv::Mat& matrix, const cv::Mat& distortion, const cv::Size& size,
                      Lens lens) {
@@ -20,7 +20,7 @@ CameraModel model_of(const cv::Mat& matrix, const cv::Mat& distortion, const cv:
   model.height = size.height;
   model.fx = matrix.at<double>(0, 0);
   model.fy = matrix.at<double>(1, 1);
-  model.cx = matrix.at<double>(0, 2) + 0.5;  // OpenCV's pixel centres are at integers
+  model.cx = matrix.at<double>(0, 2) + 0.5;  // OpenCV places pixel centres at integers
   model.cy = matrix.at<double>(1, 2) + 0.5;
   const int count = lens == Lens::rational ? 8 : 5;
   for (int i = 0; i < count; ++i) {
@@ -29,7 +29,7 @@ CameraModel model_of(const cv::Mat& matrix, const cv::Mat& distortion, const cv:
   return model;
 }
 
-// From a start: a rational lens has other minima far away.
+// Requires an initial guess for a rational lens, whose cost has distant local minima.
 BoardLens solve(const BoardCorners& seen, const cv::Size& size, Lens lens, const BoardLens* start) {
   BoardLens solved;
   int flags = cv::CALIB_USE_QR;
@@ -48,7 +48,8 @@ BoardLens solve(const BoardCorners& seen, const cv::Size& size, Lens lens, const
   return solved;
 }
 
-// How another lens's pixels lie beside this one's, at corners that were seen: shifted, and wider.
+// Least-squares offset (x, y) and scale of the other lens's pixels against this one's, at the
+// detected corners.
 Vector3 difference(const CameraModel& lens, const CameraModel& other,
                    const std::vector<std::vector<cv::Point2f>>& seen) {
   Matrix3 normal = Matrix3::Zero();
@@ -71,7 +72,7 @@ Vector3 difference(const CameraModel& lens, const CameraModel& other,
   return normal.ldlt().solve(sums);
 }
 
-// Where a part of what was seen ends: a third and two thirds of all.
+// Limits of the parts: the terciles of the detected corners along one axis.
 std::array<float, 2> thirds_of(const std::vector<std::vector<cv::Point2f>>& seen,
                                float cv::Point2f::*axis) {
   std::vector<float> values;
@@ -111,7 +112,7 @@ LensSigmas lens_sigmas(const BoardCorners& seen, const cv::Size& size, const Boa
       rest.corners.push_back(std::move(corners));
       rest.boards.push_back(std::move(board));
     }
-    // Beyond what it saw a lens may be anything.
+    // Compares only at the remaining corners: outside them the lens is extrapolated.
     const BoardLens other = solve(rest, size, all.model.lens, &all);
     found.push_back(difference(all.model, other.model, rest.corners));
     mean += found.back() / double{k_board_parts};

@@ -1,4 +1,4 @@
-// A lens from the corners of boards, by OpenCV, and its standard deviations.
+// Lens parameters from corners of a calibration target, by OpenCV, with standard deviations.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -8,7 +8,7 @@
 
 namespace glint {
 
-// Of each picture: corners, and where they are on the board, m.
+// For each image: detected corners, and their positions on the target, m.
 struct BoardCorners {
   std::vector<std::vector<cv::Point2f>> corners;
   std::vector<std::vector<cv::Point3f>> boards;
@@ -16,20 +16,20 @@ struct BoardCorners {
 
 struct BoardLens {
   CameraModel model;           // field_tangent_max 0: no limit
-  cv::Mat matrix, distortion;  // the same as OpenCV has it
+  cv::Mat matrix, distortion;  // the same in OpenCV's form
   std::vector<cv::Mat> rotations, translations;
 };
 
 [[nodiscard]] BoardLens solve_lens(const BoardCorners& seen, const cv::Size& size, Lens lens);
 
-// Standard deviations of what rays all turn by, pixels an axis, and of what they all are wider by,
-// a ratio.
+// Standard deviations of a common rotation of all rays (pixels per axis) and of a common scale of
+// all rays (ratio).
 struct LensSigmas {
   double principal_point_px = 0, focal = 0;
 };
 
-// Each time one of 3 x 3 parts of the picture is left out: what the lens has and its model has not
-// is alike nearby, not from picture to picture. Source: the jackknife, Efron 1982, chapter 3.
+// Jackknife over 3 x 3 parts of the image, each left out in turn. The model error of a lens is
+// correlated between nearby pixels, not between images. Source: Efron 1982, chapter 3.
 [[nodiscard]] LensSigmas lens_sigmas(const BoardCorners& seen, const cv::Size& size,
                                      const BoardLens& all);
 

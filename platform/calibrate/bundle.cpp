@@ -24,13 +24,13 @@ std::vector<double> marker_sigmas(const Bundle& bundle, std::span<const Labelled
                                   double noise_m) {
   const auto size = static_cast<Eigen::Index>(3 * bundle.markers_m.size());
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
-  // Of each frame: the markers' part A^T A, less what its pose takes up, A^T B (B^T B)^-1 B^T A.
+  // Per frame: the markers' part A^T A, minus the pose's part A^T B (B^T B)^-1 B^T A.
   for (std::size_t frame = 0; frame < bundle.poses.size(); ++frame) {
     Matrix6 pose = Matrix6::Zero();
     Eigen::MatrixXd mixed = Eigen::MatrixXd::Zero(size, 6);
     for (const LabelledPoint& point : points) {
       if (point.frame != frame) continue;
-      // In the tool's axes: d miss / d marker = 1, d / d pose = [-[marker]x, 1].
+      // In the tool's axes: d miss / d marker = 1, d miss / d pose = [-[marker]x, 1].
       const Vector3& m = bundle.markers_m[point.marker];
       Eigen::Matrix<double, 3, 6> row;
       row << 0, m.z(), -m.y(), 1, 0, 0,  //
@@ -44,7 +44,7 @@ std::vector<double> marker_sigmas(const Bundle& bundle, std::span<const Labelled
     const Eigen::MatrixXd taken = mixed.lazyProduct(pseudo_inverse_of(pose));
     information -= taken.lazyProduct(mixed.transpose());
   }
-  // The tool's own place and turn are no property of it: six free ways are left out.
+  // The position and rotation of the tool frame are gauge freedoms: skips the six null directions.
   const SymmetricEigen ways = symmetric_eigen(information);
   std::vector<double> sigmas;
   for (Eigen::Index at = 0; at < size; at += 3) {

@@ -1,4 +1,4 @@
-// All poses and all markers of a tool at once, from labelled marker positions.
+// Bundle adjustment of a tool: all poses and all markers from labelled marker positions.
 #pragma once
 
 #include <span>
@@ -19,16 +19,16 @@ struct Bundle {
   std::vector<Vector3> markers_m;  // tool frame
 };
 
-// Least squares from `start` on; with a Cauchy loss of this sigma where sigma_m > 0.
+// Least squares from the initial guess `start`; with a Cauchy loss of this sigma if sigma_m > 0.
 [[nodiscard]] Bundle refined_bundle(Bundle start, std::span<const LabelledPoint> points,
                                     double sigma_m);
 
 [[nodiscard]] Vector3 bundle_miss(const Bundle& bundle, const LabelledPoint& point);
 
-// Of one component of one measured point: what the poses and markers took up counts.
+// Noise of one component of a measured point, corrected for the degrees of freedom of the fit.
 [[nodiscard]] double bundle_noise(const Bundle& bundle, std::span<const LabelledPoint> points);
 
-// Each marker's sigma an axis, with the tool's place and turn free.
+// Standard deviation of each marker per axis, with the tool's pose free.
 [[nodiscard]] std::vector<double> marker_sigmas(const Bundle& bundle,
                                                 std::span<const LabelledPoint> points,
                                                 double noise_m);

@@ -9,7 +9,7 @@ namespace glint {
 namespace {
 
 constexpr int k_bundle_iterations_max = 100;
-constexpr double k_unit_m = 1e-3;  // residuals in millimetres: near one
+constexpr double k_unit_m = 1e-3;  // scales residuals to millimetres: near one
 
 struct MarkerCost {
   Vector3 measured_m;
@@ -32,7 +32,7 @@ Bundle refined_bundle(Bundle start, std::span<const LabelledPoint> points, doubl
   std::vector<PoseBlock> poses;
   for (const Pose& pose : bundle.poses) poses.push_back(block_of(pose));
 
-  PoseManifold manifold;  // one for all
+  PoseManifold manifold;  // shared by all poses
   ceres::Problem::Options options;
   options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(options);
@@ -48,7 +48,7 @@ Bundle refined_bundle(Bundle start, std::span<const LabelledPoint> points, doubl
     order->AddElementToGroup(pose, 0);
     order->AddElementToGroup(marker, 1);
   }
-  // Tool and poses may turn and shift against each other: the first pose stays.
+  // Fixes the gauge (tool frame against poses): the first pose is constant.
   problem.SetParameterBlockConstant(poses[points.front().frame].data());
 
   ceres::Solver::Options solver;

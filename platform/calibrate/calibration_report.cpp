@@ -20,7 +20,7 @@ std::string number(const Figures& value, int digits) {
   char text[48];
   std::snprintf(text, sizeof text, "%.*g", digits, value.get<double>());
   std::string result = text;
-  // TOML tells a float from an integer by its point or exponent.
+  // TOML distinguishes a float from an integer by its point or exponent.
   if (result.find_first_of(".en") == std::string::npos) result += ".0";
   return result;
 }

@@ -1,4 +1,4 @@
-// What a calibration says at its end: a table, the same figures as TOML, and a plot of residuals.
+// Report of a calibration: a table, the same figures as TOML, and a residual plot.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,17 +13,16 @@ namespace glint {
 
 using Figures = nlohmann::ordered_json;
 
-// One line each; what is inside of an object stands below its name.
+// One line per figure; the members of an object follow below its name.
 [[nodiscard]] std::string figures_table(const Figures& figures);
 
-// The same as a TOML file: objects become tables. Every line of `comment` stands behind a # above.
+// The same as a TOML file: objects become tables. Each line of `comment` comes first, after a #.
 [[nodiscard]] std::string figures_toml(const Figures& figures, std::string_view comment);
 
 [[nodiscard]] Figures figures_of(const Vector3& vector, double scale);
 [[nodiscard]] Figures figures_of(const Matrix3& matrix, double scale);
 
-// Values over their number; those not kept as spikes of their own colour, which the axis need not
-// hold whole.
+// Values over their index; those not kept are spikes of another colour, clipped at the axis limit.
 struct ResidualPlot {
   std::string title, y_label;
   std::span<const double> values;

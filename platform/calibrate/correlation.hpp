@@ -1,5 +1,4 @@
-// How many successive misses of a fit tell no more than one: what a filter or a systematic error
-// leaves of the square root of their number.
+// Variance inflation of AR(1) residuals, from their lag-one autocorrelation.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +8,8 @@
 
 namespace glint {
 
-// (1 + r) / (1 - r) of a first-order process with correlation r between neighbours; 1 where r is
-// within chance (2 sigma). Source: Bartlett 1946, Journal of the Royal Statistical Society
+// Returns (1 + r) / (1 - r) of a first-order process with correlation r between neighbours; 1 if r
+// is not significant (2 sigma). Source: Bartlett 1946, Journal of the Royal Statistical Society
 // supplement 8, p. 27.
 [[nodiscard]] inline double correlation_factor(std::span<const Vector3> misses) {
   double products = 0, squares = 0;

@@ -1,5 +1,5 @@
-// Dense linear algebra of the size of a calibration's unknowns, for any size. Eigen's templates for
-// it take one to five seconds in every file that instantiates them: here they are compiled once.
+// Dense linear algebra of run-time size for calibrations. Compiled once: Eigen's templates take one
+// to five seconds in each file that instantiates them.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,24 +8,24 @@ namespace glint {
 
 struct SymmetricEigen {
   Eigen::VectorXd values;   // ascending
-  Eigen::MatrixXd vectors;  // in columns, of length one
+  Eigen::MatrixXd vectors;  // columns, unit length
 };
 
 [[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
 
-// How sure a point or a turn is in the direction in which it is least so: the root of the
-// covariance's largest eigenvalue, in the root of its unit.
+// Returns the largest standard deviation of a covariance over all directions: the square root of
+// its largest eigenvalue, in the root of its unit.
 [[nodiscard]] double largest_sigma(const Eigen::MatrixXd& covariance);
 
 [[nodiscard]] Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix);
 
-// R of R * matrix * R = 1, symmetric, for a symmetric positive matrix.
+// Returns the symmetric R with R * matrix * R = 1. Requires a symmetric positive definite matrix.
 [[nodiscard]] Eigen::MatrixXd inverse_root_of(const Eigen::MatrixXd& matrix);
 
-// Of Moore and Penrose, of a symmetric matrix: also where it has no inverse.
+// Moore-Penrose pseudoinverse of a symmetric matrix.
 [[nodiscard]] Eigen::MatrixXd pseudo_inverse_of(const Eigen::MatrixXd& matrix);
 
-// x of matrix * x = right, for a symmetric positive matrix.
+// Returns x of matrix * x = right. Requires a symmetric positive definite matrix.
 [[nodiscard]] Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& matrix,
                                               const Eigen::MatrixXd& right);
 

@@ -10,13 +10,13 @@
 namespace glint {
 namespace {
 
-constexpr double k_untold_sigma_px = 0.1;  // declared of a blob that tells none
-constexpr double k_range_sigma_m = 0.003;  // likewise
+constexpr double k_untold_sigma_px = 0.1;  // for a blob without a declared sigma
+constexpr double k_range_sigma_m = 0.003;  // for a blob without a declared sigma
 constexpr double k_range_sigma_min_m = 1e-6;
-constexpr double k_low = 0.05, k_high = 0.95;  // of what was seen
+constexpr double k_low = 0.05, k_high = 0.95;  // quantiles of the data
 constexpr int k_rounds = 4;
-// A bias has a range of distances to stay in and none of brightness: a tool may be as dim as 2000
-// counts whatever was seen.
+// The bias has a valid interval of ranges but none of brightness: a tool may have 2000 counts,
+// whatever the data show.
 constexpr double k_dim_span_least = 0.5;
 
 double quantile(std::vector<double> values, double part) {
@@ -30,7 +30,7 @@ DepthSample sample_of(const SeenMarker& seen, const Tool& tool, Brightness brigh
   const LocalRays& rays = seen.blob.rays;
   sample.marker_m = tool.markers_m[static_cast<std::size_t>(seen.marker)];
   sample.ray = rays.ray;
-  // The two directions that tell du and dv apart: the dual of (along_x, along_y) in their plane.
+  // Dual basis of (along_x, along_y) in their plane: separates du and dv.
   const double xx = rays.along_x.squaredNorm(), yy = rays.along_y.squaredNorm();
   const double xy = rays.along_x.dot(rays.along_y), area = xx * yy - xy * xy;
   sample.per_x = (yy * rays.along_x - xy * rays.along_y) / area;
@@ -57,7 +57,7 @@ Vector3 residual_of(const RangedFrame& frame, std::size_t i, const Vector3& bias
                                 frame.T_camera_tool.translation, bias);
 }
 
-// The declared sigmas, scaled by what the residuals say of all pixels and of all ranges.
+// Scales the declared sigmas by the estimated variance of all pixels and of all ranges.
 void take_noise(std::vector<RangedFrame>& frames, const DepthFit& fit) {
   const double pixel = std::sqrt(std::max(fit.pixel_variance, 1e-6));
   const double range = std::sqrt(std::max(fit.range_variance, 1e-6));
@@ -106,7 +106,8 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
 }
 
-// What the markers' places leave open of the tool's size, and so of every range.
+// Covariance of the bias from the tool's size error, which follows from the markers' position
+// errors.
 Matrix3 covariance_of_size(const Tool& tool) {
   double spread_m2 = 0;
   for (int i = 0; i < tool.marker_count; ++i)
@@ -137,7 +138,7 @@ void check_span(const DepthCalibration& result, const DepthCalibrationSettings& 
   }
 }
 
-// What each unknown does over the span of the data must be known.
+// Requires that the effect of each unknown over the data's span is below part_sigma_max_m.
 void check_certainty(const DepthCalibration& result, bool determined, double dim_span,
                      const DepthCalibrationSettings& settings, const std::string& what) {
   const double most = settings.part_sigma_max_m;

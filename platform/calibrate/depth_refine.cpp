@@ -31,7 +31,7 @@ struct DepthCost {
 using PoseRows = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 using BiasRows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-// One frame's residuals and their derivatives by its pose (in tangents) and by the bias.
+// Residuals of one frame, and their derivatives by its pose (in tangents) and by the bias.
 struct FrameRows {
   PoseRows by_pose;
   BiasRows by_bias;
@@ -66,8 +66,8 @@ FrameRows rows_of(const RangedFrame& frame, const Vector3& bias) {
   return rows;
 }
 
-// The poses eliminated (Schur complement), frame by frame; the noise of pixels and ranges told
-// apart by how much of each residual its own frame's pose takes up.
+// Eliminates the poses frame by frame (Schur complement). Separates the noise of pixels and ranges
+// by the redundancy of each residual within its frame.
 // Source: Foerstner and Wrobel 2016, Photogrammetric Computer Vision, eq. (4.99), (4.60).
 void judge(const std::vector<RangedFrame>& frames, Brightness brightness, DepthFit& fit) {
   Matrix3 information = Matrix3::Zero();
@@ -87,7 +87,7 @@ void judge(const std::vector<RangedFrame>& frames, Brightness brightness, DepthF
       redundancy[kind] += 1 - rows.by_pose.row(i).dot(pose_part.col(i));
     }
   }
-  if (brightness == Brightness::left_out) information(2, 2) = 1;  // stands for itself alone
+  if (brightness == Brightness::left_out) information(2, 2) = 1;  // decouples the unused unknown
   fit.pixel_variance = squares[0] / std::max(redundancy[0], 1.0);
   fit.range_variance = squares[1] / std::max(redundancy[1], 1.0);
   const Vector3 unit = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -113,7 +113,7 @@ DepthFit refined_depth(std::vector<RangedFrame>& frames, const Vector3& start,
   std::vector<PoseBlock> poses;
   for (const RangedFrame& frame : frames) poses.push_back(block_of(frame.T_camera_tool));
 
-  PoseManifold moved;  // one for all
+  PoseManifold moved;  // shared by all poses
   ceres::SubsetManifold without_dim(3, {2});
   ceres::CauchyLoss cauchy(k_cauchy_sigmas);
   ceres::Problem::Options options;

@@ -1,4 +1,4 @@
-// A depth bias and all poses at once, by Ceres; and what the residuals say of noise and certainty.
+// Joint fit of a range bias and all poses by Ceres, with noise estimate and covariance.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace glint {
 
-// One frame's markers. Those not kept have no say.
+// Markers of one frame; those not kept are ignored.
 struct RangedFrame {
   Pose T_camera_tool;
   std::vector<DepthSample> samples;
@@ -22,12 +22,12 @@ struct DepthFit {
   Vector3 bias = Vector3::Zero();  // offset_m, per_metre, dim_m
   Matrix3 covariance = Matrix3::Zero();
   bool determined = false;
-  // Mean square of the residuals, in declared sigmas, over their redundancy.
+  // Mean square of the residuals, in declared sigmas, divided by their redundancy.
   double pixel_variance = 1, range_variance = 1;
   double correlated = 1;
 };
 
-// The frames' poses are the start and become the result's.
+// The frames' poses are the initial guess and receive the result.
 [[nodiscard]] DepthFit refined_depth(std::vector<RangedFrame>& frames, const Vector3& start,
                                      Brightness brightness, DepthLoss loss);
 

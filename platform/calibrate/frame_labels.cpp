@@ -9,9 +9,9 @@
 namespace glint {
 namespace {
 
-constexpr int k_beginnings_max = 6;     // ways to name the first frame that are followed
+constexpr int k_beginnings_max = 6;  // alternative labelings of the first frame that are followed
 constexpr double k_linked_share = 0.6;  // of a frame's points
-constexpr double k_found_share = 0.95;  // of the most markers found by any beginning
+constexpr double k_found_share = 0.95;  // of the largest marker count of any initial labeling
 
 CorrespondSettings settings_for(const Tool& tool, double noise_m) {
   CorrespondSettings settings = settings_for_points();
@@ -46,7 +46,7 @@ class Labeller {
     return *found_;
   }
 
-  // The names of `first` (frame `begin`) carried on to the segment's end.
+  // Propagates the labels of `first` (frame `begin`) to the segment's end.
   std::vector<Labeling> follow(const Segment& segment, std::size_t begin, const Labeling& first) {
     std::vector<Labeling> labels(segment.length());
     labels[begin - segment.begin] = first;

@@ -1,4 +1,4 @@
-// Which point of a frame is which marker of a tool, over whole segments of a recording.
+// Labeling of a tool's markers over segments of successive frames.
 #pragma once
 
 #include <array>
@@ -11,19 +11,19 @@
 
 namespace glint {
 
-// Frames from `begin` to before `end` that follow each other without a jump.
+// Successive frames without a jump, from `begin` to before `end`.
 struct Segment {
   std::size_t begin = 0;
   std::size_t end = 0;
   [[nodiscard]] std::size_t length() const { return end - begin; }
 };
 
-// Two frames belong together where most points have their nearest neighbour within step_max_m.
+// Frames belong to one segment if most points have their nearest neighbour within step_max_m.
 [[nodiscard]] std::vector<Segment> segments_of(std::span<const PointFrame> frames,
                                                double step_max_m);
 
-// One labeling a frame of the segment; count 0 where the tool was not found. Several ways to begin
-// are followed; the one with the least mean square counts.
+// Returns one labeling per frame of the segment; count 0 where the tool was not found. Follows
+// several initial labelings and returns the one with the least mean square.
 [[nodiscard]] std::vector<Labeling> label_segment(std::span<const PointFrame> frames,
                                                   const Segment& segment, const Tool& tool,
                                                   double noise_m);

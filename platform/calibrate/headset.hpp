@@ -1,7 +1,6 @@
-// How far the headset's own localisation wanders, by a tool that rests in view while the head
-// moves: one factor of all that a cell's [headset] declares, with its uncertainty
-// (kernels/motion/world_errors.hpp). The factor is one sigma above what fits best, so that a short
-// recording states more, not less.
+// Drift of the headset's localisation, from a static tool in view of a moving head: one factor on
+// all values of a cell's [headset], with its uncertainty (kernels/motion/world_errors.hpp). The
+// factor is one sigma above the best fit, so that a short recording overestimates the drift.
 #pragma once
 
 #include <cstddef>
@@ -14,18 +13,18 @@
 namespace glint {
 
 struct HeadsetCalibration {
-  HeadNoise noise;         // as declared, by `factor`
+  HeadNoise noise;         // the declared noise times `factor`
   double factor = 1;       // best * (1 + sigma)
-  double best = 1;         // of the declared deviations
-  double sigma = 0;        // of it, as a ratio
-  double head_late_s = 0;  // the head's poses are of so much earlier than the frames; not corrected
+  double best = 1;         // best fit, in units of the declared deviations
+  double sigma = 0;        // relative standard deviation of `best`
+  double head_late_s = 0;  // delay of the head poses behind the frames; not corrected
   double head_late_sigma_s = 0;
   int frames = 0;
-  std::vector<std::string> failures;  // what of the frames could not be read, a line each
+  std::vector<std::string> failures;  // read errors of the frames, a line each
 };
 
-// tool: the number of the cell's tool that rests. Throws InputError, naming the frames, where too
-// few of them show tool and head together.
+// tool: index of the cell's static tool. Throws InputError, naming the frames, if too few of them
+// show the tool together with a head pose.
 [[nodiscard]] HeadsetCalibration calibrate_headset(RecordedFrames& recorded, std::size_t tool);
 
 }  // namespace glint

@@ -15,9 +15,9 @@ namespace glint {
 namespace {
 
 constexpr int k_lens_iterations_max = 200;
-constexpr std::size_t k_fitted_max = 20'000;  // of the rays; all of them are judged
+constexpr std::size_t k_fitted_max = 20'000;  // rays in the fit; the errors cover all rays
 constexpr std::size_t k_rays_min = 1'000;
-constexpr double k_pinhole_tangent = 0.36;  // 20 degrees: so far any lens is a pinhole, to begin
+constexpr double k_pinhole_tangent = 0.36;  // 20 degrees: limit of the pinhole initial guess
 
 using Lens12 = std::array<double, k_lens_numbers>;
 
@@ -63,7 +63,7 @@ Grid grid_of(const std::string& path, int width) {
   grid.height = static_cast<int>(count / columns);
   for (std::size_t i = 0; i < count; ++i) {
     const Vector3 ray(array.values[3 * i], array.values[3 * i + 1], array.values[3 * i + 2]);
-    if (ray.z() == 0) continue;  // the lens maps nothing here
+    if (ray.z() == 0) continue;  // no ray at this pixel
     if (!(std::abs(ray.norm() - 1) < 1e-3 && ray.z() > 0)) {
       throw InputError(path + ":row " + std::to_string(i) +
                        ": not a unit vector ahead of the camera; expected unit rays, or zeros");
@@ -77,7 +77,7 @@ Grid grid_of(const std::string& path, int width) {
                    std::to_string(k_rays_min));
 }
 
-// Lines through the pixels of the rays near the axis.
+// Pinhole parameters by linear regression of pixel on ray slope, over the rays near the axis.
 Lens12 pinhole(const std::vector<SeenRay>& rays) {
   Eigen::Vector2d slope, middle;
   for (int axis = 0; axis < 2; ++axis) {

@@ -1,4 +1,4 @@
-// A rational lens for a device's own table of rays.
+// Fit of a rational lens model to a device's ray table.
 #pragma once
 
 #include <string>
@@ -10,14 +10,14 @@ namespace glint {
 
 struct LensFit {
   CameraModel model;
-  double rms_px = 0;   // an axis, over every pixel that has a ray
-  double most_px = 0;  // of |error|
+  double rms_px = 0;   // per axis, over all pixels with a ray
+  double most_px = 0;  // largest |error|
   int pixels = 0;
-  std::vector<double> error_by_angle_px;  // rms of |error|, a degree off the axis each
+  std::vector<double> error_by_angle_px;  // rms of |error| in each degree off the axis
 };
 
-// The table: height x width x 3 or flat, width 0: as square as it is. Throws InputError naming the
-// file for another shape or rays that are not of length 1, and for too few of them.
+// Table shape: height x width x 3, or flat; width 0 assumes a square image. Throws InputError
+// naming the file for another shape, for rays that are not of length 1, and for too few rays.
 [[nodiscard]] LensFit fit_lens_to_table(const std::string& npy_path, int width);
 
 }  // namespace glint

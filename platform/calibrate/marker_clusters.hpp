@@ -1,4 +1,4 @@
-// Places of a tool where points recur: what is a marker and not a stray.
+// Clusters of recurring points in the tool frame: separates markers from stray points.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@ class MarkerClusters {
  public:
   explicit MarkerClusters(double radius_m) : radius_m_(radius_m) {}
 
-  // Joins the first place within the radius, or founds one.
+  // Adds the point to the first cluster within the radius, or starts a new cluster.
   void add(const Vector3& point_m) {
     for (Place& place : places_) {
       if ((place.mean_m - point_m).norm() > radius_m_) continue;
@@ -31,7 +31,7 @@ class MarkerClusters {
   [[nodiscard]] double radius_m() const { return radius_m_; }
 
  private:
-  static constexpr std::size_t k_places_max = 10'000;  // strays found a place each
+  static constexpr std::size_t k_places_max = 10'000;  // each stray may start one
   struct Place {
     Vector3 mean_m;
     int count = 0;

@@ -13,11 +13,11 @@
 namespace glint {
 namespace {
 
-constexpr double k_early = 0.9;  // a sample this part of a period after the last one counts
+constexpr double k_early = 0.9;  // minimum spacing of kept samples, in periods
 constexpr double k_fit_part = 2.0 / 3;
 constexpr double k_hardly_part = 1e-3;
-constexpr double k_still_part = 1e-4;               // of the noise found: a tool that hardly moves
-constexpr Duration k_warm_up = milliseconds(1000);  // of the prediction, not judged
+constexpr double k_still_part = 1e-4;               // of the initial noise: nearly static
+constexpr Duration k_warm_up = milliseconds(1000);  // of the predictor; not evaluated
 constexpr Duration k_truth_gap_max = milliseconds(100);
 
 std::vector<StampedPose> thinned(const Trajectory& recording, double rate_hz) {
@@ -52,7 +52,7 @@ bool recorded_near(const Trajectory& truth, Time time) {
   return after->time - (after - 1)->time <= k_truth_gap_max;
 }
 
-// The sums of squares of the prediction's errors, over one recording's held-out part.
+// Sums of squared prediction errors over one recording's held-out part.
 class PredictionJudge {
  public:
   PredictionJudge(const Trajectory& truth, const MotionSettings& motion, const MeasuredNoise& noise)
@@ -75,7 +75,7 @@ class PredictionJudge {
   }
 
  private:
-  // The distance that the prediction misses by; -1: nothing is known of the truth there.
+  // Returns the distance between prediction and ground truth; -1 if there is no ground truth near.
   double add(Time time, MotionError& error) {
     if (!recorded_near(truth_, time)) return -1;
     const Pose truth = interpolated(truth_, time);
@@ -131,7 +131,7 @@ const char* name_of(MotionPart part) { return part == MotionPart::shift ? "shift
                    "turns, and declare the noise of these poses");
 }
 
-// Whether a tool that hardly moves is as likely, and one that moves still less likelier yet.
+// Returns whether a nearly static tool is as likely, or a still slower one likelier.
 bool rests(const MotionSeries& series, MotionPart part, const MotionUnknowns& start,
            const LikelihoodSettings& likelihood, double gain_min) {
   const Likelihood still =

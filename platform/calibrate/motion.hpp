@@ -1,9 +1,9 @@
-// How a hand moves, for the filter and the prediction: the density of the noise that drives its
-// acceleration and the rate at which this fades, of shift and of rotation, by maximum likelihood of
-// recordings with a declared measurement noise (motion_likelihood.hpp), on their logarithms.
+// Maximum-likelihood calibration of the hand motion model: noise density and damping of its
+// acceleration, for translation and rotation.
 //
-// The last third of each recording is held out: there the likelihood and the prediction's error
-// stand beside the built-in setting's.
+// The unknowns are the logarithms; the measurement noise of the recordings is declared
+// (motion_likelihood.hpp). The last third of each recording is held out. There the likelihood and
+// the prediction error are reported beside those of the built-in setting.
 #pragma once
 
 #include <functional>
@@ -20,13 +20,13 @@ enum class AddedNoise { none, declared };
 
 struct MotionCalibrationSettings {
   MeasuredNoise noise;
-  // declared: the recordings are the truth, and are measured with the declared noise first.
+  // declared: the recordings are ground truth; the declared noise is added to them first.
   AddedNoise added = AddedNoise::none;
-  double rate_hz = 45;          // samples that come faster are left out
-  double gap_max_s = 0.5;       // after a longer gap the filter starts anew
-  MotionSettings start;         // of the search, and what the result is held against
-  double log_sigma_max = 1.5;   // of each unknown: more, and the motion left it open
-  double motion_gain_min = 20;  // of the log-likelihood, over a tool that hardly moves
+  double rate_hz = 45;          // faster samples are skipped
+  double gap_max_s = 0.5;       // the filter restarts after a longer gap
+  MotionSettings start;         // initial guess, and the setting that the result is compared with
+  double log_sigma_max = 1.5;   // of each unknown; above it the motion leaves the unknown open
+  double motion_gain_min = 20;  // log-likelihood ratio to a nearly static tool
   std::uint64_t seed = 1;
   std::function<void(int evaluations)> progress;  // may be empty
 };
@@ -38,24 +38,24 @@ struct MotionError {
   int n = 0;
 };
 
-// Of one setting, on what was held out.
+// Errors of one setting on the held-out part.
 struct HeldOut {
-  double log_likelihood = 0;  // a measurement, shift and rotation together
+  double log_likelihood = 0;  // per measurement, translation plus rotation
   MotionError at_25_ms, at_50_ms;
 };
 
 struct MotionCalibration {
   MotionSettings motion;
-  // Of ln noise and ln damping: shift, rotation.
+  // Covariances of (ln noise, ln damping).
   Eigen::Matrix2d shift_covariance = Eigen::Matrix2d::Zero();
   Eigen::Matrix2d rotation_covariance = Eigen::Matrix2d::Zero();
   HeldOut found, built_in;
-  std::vector<double> misses_m;  // of the prediction 25 ms ahead, on what was held out
+  std::vector<double> misses_m;  // prediction error 25 ms ahead, on the held-out part
   int samples = 0, held_out = 0;
 };
 
-// Throws InputError, naming `what`, for recordings that are too short or leave a part open: which,
-// and how to move.
+// Throws InputError, naming `what`, for recordings that are too short or that leave a part
+// undetermined (names the part and the motion needed).
 [[nodiscard]] MotionCalibration calibrate_motion(std::span<const Trajectory> recordings,
                                                  const MotionCalibrationSettings& settings,
                                                  const std::string& what);

@@ -12,7 +12,7 @@ namespace glint {
 namespace {
 
 constexpr double k_relative = 1e-6;
-// Of each component's own sigma: what is far below it needs no digits.
+// Relative to each component's own sigma: digits far below it do not matter.
 constexpr double k_absolute = 1e-6;
 constexpr long k_steps_max = 20'000;
 
@@ -26,8 +26,8 @@ using Mean = Eigen::Map<Vector9>;
 
 double* data_of(N_Vector vector) { return N_VGetArrayPointer(vector); }
 
-// A shift's axes are alike and apart: of its covariance one axis's triangle is enough. Behind the
-// mean stands the triangle, row by row.
+// The axes of a translation are equal and independent: one axis's triangle of the covariance is
+// stored. The state vector holds the mean, then the triangle row by row.
 int width_of(MotionPart part) { return part == MotionPart::shift ? 3 : 9; }
 int size_of(MotionPart part) { return 9 + width_of(part) * (width_of(part) + 1) / 2; }
 
@@ -67,7 +67,7 @@ Vector9 mean_rate(const Vector9& mean, double damping) {
   return rate;
 }
 
-// F P, F as above; `turn`: [angular speed]x, zero for a shift.
+// F P with the F of the header; `turn`: [angular speed]x, zero for a translation.
 Matrix9 carried(const Matrix9& p, double damping, const Matrix3& turn) {
   Matrix9 rate;
   rate.topRows<3>() = p.middleRows<3>(3);
@@ -93,7 +93,7 @@ int rates(realtype, N_Vector at, N_Vector out, void* user) {
   return 0;
 }
 
-// The equations' derivatives: F by the sensitivity, and F's own derivative by the state's.
+// Derivatives of the equations: F times the sensitivity, plus the derivative of F times the state.
 int sensitive_rates(int, realtype, N_Vector at, N_Vector, N_Vector* s, N_Vector* out, void* user,
                     N_Vector, N_Vector) {
   const auto& problem = *static_cast<const Problem*>(user);
@@ -126,7 +126,7 @@ struct MotionEquations::Body {
   N_Vector state = nullptr, tolerance = nullptr;
   N_Vector* sensitivities = nullptr;
   void* memory = nullptr;
-  SUNNonlinearSolver alone = nullptr;  // of the state without sensitivities: asked for, not used
+  SUNNonlinearSolver alone = nullptr;  // solver of the state alone: CVODES requires it; unused
   SUNNonlinearSolver together = nullptr;
 
   explicit Body(MotionPart part) : problem{part, {}} {
@@ -166,7 +166,7 @@ struct MotionEquations::Body {
            CVodeSetErrFile(memory, nullptr) == CV_SUCCESS;
   }
 
-  // By the sigmas to begin with; they only grow until the next measurement.
+  // Tolerances from the initial sigmas, which only increase until the next measurement.
   [[nodiscard]] bool set_tolerances(const Matrix9& p) {
     const Vector9 sigma = p.diagonal().cwiseMax(1e-300).cwiseSqrt();
     Mean(data_of(tolerance)) = k_absolute * sigma;

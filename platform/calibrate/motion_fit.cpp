@@ -10,17 +10,17 @@ namespace glint {
 namespace {
 
 constexpr int k_motion_iterations_max = 60;
-constexpr double k_log_most = 9.2;     // of either unknown from the start: a factor of 10^4
-constexpr double k_difference = 0.05;  // of a logarithm, for the likelihood's curvature
-// What is known beforehand of the damping, 1 sigma of its logarithm around the start: where motion
-// is quicker to fade than the samples come, noise and damping cannot be told apart.
+constexpr double k_log_most = 9.2;     // of either unknown from the initial guess: a factor of 10^4
+constexpr double k_difference = 0.05;  // step in a logarithm for the likelihood's curvature
+// Prior of the damping: 1 sigma of its logarithm around the initial guess. If the motion decays
+// faster than the sample period, noise and damping are not separable.
 constexpr double k_log_damping_sigma = 1.0;
 constexpr double k_log_damping_information = 1 / (k_log_damping_sigma * k_log_damping_sigma);
-constexpr std::size_t k_block_scores = 25;  // so many scores in a row may hang together
+constexpr std::size_t k_block_scores = 25;  // length of a run of scores that may be correlated
 
 MotionUnknowns unknowns_at(const double* logs) { return {std::exp(logs[0]), std::exp(logs[1])}; }
 
-// - log-likelihood, and what is known beforehand, by measurement, on the logarithms; Ceres owns it.
+// Negative log posterior per measurement of the logarithms; owned by Ceres.
 class Cost final : public ceres::FirstOrderFunction {
  public:
   Cost(const MotionSeries& series, MotionPart part, const MotionUnknowns& start,
@@ -53,7 +53,8 @@ class Cost final : public ceres::FirstOrderFunction {
   const std::function<void()>& evaluated_;
 };
 
-// H^-1 S H^-1: the curvature, and the spread of the scores by blocks, for no hand is the model's.
+// H^-1 S H^-1 (sandwich covariance): H the curvature, S the block sums of scores, since the model
+// is misspecified for a real hand.
 // Source: White 1982, "Maximum likelihood estimation of misspecified models", Econometrica 50(1),
 // theorem 3.2.
 void judge(const MotionSeries& series, MotionPart part, const LikelihoodSettings& settings,

@@ -1,6 +1,6 @@
-// The most likely noise and damping of one part of a hand's motion, and how sure they are. The
-// damping is taken to be within a factor of e of the start, 1 sigma: a minute of motion outweighs
-// that wherever it shows the damping at all.
+// MAP estimate of noise and damping of one part of the hand motion, with covariance. The prior of
+// the damping is a factor of e around the initial guess, 1 sigma. A minute of motion outweighs it
+// wherever the motion shows the damping.
 #pragma once
 
 #include <functional>
@@ -14,17 +14,18 @@ namespace glint {
 struct MotionFit {
   MotionUnknowns unknowns;
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  // of ln noise, ln damping
-  bool determined = false;                               // the likelihood falls to all sides of it
+  bool determined = false;  // the likelihood has a strict maximum there
   double log_likelihood = 0;
 };
 
 using MotionSeries = std::vector<std::vector<StampedPose>>;
 
-// The likelihood of several series together. `evaluated` is called after each; may be empty.
+// Sums the likelihood over several series.
 [[nodiscard]] Likelihood likelihood_of(const MotionSeries& series, MotionPart part,
                                        const MotionUnknowns& unknowns,
                                        const LikelihoodSettings& settings);
 
+// Maximises the likelihood. Calls `evaluated`, which may be empty, after each evaluation.
 [[nodiscard]] MotionFit most_likely(const MotionSeries& series, MotionPart part,
                                     const MotionUnknowns& start, const LikelihoodSettings& settings,
                                     const std::function<void()>& evaluated);

@@ -9,7 +9,7 @@ namespace {
 constexpr double k_log_two_pi = 1.8378770664093453;
 constexpr double k_small_angle = 1e-4;
 
-// How Exp(v) moves, at its left, when v does. Source: Sola, Deray and Atchuthan 2018, eq. (145).
+// Left Jacobian of Exp at v. Source: Sola, Deray and Atchuthan 2018, eq. (145).
 Matrix3 left_jacobian(const Vector3& v) {
   const double angle = v.norm();
   const Matrix3 cross = cross_matrix(v);
@@ -19,13 +19,13 @@ Matrix3 left_jacobian(const Vector3& v) {
          (angle - std::sin(angle)) / (square * angle) * cross * cross;
 }
 
-// Of the right Jacobian, the left one's transpose: eq. (144).
+// The right Jacobian is the transpose of the left one: eq. (144).
 Matrix3 inverse_right_jacobian(const Vector3& v) { return left_jacobian(v).transpose().inverse(); }
 
 Matrix3 exponential_of(const Vector3& v) { return from_rotation_vector(v).toRotationMatrix(); }
 
-// The filter with its derivatives. Of a rotation the mean's place is zero after each correction;
-// the rotation itself and how it turns with the unknowns stand beside it.
+// Kalman filter with derivatives. For a rotation the mean's rotation vector is zero after each
+// correction; rotation_ holds the rotation and turned_by_ its derivatives by the unknowns.
 class SensitiveFilter {
  public:
   SensitiveFilter(MotionPart part, const MotionUnknowns& unknowns,
@@ -43,7 +43,7 @@ class SensitiveFilter {
     if (!turns()) state_.value.mean.head<3>() = pose.translation;
     const double speed =
         turns() ? settings_.start.start_turn_rad_s : settings_.start.start_speed_m_s;
-    // The stationary variance of a damped acceleration, as start_motion() has it.
+    // Stationary variance of a damped acceleration, as in start_motion().
     const double acceleration = unknowns_.noise / (2 * unknowns_.damping);
     state_.value.covariance.diagonal() << Vector3::Constant(variance_),
         Vector3::Constant(speed * speed), Vector3::Constant(acceleration);

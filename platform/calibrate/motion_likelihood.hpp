@@ -1,9 +1,9 @@
-// How likely a recording is under a hand's noise and damping: the log-likelihood of the innovations
-// of the filter (kernels/motion/motion_filter.hpp), and its gradient.
+// Log-likelihood of a recording under the hand motion model's noise and damping, with gradient:
+// from the innovations of the filter (kernels/motion/motion_filter.hpp).
 //
-// Between the measurements mean, covariance and their sensitivities are integrated
-// (motion_equations.hpp); the corrections are algebraic and differentiated by hand. Shift and
-// rotation are measured and move apart, so that each has two unknowns of its own.
+// Between measurements, mean, covariance and their sensitivities are integrated
+// (motion_equations.hpp); the corrections are algebraic with analytic derivatives. Translation and
+// rotation are measured and move independently, so that each has two unknowns of its own.
 //
 // Source: Schweppe 1965, "Evaluation of likelihood functions for Gaussian signals", IEEE
 //         Transactions on Information Theory 11(1), eq. (15); the derivatives of a filter: Gupta
@@ -19,7 +19,7 @@
 
 namespace glint {
 
-// What a measurement's sigma is, of one axis.
+// Standard deviation of a measurement, per axis.
 struct MeasuredNoise {
   double position_sigma_m = 0.0005;
   double rotation_sigma_rad = 0.00524;  // 0.3 deg
@@ -28,13 +28,13 @@ struct MeasuredNoise {
 struct Likelihood {
   double log_likelihood = 0;
   Vector2 gradient = Vector2::Zero();  // by ln noise, ln damping
-  std::vector<Vector2> scores;         // of each innovation: what the gradient is the sum of
-  int innovations = 0;                 // of three components each
+  std::vector<Vector2> scores;         // of each innovation; their sum is the gradient
+  int innovations = 0;                 // count; three components each
   bool integrated = true;
 };
 
-// One recording; after a gap longer than gap_max_s the filter starts anew. `start` gives speed and
-// turn that a hand may have there.
+// Settings for one recording. The filter restarts after a gap longer than gap_max_s. `start`
+// supplies the initial speed deviations of a (re)start.
 struct LikelihoodSettings {
   MeasuredNoise noise;
   MotionSettings start;

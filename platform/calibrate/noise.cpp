@@ -19,10 +19,10 @@ constexpr int k_terms = 3;
 using Row = Eigen::Matrix<double, 1, k_terms>;
 
 constexpr int k_times_a_decade = 8;
-constexpr double k_rest_m = 0.02, k_rest_rad = 0.1;  // what a tool at rest stays within
-constexpr double k_freedom_most = 20;  // weight of a deviation: no short time outweighs the long
+constexpr double k_rest_m = 0.02, k_rest_rad = 0.1;  // motion limit of a static tool
+constexpr double k_freedom_most = 20;  // limit of a row's weight: short times must not dominate
 
-// Means over 1, 2, 3, 4, 6, 8, 12 .. poses, as long as four follow each other.
+// Window lengths 1, 2, 3, 4, 6, 8, 12 .. poses, as long as four windows fit.
 std::vector<int> window_lengths(int poses) {
   std::vector<int> lengths;
   for (int two = 1; 4 * two <= poses; two *= 2) {
@@ -46,7 +46,7 @@ double allan_variance(const Series& series, int frames) {
   return 0.5 * squares / static_cast<double>(count);
 }
 
-// Of a Gauss-Markov process of variance 1, sampled.
+// Allan variance of a sampled Gauss-Markov process of variance 1.
 double markov_variance(double correlation_s, double period_s, int frames) {
   const double keep = std::exp(-period_s / correlation_s), m = frames;
   const double all = 1 - std::pow(keep, m), one = 1 - keep;
@@ -65,7 +65,7 @@ struct Fit {
   double cost = std::numeric_limits<double>::infinity();
 };
 
-// The best of all subsets of terms whose least squares are not negative.
+// Non-negative least squares by enumeration: the best subset of terms with non-negative solution.
 Fit non_negative(const Eigen::Matrix<double, Eigen::Dynamic, k_terms>& rows,
                  const Eigen::VectorXd& measured) {
   Fit best;
@@ -96,7 +96,7 @@ struct Measured {
   double period_s = 0;
 };
 
-// Each row weighs the square root of how many independent means it rests on.
+// The weight of a row is the square root of its number of independent means.
 Fit fit_axis(const Measured& allan, std::size_t axis, int poses, const CorrelationTimes& times) {
   const auto n = static_cast<Eigen::Index>(allan.lengths.size());
   Eigen::Matrix<double, Eigen::Dynamic, k_terms> rows(n, k_terms);
@@ -233,7 +233,7 @@ CameraUncertainty marker_errors_of(const NoiseCalibration& noise, const Cell& ce
     markers.push_back(marker.value);
     rays.push_back(local.value);
   }
-  // Of 1 mm of range and of 1 px alone; the pose's variances are linear in both.
+  // Pose variances for 1 mm of range error and for 1 px of centroid error; they are linear in both.
   CameraUncertainty range = k_exact_camera, centroid = k_exact_camera;
   range.slow_range_m = 0.001;
   centroid.slow_centroid_px = 1;
@@ -249,7 +249,7 @@ CameraUncertainty marker_errors_of(const NoiseCalibration& noise, const Cell& ce
   for (Eigen::Index k = 0; k < 6; ++k) {
     const AxisNoise& axis = noise.axes[static_cast<std::size_t>(k)];
     const double variance = axis.fast * axis.fast + axis.slow * axis.slow;
-    if (!(variance > 0)) {  // white alone: no marker error may act on this axis
+    if (!(variance > 0)) {  // white noise only: no marker error may act on this axis
       rows.row(k).setZero();
       ones(k) = 0;
       continue;

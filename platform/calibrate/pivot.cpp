@@ -15,7 +15,7 @@ namespace glint {
 namespace {
 
 constexpr int k_pivot_first_look =
-    k_pivot_noise_poses_min;  // poses before the tip's sigma is first looked at
+    k_pivot_noise_poses_min;  // poses before the first test of the tip's sigma
 constexpr int k_refine_rounds = 3;
 
 std::vector<PivotSample> samples_of(std::span<const StampedPose> poses, const Vector3& centre_m) {
@@ -51,7 +51,7 @@ double correlated(const std::vector<PivotSample>& kept, const PivotPoint& point)
   return correlation_factor(misses);
 }
 
-// Of the tip, from the kept samples' Jacobians [R, -1], scaled by what their misses say.
+// Tip covariance from the kept samples' Jacobians [R, -1], scaled by the reduced chi-square.
 Matrix3 tip_covariance(const std::vector<PivotSample>& kept, const PivotPoint& point) {
   Matrix6 information = Matrix6::Zero();
   double sum = 0;
@@ -65,7 +65,7 @@ Matrix3 tip_covariance(const std::vector<PivotSample>& kept, const PivotPoint& p
   return inverse_of(information).topLeftCorner<3, 3>() * (sum / freedom);
 }
 
-// Whether the beginning of the series is enough for the wanted sigma; by the linear start alone.
+// Returns whether these first poses reach stop_sigma_m; uses the linear solution only.
 bool enough(const std::vector<PivotSample>& samples, std::span<const StampedPose> poses,
             const PivotSettings& settings) {
   std::vector<PivotSample> known = samples;

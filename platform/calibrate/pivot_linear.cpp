@@ -11,16 +11,16 @@ namespace glint {
 namespace {
 
 constexpr int k_huber_rounds = 30;
-constexpr double k_huber_medians = 1.0;  // a distance up to its median counts in full
+constexpr double k_huber_medians = 1.0;  // a distance up to the median has full weight
 
-// Files hold a micrometre at best: noise below it is only rounding.
+// Files resolve a micrometre at best: smaller noise is rounding only.
 constexpr double k_position_sigma_min_m = 1e-6;
 constexpr double k_rotation_sigma_min_rad = 1e-6;
 
 }  // namespace
 
 PivotPoint weighted_pivot(std::span<const PivotSample> samples, std::span<const double> weights) {
-  // Unknowns: lever and post. A row block is [R, -1], the right-hand side -centre.
+  // Unknowns: lever and post. Row block [R, -1], right-hand side -centre.
   Matrix6 normal = Matrix6::Zero();
   Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
   for (std::size_t i = 0; i < samples.size(); ++i) {

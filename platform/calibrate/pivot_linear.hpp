@@ -1,4 +1,4 @@
-// The linear part of pivot calibration: tip and post by reweighted least squares.
+// Linear pivot calibration: tip and post by iteratively reweighted least squares.
 #pragma once
 
 #include <span>
@@ -9,36 +9,36 @@
 namespace glint {
 
 struct PivotPoint {
-  Vector3 lever_m = Vector3::Zero();  // the tip seen from the centre, tool frame
+  Vector3 lever_m = Vector3::Zero();  // from the centre to the tip, tool frame
   Vector3 post_m = Vector3::Zero();
 };
 
-// Least squares with one weight a sample; the samples' sigmas do not count.
+// Least squares with one weight per sample; ignores the samples' sigmas.
 [[nodiscard]] PivotPoint weighted_pivot(std::span<const PivotSample> samples,
                                         std::span<const double> weights);
 
-// Every sample weighs one.
+// Least squares with unit weights.
 [[nodiscard]] PivotPoint plain_pivot(std::span<const PivotSample> samples);
 
-// The same with Huber's weights, from the median of the distances: deaf to a third of wild samples.
+// Least squares with Huber weights scaled by the median distance; resists a third of outliers.
 [[nodiscard]] PivotPoint robust_pivot(std::span<const PivotSample> samples);
 
 // R lever + centre - post of one sample.
 [[nodiscard]] Vector3 pivot_miss(const PivotSample& sample, const PivotPoint& point);
 
-// The noise of the samples, told apart by its direction: along the lever only the position errs.
+// Noise of the samples, separated by direction: along the lever arm only position noise acts.
 struct PivotNoise {
   double position_sigma_m = 0;
   double rotation_sigma_rad = 0;
 };
 [[nodiscard]] PivotNoise pivot_noise(std::span<const PivotSample> samples, const PivotPoint& point);
 
-// All of it taken for the position's, alike in all directions.
+// Attributes all noise to the position, isotropic.
 [[nodiscard]] PivotNoise pivot_noise_alike(std::span<const PivotSample> samples,
                                            const PivotPoint& point);
 
-// What a miss's covariance is expected to be: position's alike in all directions, rotation's across
-// the lever.
+// Expected covariance of a pivot_miss: isotropic position noise, and rotation noise across the
+// lever arm.
 [[nodiscard]] Matrix3 miss_covariance(const PivotSample& sample, const PivotPoint& point);
 
 }  // namespace glint

@@ -36,7 +36,7 @@ PivotPoint refined_pivot(std::span<const PivotSample> samples, const PivotPoint&
   std::vector<Quaternion> rotations;
   for (const PivotSample& sample : samples) rotations.push_back(sample.rotation);
 
-  ceres::EigenQuaternionManifold unit;  // one for all
+  ceres::EigenQuaternionManifold unit;  // shared by all rotations
   ceres::Problem::Options options;
   options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(options);

@@ -1,5 +1,5 @@
-// The nonlinear part of pivot calibration: every sample's true rotation is an unknown beside tip
-// and post, so that the noise of rotations does not draw the tip towards the centre.
+// Nonlinear pivot calibration: each sample's true rotation is an unknown beside tip and post, so
+// that rotation noise does not bias the tip towards the centre.
 #pragma once
 
 #include <span>

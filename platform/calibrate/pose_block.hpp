@@ -1,4 +1,4 @@
-// A pose as one block of unknowns for Ceres: x, y, z, w of the rotation, then the place.
+// A pose as a Ceres parameter block: quaternion x, y, z, w, then the translation.
 #pragma once
 
 #include <ceres/manifold.h>

@@ -46,7 +46,7 @@ void take_points(const PoseSource& source, PoseSeries& series) {
   }
 }
 
-// What a marker's own range noise is at least: its spread within one frame tells no bias.
+// Minimum noise of a marker's range: the spread within one frame does not contain the bias.
 constexpr double k_recorded_range_sigma_m = 0.0015;
 
 void take_recording(const PoseSource& source, PoseSeries& series) {

@@ -15,11 +15,11 @@
 namespace glint {
 namespace {
 
-// What is cut, merged, or has its range from its rim errs in ways of its own.
+// Markers that are cut off, merged, or ranged at their rim have errors of another kind.
 constexpr std::uint8_t k_spoiled = k_marker_no_depth | k_marker_ring_depth | k_marker_saturated |
                                    k_marker_touches_edge | k_marker_has_neighbour | k_marker_uneven;
 
-// `blobs`: null where the recording has none.
+// `blobs`: null if the recording has none.
 BlobFrame frame_of(Time time, const Markers& markers, const Blobs* blobs, const Camera& camera) {
   BlobFrame frame{time, {}};
   for (int i = 0; i < markers.count; ++i) {
@@ -51,7 +51,7 @@ BlobSeries series_for(Cell& cell, const std::string& path, const std::string& to
   return series;
 }
 
-// Of level blobs: the markers that the run found.
+// For level blobs: the markers that the recorded run found.
 BlobSeries recorded_markers(RecordingReader& reader, const std::string& path,
                             const std::string& tool) {
   Cell cell = recorded_cell(reader, path);
@@ -69,7 +69,7 @@ BlobSeries recorded_markers(RecordingReader& reader, const std::string& path,
   return series;
 }
 
-// What the search for blobs needs of a tool whose markers are yet to be found: their kind.
+// Gives the blob search the marker kind of a tool whose marker positions are not known yet.
 Tool stand_in(Tool tool) {
   tool.markers_m = {Vector3{0, 0, 0}, Vector3{0.1, 0, 0}, Vector3{0, 0.07, 0}};
   tool.marker_count = 3;
@@ -97,7 +97,7 @@ BlobSeries recorded_blobs(const std::string& path, const std::string& cell_file,
 BlobSeries recorded_blobs(RecordedFrames& recorded, const std::string& tool) {
   BlobSeries series = series_for(recorded.cell, recorded.path, tool);
   series.brightness = true;
-  // As the live run searched: of level roi no more was kept.
+  // Uses the live run's search: a recording of level roi holds only its regions.
   TrackedFrames tracked =
       track_frames(recorded, Search::tracked, [&](const ArrivedFrame& arrived, Tracker& tracker) {
         series.frames.push_back(frame_of(arrived.frame.mid_exposure, tracker.token<Markers>(),

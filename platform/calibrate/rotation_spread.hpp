@@ -1,4 +1,4 @@
-// How much a series of rotations moved each direction of the tool: what a calibration can see.
+// Spread of a series of rotations per tool direction: the observability of a calibration.
 #pragma once
 
 #include <span>
@@ -7,12 +7,11 @@
 
 namespace glint {
 
-// The root mean square by which the tool's direction was moved away from its mean, for the
-// directions that were moved least (0) to most (2). A tool that only turns about one axis moves
-// this axis not at all.
+// Root mean square deviation of a tool direction from its mean, for the directions of least (0) to
+// most (2) motion. A rotation about one axis leaves that axis with 0.
 struct RotationSpread {
-  Vector3 spread_rad = Vector3::Zero();      // rising
-  Matrix3 directions = Matrix3::Identity();  // columns: unit, in the tool's frame
+  Vector3 spread_rad = Vector3::Zero();      // ascending
+  Matrix3 directions = Matrix3::Identity();  // columns: unit, tool frame
 };
 
 [[nodiscard]] RotationSpread rotation_spread(std::span<const StampedPose> poses);

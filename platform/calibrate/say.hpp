@@ -1,4 +1,4 @@
-// Figures in the words of a message.
+// Formatting of figures for messages.
 #pragma once
 
 #include <cstdio>

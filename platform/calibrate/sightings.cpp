@@ -9,13 +9,13 @@
 namespace glint {
 namespace {
 
-constexpr double k_pixel_sigma_px = 0.1;  // of a blob that tells no sigma, and the least of one
+constexpr double k_pixel_sigma_px = 0.1;  // of a blob without a sigma, and the minimum of others
 constexpr double k_gate_sigmas = 6;
 constexpr double k_rms_sigmas = 3;
 constexpr double k_any_area = 1e9;
-// An error common to all ranges scales the whole tool: 10 mm at 0.3 m, 3 mm of 0.1 m.
+// An error common to all ranges scales the whole tool: 10 mm at 0.3 m are 3 mm of 0.1 m.
 constexpr double k_scale_slack_m = 0.003;
-// Another labeling this much worse, in chi-square, is none: three sigmas.
+// A labeling is unambiguous if every alternative has a larger chi-square by this: three sigmas.
 constexpr double k_apart_chi_square = 9;
 
 Markers markers_of(const BlobFrame& frame) {

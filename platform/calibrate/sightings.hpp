@@ -1,5 +1,5 @@
-// A known tool as a camera saw it, frame by frame: which blob is which marker, its pixel, range and
-// brightness, and the pose that they give.
+// Observations of a known tool per camera frame: the labeling of its blobs, their pixel, range and
+// brightness, and the resulting pose.
 #pragma once
 
 #include <optional>
@@ -15,13 +15,13 @@
 
 namespace glint {
 
-// A bright spot before it is known whose marker it is.
+// A blob without a label.
 struct SeenBlob {
   LocalRays rays;  // around its pixel
   double surface_range_m = 0;
-  double sigma_x_px = 0, sigma_y_px = 0, sigma_range_m = 0;  // 0: not known
-  double peak = 0;                                           // raw counts; 0: not known
-  std::uint32_t area_px = 0;                                 // 0: not known
+  double sigma_x_px = 0, sigma_y_px = 0, sigma_range_m = 0;  // 0: unknown
+  double peak = 0;                                           // raw counts; 0: unknown
+  std::uint32_t area_px = 0;                                 // 0: unknown
 };
 
 struct BlobFrame {
@@ -33,13 +33,13 @@ struct BlobSeries {
   std::vector<BlobFrame> frames;
   Camera camera;
   bool brightness = false;            // the blobs have peaks
-  std::optional<Tool> tool;           // that was looked for
-  std::string what;                   // the file, for messages
-  std::vector<std::string> failures;  // what of it could not be read, a line each
+  std::optional<Tool> tool;           // the tool of the search
+  std::string what;                   // file name, for messages
+  std::vector<std::string> failures;  // read errors, a line each
 };
 
 struct SeenMarker {
-  int marker = 0;  // of the tool
+  int marker = 0;  // index in the tool
   SeenBlob blob;
 };
 
@@ -49,30 +49,30 @@ struct Sighting {
 };
 
 struct SightingSettings {
-  // What a range may be off, an error common to all markers included.
+  // Standard deviation of a range, including errors common to all markers.
   double range_sigma_m = 0.010;
 };
 
 struct SightingSeries {
   std::vector<Sighting> sightings;
   int frames = 0;     // of the series
-  int unsolved = 0;   // without the tool
-  int ambiguous = 0;  // of these: two ways to name the markers fit alike
+  int unsolved = 0;   // frames without a pose
+  int ambiguous = 0;  // of `unsolved`: two labelings fit equally well
 };
 
-// Each frame by itself, without a prior; of each the labeling that the noise explains best.
+// Labels each frame by itself, without a prior; returns the labeling of least chi-square.
 [[nodiscard]] SightingSeries find_tool(const BlobSeries& series, const Tool& tool,
                                        const SightingSettings& settings);
 
-// Recorded frames of any kind, or a recording of level blobs: the markers found anew without any
-// bias taken off. The cell file (empty: the recording's own, else the built-in one) and the tool
-// are as open_recorded() and select_tool() have them. Throws InputError for bad files.
+// Finds the markers again, without bias correction, in recorded frames of any kind or in a
+// recording of level blobs. For the cell file (empty: the recording's own, else the built-in one)
+// and the tool see open_recorded() and select_tool(). Throws InputError for bad files.
 [[nodiscard]] BlobSeries recorded_blobs(const std::string& path, const std::string& cell_file,
                                         const std::string& tool);
 [[nodiscard]] BlobSeries recorded_blobs(RecordedFrames& recorded, const std::string& tool);
 
-// A table of blobs (CSV) `time_s,x_px,y_px,range_m,peak`, in which this camera saw them. Pixel
-// centres are at integer + 0.5; ranges are to the surface, radial. Throws InputError.
+// Reads a table of blobs (CSV) `time_s,x_px,y_px,range_m,peak` of this camera. Pixel centres are at
+// integer + 0.5; ranges are radial, to the surface. Throws InputError.
 [[nodiscard]] BlobSeries blobs_from_text(std::string_view text, const std::string& path,
                                          const Camera& camera);
 

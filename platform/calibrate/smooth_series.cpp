@@ -11,7 +11,7 @@ constexpr std::size_t k_neighbours = 4;
 constexpr double k_reach_s = 0.05;
 constexpr int k_samples_min = 5;
 
-// Position and rotation vector beside the middle pose's rotation, by least squares over 1, t, t^2.
+// Position, and rotation vector relative to the middle pose, by least squares over 1, t, t^2.
 Pose smoothed(std::span<const StampedPose> near, const StampedPose& middle) {
   Matrix3 normal = Matrix3::Zero();
   Eigen::Matrix<double, 3, 6> right = Eigen::Matrix<double, 3, 6>::Zero();

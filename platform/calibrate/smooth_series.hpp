@@ -1,5 +1,5 @@
-// A motion without its noise: what an offset's derivative needs, for between neighbours a hundredth
-// of a second apart noise moves more than a hand.
+// Smoothing of a pose series by local quadratic least squares (Savitzky-Golay). The derivative by a
+// clock offset needs it: over 10 ms, noise exceeds the motion of a hand.
 #pragma once
 
 #include <span>
@@ -9,9 +9,10 @@
 
 namespace glint {
 
-// Each pose by the parabola through it and up to four neighbours on either side within 50 ms, for
-// position and rotation vector; as it is where fewer than five are near.
-// Source: Savitzky and Golay 1964, "Smoothing and differentiation of data", for uneven stamps.
+// Fits a parabola through each pose and up to four neighbours on either side within 50 ms, for
+// position and rotation vector. Keeps a pose unchanged if fewer than five samples are near.
+// Source: Savitzky and Golay 1964, "Smoothing and differentiation of data"; here for irregular time
+// stamps.
 [[nodiscard]] std::vector<StampedPose> smooth_series(std::span<const StampedPose> poses);
 
 }  // namespace glint

@@ -13,7 +13,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_spin_first_look = 30;  // poses before the sigma is first looked at
+constexpr int k_spin_first_look = 30;  // poses before the first test of the sigma
 constexpr double k_outlier_sigmas = 4;
 constexpr double k_wobble_sigma_min_rad = 1e-7;
 constexpr int k_start_rounds = 3;
@@ -26,7 +26,7 @@ std::vector<Vector3> misses_of(std::span<const StampedPose> poses, const SpinAxi
   return misses;
 }
 
-// The direction that moved least, and where it pointed on average.
+// The tool direction that moved least, and its mean direction in the tracker frame.
 SpinAxis axis_of(std::span<const StampedPose> poses, const Vector3& towards) {
   SpinAxis axis;
   axis.tool = rotation_spread(poses).directions.col(0);
@@ -37,7 +37,7 @@ SpinAxis axis_of(std::span<const StampedPose> poses, const Vector3& towards) {
   return axis;
 }
 
-// Of one component across the axis, from the lengths of the misses: their median is 1.1774 sigma.
+// Sigma of one component across the axis; the median length of the misses is 1.1774 sigma.
 double wobble_sigma(const std::vector<Vector3>& misses) {
   std::vector<double> lengths;
   for (const Vector3& miss : misses) lengths.push_back(miss.norm());
@@ -60,7 +60,7 @@ Across across(const Vector3& axis) {
   return basis;
 }
 
-// From the Jacobians of both axes' tangents, scaled by what the misses say.
+// Covariance from the Jacobians of both axes' tangents, scaled by the residual variance.
 Matrix3 axis_covariance(std::span<const StampedPose> poses, const SpinAxis& axis) {
   const Across tool = across(axis.tool), tracker = across(axis.tracker);
   Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
@@ -75,8 +75,8 @@ Matrix3 axis_covariance(std::span<const StampedPose> poses, const SpinAxis& axis
   return tool * information.inverse().topLeftCorner<2, 2>() * tool.transpose() * variance;
 }
 
-// The tool's point nearest to its origin that stays on one line along the axis: of the normal
-// equations' solutions, which are free along the axis, the shortest.
+// The tool's point nearest to its origin that stays on one line along the axis: the minimum-norm
+// solution of the normal equations, which leave the direction along the axis free.
 void find_foot(std::span<const StampedPose> poses, const SpinAxis& axis, SpinResult& result) {
   const Matrix3 project = Matrix3::Identity() - axis.tracker * axis.tracker.transpose();
   Matrix6 normal = Matrix6::Zero();
@@ -90,7 +90,7 @@ void find_foot(std::span<const StampedPose> poses, const SpinAxis& axis, SpinRes
   const SymmetricEigen ways = symmetric_eigen(normal);
   const Eigen::Matrix<double, 6, 1> along = ways.vectors.transpose().lazyProduct(right);
   Eigen::Matrix<double, 6, 1> solution = Eigen::Matrix<double, 6, 1>::Zero();
-  for (int i = 2; i < 6; ++i) {  // the two least belong to the free ways along the axis
+  for (int i = 2; i < 6; ++i) {  // skips the two smallest: free directions along the axis
     solution += ways.vectors.col(i) * (along[i] / ways.values[i]);
   }
   result.foot_m = solution.head<3>() - axis.tool * axis.tool.dot(solution.head<3>());

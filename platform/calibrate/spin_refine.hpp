@@ -1,4 +1,4 @@
-// The nonlinear part of spin calibration.
+// Nonlinear refinement of the spin axis.
 #pragma once
 
 #include <span>

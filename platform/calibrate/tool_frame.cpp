@@ -14,17 +14,17 @@
 namespace glint {
 namespace {
 
-constexpr double k_drawn_noise_m = 0.002;  // made beside drawn, and a size that ranges make wrong
+constexpr double k_drawn_noise_m = 0.002;  // manufacturing, and size error by uncalibrated ranges
 
-// Sum of squared distances from their middle.
+// Sum of squared distances from the centroid.
 double spread_m2(const std::vector<Vector3>& points) {
   double squares = 0;
   for (const Vector3& p : points) squares += (p - middle_of(points)).squaredNorm();
   return squares;
 }
 
-// Turns the markers about their middle to their principal axes, the longest first; the farthest
-// marker along x and along y lies on the positive side.
+// Rotates the markers about their centroid to their principal axes, the longest first. The farthest
+// marker along x and along y gets the positive sign.
 void turn_to_axes(std::vector<Vector3>& markers) {
   const Vector3 middle = middle_of(markers);
   Matrix3 spread = Matrix3::Zero();
@@ -48,7 +48,7 @@ void turn_to_axes(std::vector<Vector3>& markers) {
   for (Vector3& m : markers) m = axes * m;
 }
 
-// Into the drawing's frame and order.
+// Transforms into the drawing's frame and marker order.
 void lay_on(const Tool& drawn, const std::string& what, ToolGeometry& geometry) {
   const PointFrame points{Time{}, geometry.markers_m};
   const Labeling label = label_segment({&points, 1}, {0, 1}, drawn, k_drawn_noise_m).front();
@@ -107,7 +107,7 @@ void set_size(const ToolGeometrySettings& settings, ToolGeometry& geometry) {
   for (std::size_t i = 0; i < geometry.markers_m.size(); ++i) {
     Vector3& marker = geometry.markers_m[i];
     marker = middle + geometry.scale * (marker - middle);
-    const double moved_m = sigma * (marker - middle).norm() / std::sqrt(3.0);  // an axis
+    const double moved_m = sigma * (marker - middle).norm() / std::sqrt(3.0);  // per axis
     geometry.marker_sigma_m[i] = std::hypot(geometry.scale * geometry.marker_sigma_m[i], moved_m);
   }
 }

@@ -1,4 +1,4 @@
-// The size of a tool whose markers were found, and the frame in which they are stated.
+// Size of a tool from its estimated markers, and the frame in which the markers are stated.
 #pragma once
 
 #include <string>
@@ -11,12 +11,12 @@ namespace glint {
 [[nodiscard]] Vector3 middle_of(const std::vector<Vector3>& points);
 [[nodiscard]] double longest_side(const std::vector<Vector3>& markers);
 
-// The size that was measured apart, else the drawing's, else as it is. Its error moves each marker
-// from the middle.
+// Scales the markers to the measured longest side, else to the drawing's size, else not at all. The
+// error of the size is added to each marker's sigma, along its line from the centroid.
 void set_size(const ToolGeometrySettings& settings, ToolGeometry& geometry);
 
-// The drawing's frame and order of markers; else about their middle, along their principal axes.
-// Throws InputError, naming `what`: another tool than the drawn one.
+// Transforms to the drawing's frame and marker order; without a drawing, to the centroid and the
+// principal axes. Throws InputError, naming `what`, for a tool other than the drawn one.
 void set_frame(const ToolGeometrySettings& settings, const std::string& what,
                ToolGeometry& geometry);
 

@@ -21,7 +21,7 @@ constexpr int k_seeds_max = 5;
 constexpr double k_noise_share_max = 0.1;  // of the tool's size
 constexpr double k_labelled_share_min = 0.5;
 constexpr std::size_t k_sigma_parts = 8;
-constexpr double k_line_noises = 5;  // beside a line by less than this, nobody knows which way
+constexpr double k_line_noises = 5;  // nearer to a line, the rotation about it is open
 constexpr const char* k_on_a_line =
     ": the points that recur are fewer than 3 or lie on a line; expected 3 or more markers that do "
     "not";
@@ -35,7 +35,7 @@ Tool tool_of(const std::vector<Vector3>& markers_m) {
   return tool;
 }
 
-// The largest number of points that a tenth of the frames have.
+// Largest point count that occurs in at least a tenth of the frames.
 std::size_t usual_most(std::span<const PointFrame> frames, const std::string& what) {
   std::map<std::size_t, int> counts;
   for (const PointFrame& frame : frames) ++counts[frame.points_m.size()];
@@ -56,7 +56,7 @@ int markers_in(const std::vector<Labeling>& labels) {
   return sum;
 }
 
-// The frame of the longest segment whose points, taken for the tool, are found most often in it.
+// Initial tool: the points of the frame that, taken as the tool, label most markers in the segment.
 NamedFrames begin_with(std::span<const PointFrame> frames, const Segment& segment,
                        std::size_t points, double noise_m) {
   std::vector<std::size_t> seeds;
@@ -74,7 +74,8 @@ NamedFrames begin_with(std::span<const PointFrame> frames, const Segment& segmen
   return best;
 }
 
-// Whether the second of the markers' principal spreads is not clearly more than their noise.
+// Returns whether the second principal spread of the markers is within k_line_noises of their
+// noise.
 bool on_a_line(const std::vector<Vector3>& markers, double noise_m) {
   const Vector3 middle = middle_of(markers);
   Matrix3 spread = Matrix3::Zero();
@@ -94,8 +95,8 @@ void check_enough(const ToolRound& round, std::size_t frames, const std::string&
                    "3 or more of its markers in most frames");
 }
 
-// What slow errors leave of each marker's place, an axis: by the spread of its mean misses over
-// k_sigma_parts parts of the recording; those that change more slowly are stated.
+// Effect of slow errors on each marker's position, per axis: from the spread of its mean residuals
+// over k_sigma_parts parts of the recording. slow_range_m covers still slower errors.
 void count_slow_errors(const ToolRound& round, double slow_range_m, ToolGeometry& geometry) {
   for (std::size_t marker = 0; marker < geometry.marker_sigma_m.size(); ++marker) {
     std::array<Vector3, k_sigma_parts> sums;
@@ -149,7 +150,7 @@ ToolGeometry geometry_of(const ToolRound& round, const ToolGeometrySettings& set
 double slow_range_of_mean(std::span<const PointFrame> frames, const Camera& camera) {
   if (frames.empty()) return 0;
   const double seconds = std::max((frames.back().time - frames.front().time).seconds(), 1e-3);
-  // Of the mean of a Gauss-Markov process, as a share of its variance.
+  // Variance of the mean of a Gauss-Markov process over the recording, relative to its variance.
   const auto share = [&](double correlation_s) {
     const double x = correlation_s / seconds;
     return 2 * x * (1 - x * (1 - std::exp(-1 / x)));
@@ -170,7 +171,7 @@ ToolGeometry calibrate_tool(std::span<const PointFrame> frames,
       *std::max_element(segments.begin(), segments.end(),
                         [](const Segment& a, const Segment& b) { return a.length() < b.length(); });
 
-  const double first_noise_m = std::sqrt(2.0) * settings.noise_m;  // two frames differ by this
+  const double first_noise_m = std::sqrt(2.0) * settings.noise_m;  // of two frames' difference
   NamedFrames named = begin_with(frames, longest, usual_most(frames, what), first_noise_m);
   ToolRound round = round_of(frames, longest.begin, named);
   if (named.tool.marker_count == 0) throw InputError(what + k_on_a_line);

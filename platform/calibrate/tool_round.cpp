@@ -27,13 +27,13 @@ void drop_outliers(ToolRound& round) {
   std::erase_if(round.points, [&](const LabelledPoint& point) {
     return bundle_miss(round.bundle, point).norm() > limit;
   });
-  // A pose that has fewer than three points left would be free.
+  // Fewer than three points do not determine a pose.
   std::vector<int> left(round.frames.size(), 0);
   for (const LabelledPoint& point : round.points) ++left[point.frame];
   std::erase_if(round.points, [&](const LabelledPoint& point) { return left[point.frame] < 3; });
 }
 
-// Poses that no point belongs to any more leave.
+// Removes poses without points.
 void compact(ToolRound& round) {
   std::vector<std::size_t> place(round.frames.size(), 0), frames;
   std::vector<Pose> poses;

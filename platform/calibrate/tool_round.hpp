@@ -1,4 +1,5 @@
-// One round of finding a tool's markers: named points, fitted poses and markers, what recurs.
+// One iteration of tool geometry estimation: labelled points, fit of poses and markers, new
+// markers.
 #pragma once
 
 #include <span>
@@ -23,18 +24,18 @@ struct ToolRound {
   double noise_m = 0;
 };
 
-// The labels are those of frames `begin` and on.
+// Requires that the labels are those of frames `begin` and following.
 [[nodiscard]] ToolRound round_of(std::span<const PointFrame> frames, std::size_t begin,
                                  const NamedFrames& named);
 
-// Fits with a Cauchy loss of noise_m, leaves outliers and frames without three points out, fits
-// again and finds the noise. No points are left where nothing fits.
+// Fits with a Cauchy loss of noise_m, removes outliers and frames with fewer than three points,
+// fits again and estimates the noise. Leaves no points if nothing fits.
 void fit(ToolRound& round, double noise_m);
 
-// In how many frames each marker was seen.
+// Number of frames with each marker.
 [[nodiscard]] std::vector<int> seen_by_marker(const ToolRound& round);
 
-// The markers that are seen in this share of the frames, and what else recurs at one place.
+// Returns the markers seen in at least this share of the frames, and other recurring points.
 [[nodiscard]] std::vector<Vector3> next_markers(std::span<const PointFrame> frames,
                                                 const ToolRound& round, double seen_min);
 
