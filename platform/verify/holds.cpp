@@ -7,15 +7,15 @@ namespace glint {
 namespace {
 
 constexpr double k_block_s = 0.25;
-constexpr double k_moved_m = 0.010;  // from block to block; a block's mean errs by 1 mm or so
-constexpr std::size_t k_sightings_min = 2;  // of a block: a camera gives 5 frames/s at least
+constexpr double k_moved_m = 0.010;  // between blocks; the mean of a block errs by about 1 mm
+constexpr std::size_t k_sightings_min = 2;  // per block: a camera delivers at least 5 frames/s
 
 struct Block {
   Hold hold;
   Vector3 tip_m = Vector3::Zero(), middle_m = Vector3::Zero();
 };
 
-// What the headset and the frame's noise leave open: a head that just moved makes it large.
+// Variance from the headset and the frame's noise; large just after head motion.
 double variance_of(const TipSighting& one) {
   return (one.random_m2 + one.by_head * one.by_head.transpose() + one.moving_m2).trace();
 }

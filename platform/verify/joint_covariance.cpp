@@ -11,7 +11,7 @@ namespace {
 // (1 - e^-x) / x
 double kept(double x) { return x < 1e-3 ? 1 - 0.5 * x : (1 - std::exp(-x)) / x; }
 
-// Of a process of variance 1: covariance of its means over two windows, one and the same or apart.
+// Covariance of the means of a unit-variance Gauss-Markov process over two windows, equal or apart.
 double shared(const Touch& a, const Touch& b, double correlation_s) {
   const double x = a.seconds / correlation_s, y = b.seconds / correlation_s;
   if (&a == &b) return x < 1e-3 ? 1 : 2 / x * (1 - kept(x));
@@ -20,7 +20,7 @@ double shared(const Touch& a, const Touch& b, double correlation_s) {
   return std::exp(-gap_s / correlation_s) * kept(x) * kept(y);
 }
 
-// Each marker's range, pixel to the right and down, 1 sigma.
+// Variances of each marker's range and of its pixel to the right and down, from sigmas.
 Eigen::Matrix<double, k_marker_errors, 1> variances(double range_m, double pixel_px) {
   Eigen::Matrix<double, k_marker_errors, 1> out;
   for (int m = 0; m < k_markers_per_tool_max; ++m) {

@@ -29,7 +29,7 @@ std::optional<FittedTip> fit_of(const FittedTool& fitted, const LabelledMarkers&
   return FittedTip{refined.T_camera_tool, refined.covariance};
 }
 
-// The tip's slopes, N^-1 h of all markers, moved to the tip and turned by `turn`.
+// Adds the tip's derivatives: N^-1 h of all markers, transferred to the tip and rotated by `turn`.
 bool add_slopes(const LabelledMarkers& seen, const Pose& pose, const Tool& tool,
                 const CameraUncertainty& camera, const Matrix3& turn, TipSighting& sighting) {
   const auto markers = seen.weighed();
@@ -63,7 +63,7 @@ bool add_slopes(const LabelledMarkers& seen, const Pose& pose, const Tool& tool,
   return true;
 }
 
-// Of the headset's own error, as declared: not as a reference body shows it.
+// Adds the headset's declared error, without correction by a reference body.
 void add_head(const Pose& T_world_camera, const HeadWalk& walk, const HeadNoise& head,
               TipSighting& sighting) {
   const Vector3 pivot = T_world_camera * Vector3(0, 0, head.pivot_m);
@@ -74,7 +74,7 @@ void add_head(const Pose& T_world_camera, const HeadWalk& walk, const HeadNoise&
                        sighting.by_head * sighting.by_head.transpose();
 }
 
-// Without those that the fit left out; a refused fit left none out.
+// Removes markers that the fit rejected; a rejected fit keeps all of its markers.
 Labeling used_by(const FittedTool& fitted, Labeling labeling) {
   if (fitted.reason != Reason::none) return labeling;
   for (std::size_t i = 0; i < labeling.marker.size(); ++i)

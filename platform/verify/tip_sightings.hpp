@@ -1,4 +1,4 @@
-// Where the tip of a tool is in each tracked frame, and how each stated error acts on it there.
+// Tip position of a tool in each tracked frame, with its derivatives by every stated error.
 #pragma once
 
 #include <string>
@@ -15,45 +15,45 @@ using TipByCalibration = Eigen::Matrix<double, 3, k_calibration_errors>;
 using TipByMarkers = Eigen::Matrix<double, 3, k_marker_errors>;
 using TipByHead = Eigen::Matrix<double, 3, 6>;
 
-// In the world where the headset gives its pose, else in the camera's frame.
+// In the world frame if the headset supplies a pose, else in the camera frame.
 struct TipSighting {
   Time time;
   Quaternion rotation = Quaternion::Identity();  // of the tool
   Vector3 tip_m = Vector3::Zero(), middle_m = Vector3::Zero();
   Matrix3 random_m2 = Matrix3::Zero();
-  // m a stated sigma, in the order of kernels/pose/calibration_errors.hpp.
+  // m per stated sigma, in the order of kernels/pose/calibration_errors.hpp.
   TipByCalibration by_calibration = TipByCalibration::Zero();
-  // Of each marker its range (m a m), its centroid to the right and down (m a px).
+  // Per marker: range (m per m), centroid to the right and down (m per px).
   TipByMarkers by_markers = TipByMarkers::Zero();
-  TipByHead by_head = TipByHead::Zero();  // the headset's error at its pivot; zero: no head pose
-  Matrix3 moving_m2 = Matrix3::Zero();    // of that error, what the head's motion adds
-  double range_m = 0;                     // the markers' mean
-  bool refused = false;                   // by the tracker, as a bad fit
+  TipByHead by_head = TipByHead::Zero();  // by the headset's error at its pivot; zero: no head pose
+  Matrix3 moving_m2 = Matrix3::Zero();    // increase of that error's covariance by head motion
+  double range_m = 0;                     // mean of the markers
+  bool refused = false;                   // the tracker rejected the fit as bad_fit
 };
 
-// What is stated of the errors.
+// Stated error model.
 struct StatedErrors {
   CameraUncertainty camera;
   CorrelationTimes correlation;
   HeadNoise head;
-  double tip_sigma_m = 0;  // of the tip among the markers, an axis
+  double tip_sigma_m = 0;  // of the tip relative to the markers, per axis
 };
 
 struct TipSeries {
-  std::string what;  // the source, for messages
+  std::string what;  // source name, for messages
   Tool tool;
   StatedErrors stated;
   bool in_world = true;
   std::vector<TipSighting> sightings;
-  CalibrationErrors residuals;  // what those of single fits show
+  CalibrationErrors residuals;  // from the residuals of single fits
   int frames = 0;
-  int refused = 0;  // sightings that the tracker refused: the markers do not fit the tool
-  std::vector<std::string> failures;  // what could not be read, a line each
+  int refused = 0;  // sightings rejected by the tracker: markers do not fit the tool
+  std::vector<std::string> failures;  // read errors, a line each
 };
 
-// By the tracker's fit of each frame, and by the fits that it refused as bad: a calibration error
-// may be the cause. The frames of the less frequent frame of reference are left out. Throws
-// InputError: the tool is in none of them.
+// Uses the tracker's fit of each frame, and also fits rejected as bad_fit: a calibration error may
+// be the cause. Drops the frames of the less frequent reference frame. Throws InputError if the
+// tool is in no frame.
 [[nodiscard]] TipSeries sight_tips(RecordedFrames& recorded, std::size_t tool);
 
 }  // namespace glint

@@ -13,7 +13,7 @@ bool near(const Touch& touch, const Vector3& point, double within_m) {
   return (touch.mean.tip_m - point).norm() < within_m;
 }
 
-// Of at least one touch: where most of them are.
+// Tip position with the most touches near it. Requires at least one touch.
 Vector3 most_touched(const std::vector<Touch>& touches, double within_m) {
   const auto count = [&](const Touch& of) {
     return std::count_if(touches.begin(), touches.end(),

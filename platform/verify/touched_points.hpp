@@ -1,4 +1,4 @@
-// Which holds of a series touch which of two points, and which is the rest.
+// Classification of holds: touches of the first or second point, and the rest.
 #pragma once
 
 #include <string>
@@ -11,17 +11,18 @@ namespace glint {
 
 struct TouchedPoints {
   std::vector<Touch> touches;
-  std::vector<bool> is_second;  // of the second point
+  std::vector<bool> is_second;  // touch of the second point
   Hold rest;                    // the longest hold
   int first_count = 0, second_count = 0, other_count = 0;
   RotationSpread spread;  // of the tool, over all touches
 
-  // What a check of this many touches of the first point still wants; empty: nothing.
+  // Returns what is missing for a check with this many touches of the first point; empty if
+  // complete.
   [[nodiscard]] std::string lacks(int touches_min) const;
 };
 
-// The first point is the one that most holds touch, the second lies about this far from it. A hold
-// that lasts as long as a rest is no touch.
+// The first point has the most touches; the second is at about this distance from it. A hold as
+// long as a rest is not a touch.
 [[nodiscard]] TouchedPoints touched_points(const TipSeries& series, double distance_m);
 
 }  // namespace glint

@@ -15,13 +15,13 @@ namespace {
 
 constexpr double k_piece_s = 1;       // of the rest
 constexpr double k_two_sided = 1.96;  // sigmas at 95 %
-constexpr int k_fits_min = 20;        // whose residuals alone may show an error
+constexpr int k_fits_min = 20;        // minimum fits for a verdict from residuals alone
 
-// y = X p + e by generalised least squares.
+// Generalised least squares of y = X p + e.
 struct PointFit {
-  Eigen::MatrixXd weight, covariance, gain;  // C^-1; of p; p = gain y
+  Eigen::MatrixXd weight, covariance, gain;  // C^-1; covariance of p; p = gain y
   Eigen::VectorXd points, residual;
-  double measured_m2 = 0, stated_m2 = 0;  // sums about the plain means
+  double measured_m2 = 0, stated_m2 = 0;  // sums of squares about the unweighted means
 
   PointFit(const Eigen::VectorXd& y, const Eigen::MatrixXd& x, const Eigen::MatrixXd& c)
       : weight(inverse_of(c)),
@@ -42,7 +42,7 @@ Eigen::VectorXd tips_of(std::span<const Touch> touches) {
   return y;
 }
 
-// Which of the points each touch is of.
+// Design matrix: the point of each touch.
 Eigen::MatrixXd design_of(const std::vector<bool>& is_second, Eigen::Index points) {
   const auto n = static_cast<Eigen::Index>(is_second.size());
   Eigen::MatrixXd x = Eigen::MatrixXd::Zero(3 * n, 3 * points);
@@ -60,7 +60,7 @@ Check check_of(const PointFit& fit) {
           chi_square_tail(fit.residual.dot(fit.weight * fit.residual), freedom)};
 }
 
-// The distance of the two points, and how they act on it.
+// Distance of the two points, and its derivatives by them.
 struct Distance {
   double error_m = 0, sigma_m = 0;
   Eigen::RowVectorXd by_points = Eigen::RowVectorXd(6);
@@ -81,7 +81,7 @@ std::vector<CalibrationFinding> findings_of(const TipSeries& series,
   return calibration_findings({&errors, 1}, series.stated.camera);
 }
 
-// The calibration errors as unknowns beside the points; `changing`: covariance of all others.
+// Estimates the calibration errors beside the points; `changing`: covariance of all other errors.
 CalibrationErrors errors_of(const TouchedPoints& touched, const Eigen::MatrixXd& changing,
                             const Eigen::MatrixXd& columns, const VerifySettings& known) {
   const Eigen::VectorXd y = tips_of(touched.touches);
@@ -132,7 +132,7 @@ Check check_rest(const TipSeries& series, const Hold& rest) {
       joint_covariance(pieces, series.stated, Places::same) + columns * columns.transpose()));
 }
 
-// Each check and each calibration error that the data show has the same part of the level.
+// Bonferroni: equal significance levels for all checks and all observable calibration errors.
 void decide(Verification& out) {
   const std::array<Check*, 3> checks = {&out.repeatability, &out.scale, &out.rest};
   const auto shown = std::count_if(out.calibration.begin(), out.calibration.end(),

@@ -1,11 +1,11 @@
-// Whether touches of two points and a rest agree with what is stated of a tracker's errors.
+// Statistical test of touches of two points and a rest against the stated error model.
 //
-// What:     the touches' tips are y = X p + e, p the two points, e of the joint covariance C of all
-//           stated errors. Repeatability: chi-square of the residuals of generalised least squares.
-//           Scale: the points' distance beside the known one, and its variance. Rest: chi-square of
-//           the means over each second about their common mean. Calibration: the most likely
-//           calibration errors by touches, distance and the residuals of single fits, each beside
-//           what is stated (platform/report/calibration_findings).
+// What:     the tips of the touches are y = X p + e, p the two points, e with the joint covariance
+//           C of all stated errors. Repeatability: chi-square of the residuals of generalised least
+//           squares. Scale: error of the points' distance against its variance. Rest: chi-square of
+//           the one-second means about their common mean. Calibration: maximum-likelihood
+//           calibration errors from touches, distance and residuals of single fits, each against
+//           its stated sigma (platform/report/calibration_findings).
 // Source:   generalised least squares: Aitken 1936; tests at a joint level: Bonferroni 1936.
 #pragma once
 
@@ -22,32 +22,33 @@ inline constexpr double k_confidence = 0.95;  // of the verdict as a whole
 
 struct VerifySettings {
   double distance_m = 0;        // of the two points
-  double distance_sigma_m = 0;  // how well it is known
+  double distance_sigma_m = 0;  // its standard deviation
 };
 
 struct Check {
   double measured_m = 0, stated_m = 0;  // root mean square; of the distance its error and its sigma
-  double probability = 1;               // of an error this large, were it as stated
+  double probability = 1;               // of an error this large under the stated model (p-value)
   bool agrees = true;
 };
 
 struct Verification {
   int first_touches = 0, second_touches = 0, other_holds = 0;
   double rest_s = 0, range_m = 0, distance_m = 0;
-  Vector3 spread_rad = Vector3::Zero();  // by how much the tool's directions differ, rising
-  // What the recording lacks, where single fits alone show an error: the three are not judged then.
+  Vector3 spread_rad = Vector3::Zero();  // spread of the tool's directions, ascending
+  // What the recording lacks, if single fits alone show an error; the three checks are then not
+  // evaluated.
   std::string lacks;
   Check repeatability, scale, rest;
   std::vector<CalibrationFinding> calibration;
-  double level = 0;  // an event less probable than this, were all as stated, does not agree
+  double level = 0;  // significance level of each test; a smaller probability disagrees
   bool agrees = true;
 };
 
-// Throws InputError, naming the series: too few touches of a point, touches that are all alike, no
-// rest, and what is expected.
+// Throws InputError, naming the series and what is expected, for too few touches of a point,
+// touches of equal orientation, and no rest.
 [[nodiscard]] Verification verify_touches(const TipSeries& series, const VerifySettings& settings);
 
-// What such a check leaves open, a line each.
+// Returns what the check does not cover, a line each.
 [[nodiscard]] std::vector<std::string> not_shown(const Verification& verification);
 
 }  // namespace glint
