@@ -16,7 +16,7 @@ namespace {
 constexpr int k_lines_max = 10'000;
 constexpr int k_side_max = 16'384;
 
-// Of YAML what such files use: "key: value" with lists as [a, b] or as lines of "- a".
+// The YAML subset of such files: "key: value", lists as [a, b] or as lines "- a".
 struct Entry {
   std::string text;
   std::vector<double> numbers;
@@ -44,7 +44,7 @@ void add_numbers(const std::string& text, Entry& entry) {
   }
 }
 
-// The names of nested keys are joined: camera_matrix/data.
+// Joins the names of nested keys: camera_matrix/data.
 Entries entries_of(const std::string& path) {
   std::istringstream file(read_file(path, k_text_bytes_max, "a camera_info YAML file"));
   Entries entries;

@@ -9,9 +9,9 @@ namespace glint {
 namespace {
 
 constexpr int k_normal_span = 3;          // pixels to each side
-constexpr float k_normal_jump_m = 0.05f;  // a larger difference of depth is an edge
+constexpr float k_normal_jump_m = 0.05f;  // a larger depth difference is an edge
 
-// Evenly over the area: a point in each of `count` equal parts of it.
+// Samples evenly by area: one point in each of `count` equal parts of the area.
 void sample_surface(const Surface& surface, int count, std::vector<Vector3>& points,
                     std::vector<Vector3>& normals) {
   std::vector<double> areas;
@@ -26,7 +26,7 @@ void sample_surface(const Surface& surface, int count, std::vector<Vector3>& poi
     walked += areas[f];
     const Triangle t = surface.triangle(f);
     for (; next < count && (next + 0.5) * total / count < walked; ++next) {
-      // The R sequence of two dimensions, folded into the triangle.
+      // Two-dimensional R sequence, folded into the triangle.
       double a = std::fmod(0.7548776662466927 * next, 1.0);
       double b = std::fmod(0.5698402909980532 * next, 1.0);
       if (a + b > 1) std::tie(a, b) = std::pair(1 - a, 1 - b);
@@ -47,7 +47,7 @@ void sample_cloud(const ModelCloud& cloud, int count, std::vector<Vector3>& poin
   }
 }
 
-// Towards the camera, from the depths beside each pixel; zero at edges.
+// Normals towards the camera, from the depths beside each pixel; zero at edges.
 std::vector<Vector3f> normals_of(const SceneView& view) {
   const Pinhole& camera = view.camera;
   std::vector<Vector3f> normals(view.depth_m.size(), Vector3f::Zero());

@@ -1,4 +1,4 @@
-// A picture as the coarse search sees it: few points of the robot, cells, normals of the scene.
+// Reduced image for the coarse pose search: sampled robot points, cells, scene normals.
 #pragma once
 
 #include <vector>
@@ -14,13 +14,13 @@ struct CoarsePicture {
   SceneView view;
   std::vector<Vector3> points, normals;  // of the robot, base frame
   std::vector<Vector3f> scene_normals;   // of each pixel, unit length; zero at edges
-  std::vector<int> mask_cells;           // of which the mask covers half
+  std::vector<int> mask_cells;           // cells covered by the mask to at least half
 
   [[nodiscard]] int cells() const;
   [[nodiscard]] int cell_of(int pixel) const;
 };
 
-// With so many points, spread evenly over the robot's surface. Borrows the frame's memory.
+// Samples this many points evenly over the robot's surface. Borrows the frame's memory.
 [[nodiscard]] CoarsePicture coarse_picture(const SceneFrame& frame, int points);
 
 }  // namespace glint

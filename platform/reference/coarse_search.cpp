@@ -12,10 +12,10 @@
 namespace glint {
 namespace {
 
-// Thinner than a link, thicker than a cell's slope.
+// Less than the thickness of a link, more than the depth variation within a cell.
 constexpr double k_occlusion_m = 0.06;
-constexpr float k_normal_cosine = 0.64f;  // noise of depth turns normals by up to 50 deg
-constexpr double k_other_normal = 0.25;   // worth of a point whose normal differs
+constexpr float k_normal_cosine = 0.64f;  // depth noise rotates normals by up to 50 deg
+constexpr double k_other_normal = 0.25;   // weight of a point with a different normal
 constexpr double k_score_gate_m = 0.12;
 constexpr std::array<std::pair<double, int>, 3> k_coarse_gates{{{0.15, 6}, {0.08, 5}, {0.04, 5}}};
 
@@ -23,7 +23,7 @@ constexpr std::array<std::pair<double, int>, 3> k_coarse_gates{{{0.15, 6}, {0.08
 
 bool SearchRange::holds(const Pose& start, const Pose& pose) const {
   const double turn = 2 * arc_cosine(std::min(1.0, std::abs(start.rotation.dot(pose.rotation))));
-  // The largest turn that three about fixed axes make.
+  // Largest rotation by three rotations about fixed axes.
   const SineCosine half = sine_cosine(0.5 * turn_rad);
   const double cosine = half.cosine * half.cosine * half.cosine - half.sine * half.sine * half.sine;
   return (start.translation - pose.translation).norm() <= std::sqrt(3.0) * shift_m &&
@@ -31,7 +31,7 @@ bool SearchRange::holds(const Pose& start, const Pose& pose) const {
 }
 
 std::vector<Pose> spread_poses(const Pose& start, const SearchRange& range) {
-  constexpr double root = 1.1127756842787055;  // g^7 = g + 1: of the R sequence of six dimensions
+  constexpr double root = 1.1127756842787055;  // g^7 = g + 1: six-dimensional R sequence
   std::vector<Pose> poses{start};
   for (int i = 1; i <= k_coarse_poses; ++i) {
     std::array<double, 6> side{};  // -1 to 1
@@ -87,7 +87,7 @@ void CoarseSearch::place(const CoarsePicture& picture, const Pose& T_world_base)
   }
 }
 
-// A point is explained, or seen through; what hides it or is not measured counts as neither.
+// Counts points as explained or seen through; hidden and unmeasured points count as neither.
 double CoarseSearch::score(const Pose& T_world_base, double gate_m) {
   double points = 0, explained = 0, through = 0, mask_cells = 0, covered = 0;
   for (const CoarsePicture& picture : pictures_) {
@@ -138,7 +138,7 @@ bool CoarseSearch::move(Pose& T_world_base, double gate_m) {
       if (normal.dot(ray) > 0) normal = -normal;
       const double cosine = -normal.dot(ray);
       if (cosine < k_least_cosine) continue;
-      // Of residuals along the normal: a grazing surface pulls no more than others.
+      // Residual along the normal: a surface at grazing incidence has no larger weight.
       sums.add(T_world_camera * placed_[i] - middle, normal,
                -away * cosine * placed_[i].norm() / placed_[i].z(), 1);
     }

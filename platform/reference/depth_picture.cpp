@@ -32,7 +32,7 @@ void check_size(const std::string& path, std::size_t width, std::size_t height,
                    std::to_string(camera.height));
 }
 
-// Rows and columns; one more side of length 1 does no harm.
+// Requires rows and columns; drops additional dimensions of length 1.
 NpyNumbers npy_picture(const std::string& path, const CameraModel& camera) {
   NpyNumbers array = read_npy_numbers(path);
   if (array.shape.size() > 2) std::erase(array.shape, std::size_t{1});

@@ -1,4 +1,4 @@
-// Depth pictures, clouds and masks from files.
+// Readers of depth images, point clouds and masks.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,21 @@ namespace glint {
 
 struct DepthImage {
   int width = 0, height = 0;
-  std::vector<float> z_m;  // row by row; 0 where there is none: not finite, negative, or too far
+  std::vector<float> z_m;  // row by row; 0 if not finite, negative, or too far
 };
 
 inline constexpr float k_depth_max_m = 20;
 
-// .npy (rows x columns, floating point metres or unsigned millimetres) or .png (16 bit,
-// millimetres). Throws InputError naming the file and what was expected: another size than the
-// camera's, no depth at all.
+// Reads .npy (rows x columns, floating point metres or unsigned millimetres) or .png (16 bit,
+// millimetres). Throws InputError, naming the file and what was expected, for a size other than the
+// camera's and for an image without depth.
 [[nodiscard]] DepthImage read_depth(const std::string& path, const CameraModel& camera);
 
-// Whether a file's ending is a cloud's: .pcd or .ply.
+// Returns whether the extension is that of a point cloud: .pcd or .ply.
 [[nodiscard]] bool is_cloud_file(const std::string& path);
 
-// The points of a cloud in the camera's frame (z forward), metres: those that are finite and
-// before the camera, k_depth_max_m away at most. Throws InputError: no such points.
+// Reads a cloud in the camera's frame (z forward), metres; keeps finite points with 0 < z <
+// k_depth_max_m. Throws InputError if there are none.
 [[nodiscard]] std::vector<Vector3f> read_depth_points(const std::string& path);
 
 struct MaskPicture {
@@ -34,7 +34,7 @@ struct MaskPicture {
   std::vector<std::uint8_t> on;  // row by row: 0 or 1
 };
 
-// .png or .npy of the camera's size: not 0 is the robot.
+// Reads .png or .npy of the camera's size: nonzero is the robot.
 [[nodiscard]] MaskPicture read_mask(const std::string& path, const CameraModel& camera);
 
 }  // namespace glint

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t k_coarse_ends = 8, k_turned_ends = 3;
 constexpr double k_coarse_apart_m = 0.06;
-// Coarse ends lie some centimetres off: half of the best one's score is worth a closer look.
+// Coarse poses are some centimetres off: those with half of the best score are aligned, too.
 constexpr double k_coarse_share = 0.5;
 
 Quaternion turn_about_z(double radians) {
@@ -23,8 +23,8 @@ Quaternion turn_about_z(double radians) {
   return {half.cosine, 0, 0, half.sine};
 }
 
-// Turned about the base's own z by eighths: a robot's base is round, its links are alike from both
-// ends.
+// Rotations about the base's own z by eighths: a robot's base is round, and its links are nearly
+// symmetric end to end.
 std::vector<Pose> turned_starts(const Pose& from) {
   std::vector<Pose> starts;
   for (int eighth = 1; eighth < 8; ++eighth) {
@@ -54,7 +54,7 @@ class Search {
     }
   }
 
-  // Without so many of the widest gates, which draw a robot to floors and boards that are near it.
+  // Skips this many of the widest gates, which attract the robot to near floors and plates.
   [[nodiscard]] Candidate aligned(const Pose& start, int gates_skipped) {
     AlignmentSettings fewer = settings_.alignment;
     std::rotate(fewer.gates.begin(), fewer.gates.begin() + gates_skipped, fewer.gates.end());
@@ -73,7 +73,7 @@ class Search {
   [[nodiscard]] CoarseSearch& coarse() { return coarse_; }
   [[nodiscard]] int starts() const { return starts_; }
 
-  // Why a single link or picture refuses a pose that all of them together accept; empty: none does.
+  // Returns why a single link or image rejects a pose that all together accept; empty if none does.
   [[nodiscard]] std::string closer_objection(const Pose& T_world_base) {
     const LinkJudgement links =
         judge_links(views_, links_, T_world_base, settings_.judge, scratch_);
@@ -86,8 +86,8 @@ class Search {
     return why;
   }
 
-  // The errors that neighbouring pixels share; of too few patches it stays that of independent
-  // noise.
+  // Covariance of errors that neighbouring pixels share; with too few patches, keeps that of
+  // independent noise.
   void spread_covariance(ModelAlignment& alignment) {
     if (alignment.reason != Reason::none || settings_.alignment.gate_count < 1) return;
     const Result<Matrix6> patches =
@@ -95,7 +95,7 @@ class Search {
     if (patches) alignment.covariance = patches.value;
   }
 
-  // The errors that a whole picture shares, and how the ends of single pictures differ.
+  // Adds errors that a whole image shares, and the scatter of the poses of single images.
   void add_shared_errors(ModelAlignment& alignment) {
     if (alignment.reason != Reason::none || settings_.alignment.gate_count < 1) return;
     const Result<Matrix6> shared = shared_error_covariance(views_, alignment.T_world_base, gate_m(),
@@ -110,7 +110,7 @@ class Search {
         .gate_m;
   }
 
-  // Of the mean of single pictures' ends about the end of all: zero for one picture.
+  // Covariance of the mean of the single images' poses about the joint pose; zero for one image.
   [[nodiscard]] Matrix6 scatter_of_pictures(const Pose& T_world_base) {
     Matrix6 sum = Matrix6::Zero();
     AlignmentSettings last = settings_.alignment;
@@ -140,7 +140,7 @@ class Search {
   int starts_ = 0;
 };
 
-// Ends from the rough pose and about it, the best first.
+// Converged poses from the rough pose and about it, best first.
 std::vector<Candidate> ends_of(Search& search, const Pose& seed,
                                const FindReferenceSettings& settings) {
   std::vector<Candidate> ends{search.aligned(seed, 0)};
@@ -176,12 +176,12 @@ std::vector<Candidate> ends_of(Search& search, const Pose& seed,
   if (ends.empty()) return ends;
   add_best(turned_starts(ends[0].alignment.T_world_base), k_turned_ends);
   std::stable_sort(ends.begin(), ends.end(), first);
-  // A turned end beyond the range is a rival at most.
+  // A rotated pose outside the range can only be an alternative.
   std::stable_partition(ends.begin(), ends.end(), in_range);
   return ends;
 }
 
-// Without a mask, and no camera more than a hand's width from the first.
+// Returns whether there is no mask and no camera is more than 0.1 m from the first.
 bool from_one_place(const std::vector<SceneFrame>& frames) {
   constexpr double near_m = 0.1;
   return std::all_of(frames.begin(), frames.end(), [&](const SceneFrame& frame) {

@@ -1,4 +1,4 @@
-// What speaks against an end of referencing, and what it is worth beside others.
+// Acceptance tests and score of a converged pose in model registration.
 #pragma once
 
 #include <span>
@@ -9,27 +9,27 @@
 
 namespace glint {
 
-// How much of the robot's surface the scene explains, hidden and unseen parts counted as not
-// explained, times how well the scene ends where the robot does. 1 at most.
+// Score, at most 1: share of the robot's surface explained by the scene, times the outline's
+// factor. Parts occluded by the scene or outside the image count as unexplained.
 [[nodiscard]] double worth(const Candidate& candidate, const FindReferenceSettings& settings);
 
-// Whether another end is nearly as good as the one found.
+// Returns whether another pose scores nearly as well as the one found.
 [[nodiscard]] bool rivals(const Candidate& other, const Candidate& found,
                           const FindReferenceSettings& settings);
 
-// Why this is no pose to work with; empty: it is one.
+// Returns why the pose is rejected; empty if it is accepted.
 [[nodiscard]] std::string objection(const Candidate& candidate,
                                     const FindReferenceSettings& settings);
 
-// The same of single links: other joint values, or another robot, leave some unexplained.
+// The same for single links: wrong joint values or another robot leave some links unexplained.
 [[nodiscard]] std::string link_objection(const LinkJudgement& links,
                                          const FindReferenceSettings& settings);
 
-// The same of one of several pictures: each must agree with the pose of all.
+// The same for one of several images: each must agree with the joint pose.
 [[nodiscard]] std::string picture_objection(const std::string& name, const Judgement& picture,
                                             const FindReferenceSettings& settings);
 
-// An end that something speaks against is worth less than any other.
+// Order of poses: accepted before rejected ones, then by score.
 [[nodiscard]] bool better(const Candidate& a, const Candidate& b,
                           const FindReferenceSettings& settings);
 

@@ -9,9 +9,9 @@
 namespace glint {
 namespace {
 
-constexpr Duration k_look_again = milliseconds(50);  // and say for what it waits
+constexpr Duration k_look_again = milliseconds(50);  // polling period, and period of on_wait
 
-// Who publishes it, and what stands for it.
+// Usual publisher of a topic, and the option that replaces it.
 std::string source_of(const std::string& topic) {
   if (topic == k_robot_description_topic) {
     return "expected it of `ros2 run robot_state_publisher robot_state_publisher ARM.urdf`, or "
@@ -53,7 +53,7 @@ HeardPlace ReferenceListener::place(const std::vector<std::string>& inputs) {
   return {positions_, inputs_.guess().value()};
 }
 
-// Looks once even where time is over: loading a robot takes some, and messages wait.
+// Polls once even after the limit: loading a robot takes time, and messages may be waiting.
 template <class Done>
 void ReferenceListener::wait_until(Done done) {
   while (true) {

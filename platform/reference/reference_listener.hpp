@@ -1,9 +1,9 @@
-// What a reference needs and no file gives, heard over DDS: the robot's description, its joint
-// positions, and a guess of where it stands.
+// DDS inputs of a reference run that no file supplies: robot description, joint positions, and
+// initial guess of the base's pose.
 //
-// A description is kept by its publisher for whoever comes later. A guess is a single message from
-// somebody at RViz: it is waited for from the beginning. Of joint states that which is the newest
-// when all else is there counts; one that lacks a joint of the robot's is another robot's part.
+// The publisher of a description retains it for late subscribers. A guess is a single message, for
+// example from RViz: the listener waits for it from the start. The newest joint state counts when
+// all other inputs are present; a state that lacks a joint of the robot is ignored.
 #pragma once
 
 #include <chrono>
@@ -20,21 +20,21 @@ struct ReferenceNeeds {
 };
 
 struct HeardPlace {
-  std::vector<double> positions;  // where joints were needed: one for each of the robot's inputs
+  std::vector<double> positions;  // one per input of the robot, if joints are needed
   HeardGuess guess;
 };
 
 class ReferenceListener {
  public:
-  // While it waits: for how long so far, and for which topics.
+  // Called while waiting, with the time so far and the missing topics.
   using OnWait = std::function<void(double seconds, const std::string& topics)>;
 
-  // Throws as Participant does. The limit is of all waiting together.
+  // Throws as Participant does. `limit` covers all waiting together.
   ReferenceListener(const DdsSettings& settings, const ReferenceNeeds& needs, Duration limit,
                     OnWait on_wait);
 
-  // Each waits for what is needed of it. Throw InputError when time is over: every topic that was
-  // not heard, and who publishes it or which option stands for it.
+  // Each waits for its needed inputs. Throws InputError after the limit: names every missing topic,
+  // with its usual publisher or the option that replaces it.
   [[nodiscard]] std::string description();
   [[nodiscard]] HeardPlace place(const std::vector<std::string>& inputs);
 
@@ -51,9 +51,9 @@ class ReferenceListener {
   OnWait on_wait_;
   std::chrono::steady_clock::time_point start_;
   DdsInputs inputs_;
-  bool all_joints_ = false;  // a state with each of them was heard
+  bool all_joints_ = false;  // received a state with every joint
   std::vector<double> positions_;
-  std::string lacking_;  // what the newest state that did not count lacks
+  std::string lacking_;  // joint missing in the newest ignored state
 };
 
 }  // namespace glint

@@ -12,7 +12,7 @@
 namespace glint {
 namespace {
 
-// Where a pixel of the straightened picture lies in the camera's; -1: nowhere.
+// Returns the camera pixel of a pixel of the undistorted image; -1 if there is none.
 int source_pixel(const CameraModel& camera, double u, double v) {
   if (camera.lens != Lens::pinhole) {
     const Result<Vector2> bent =
@@ -25,13 +25,13 @@ int source_pixel(const CameraModel& camera, double u, double v) {
   return static_cast<int>(v) * camera.width + static_cast<int>(u);
 }
 
-// A quarter of the block at least must be there: fewer are a seam of the sensor's.
+// Requires a quarter of the block: fewer are an artefact of the sensor.
 float merged(std::vector<float>& values, std::size_t block) {
   if (values.empty() || 4 * values.size() < block) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   const float median = *middle;
-  std::sort(values.begin(), values.end());  // for an order of the sum
+  std::sort(values.begin(), values.end());  // fixes the order of the sum
   double sum = 0;
   int count = 0;
   for (const float value : values) {
@@ -46,7 +46,7 @@ int pixels_a_side(const CameraModel& camera) {
   return (camera.width + k_working_width - 1) / k_working_width;
 }
 
-// Without depth yet.
+// A frame without depth.
 SceneFrame empty_frame(const MaskPicture* mask, const CameraModel& camera) {
   SceneFrame frame;
   const int scale = pixels_a_side(camera);
@@ -147,7 +147,7 @@ void check_counts(const SceneFiles& files) {
   }
 }
 
-// `place` gives a frame the robot at these positions; what they came from is for its complaints.
+// `place` sets a frame's robot to these positions; their source is for error messages.
 template <class Robot, class Place>
 std::vector<SceneFrame> read_frames(const SceneFiles& files, const Robot& robot, Place place) {
   check_counts(files);
