@@ -1,4 +1,4 @@
-// Depth as PNG, for whoever has OpenCV to read it.
+// Reader of depth images in PNG, which requires OpenCV.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace glint {
 // One plane of 16 bits, millimetres. Throws InputError naming the file and what was expected.
 [[nodiscard]] DepthFrame read_depth_png(const std::string& path);
 
-// Of PNG and .npy pictures.
+// Reads a sequence of PNG and .npy images.
 [[nodiscard]] DepthSequence load_depth_sequence(const std::string& folder);
 
 }  // namespace glint

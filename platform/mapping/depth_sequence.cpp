@@ -13,7 +13,7 @@
 namespace glint {
 namespace {
 
-constexpr double k_not_rigid = 0.01;  // of an axis's length or the cosine between two
+constexpr double k_not_rigid = 0.01;  // limit of an axis's length error, or a cosine
 constexpr std::size_t k_frames_max = 10'000;
 
 std::vector<double> numbers_of(FileText& file, std::size_t count) {

@@ -1,4 +1,4 @@
-// A file with lines of text, and perhaps bytes behind them; whatever is wrong names file and place.
+// Line reader of a file with text lines and optional trailing bytes; errors name file and line.
 #pragma once
 
 #include <string>
@@ -9,17 +9,17 @@ namespace glint {
 
 class FileText {
  public:
-  // Throws InputError as read_file does (k_data_bytes_max).
+  // Throws InputError like read_file (k_data_bytes_max).
   FileText(std::string path, const std::string& expected);
 
-  // The next line without its end, split at blanks. False: none is left.
+  // Reads the next line, split at blanks. Returns false at the end of the file.
   [[nodiscard]] bool next_line(std::vector<std::string_view>& words);
-  // All that is behind the lines read.
+  // All bytes after the lines read.
   [[nodiscard]] std::string_view rest() const { return std::string_view(bytes_).substr(at_); }
   [[nodiscard]] std::size_t position() const { return at_; }
 
-  // A whole word as a finite or infinite number or NaN, or as a count up to `most`.
-  // Throw InputError naming the line.
+  // Parses a complete word as a number (finite, infinite or NaN), or as a count up to `most`.
+  // Throws InputError naming the line.
   [[nodiscard]] double number(std::string_view word) const;
   [[nodiscard]] std::size_t count(std::string_view word, std::size_t most) const;
 

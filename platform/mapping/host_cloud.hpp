@@ -1,4 +1,4 @@
-// A cloud of any size outside the kernels: what files hold.
+// Point cloud of any size outside the kernels, as in files.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@ namespace glint {
 
 struct HostCloud {
   std::vector<std::array<float, 3>> points;   // metres
-  std::vector<std::array<float, 3>> normals;  // as many, or none
+  std::vector<std::array<float, 3>> normals;  // as many as points, or none
 };
 
-// A kernel's cloud with memory of its own.
+// A kernel's point cloud that owns its memory.
 class OwnedCloud {
  public:
   explicit OwnedCloud(int capacity);
@@ -27,7 +27,7 @@ class OwnedCloud {
 };
 
 [[nodiscard]] HostCloud host_cloud_of(const PointCloud& cloud);
-// As large as the cloud, at least 1.
+// Capacity: the size of the cloud, at least 1.
 [[nodiscard]] OwnedCloud owned_cloud_of(const HostCloud& cloud);
 
 }  // namespace glint

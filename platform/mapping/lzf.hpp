@@ -1,9 +1,9 @@
-// LZF, unpacked: how PCL packs the points of a PCD file.
+// LZF decompression, for the points of a compressed PCD file.
 //
-// Source: the format as Marc Lehmann's liblzf 3.6 has it (lzf_d.c). A byte below 32 is followed by
-// one more literal than it says. Any other's upper three bits are a length, 7 added to by the byte
-// that follows; its lower five and the next byte say how far back; two bytes more than that length
-// are copied from there, and the copy may run into what it writes.
+// Source: the format of Marc Lehmann's liblzf 3.6 (lzf_d.c). A control byte below 32 precedes
+// control + 1 literals. Of any other control byte, the upper three bits are a length; if it is 7,
+// the next byte is added. The lower five bits and the next byte are the distance back. Length + 2
+// bytes are copied from there; the copy may overlap its own output.
 #pragma once
 
 #include <span>
@@ -11,10 +11,10 @@
 
 namespace glint {
 
-// Three bytes make 264 at most.
+// Three bytes yield at most 264.
 inline constexpr std::size_t k_lzf_growth_max = 88;
 
-// False: they do not make exactly so many bytes, or refer to what is before the first.
+// Returns false if the output does not have exactly this size, or a reference precedes its start.
 [[nodiscard]] bool unpack_lzf(std::string_view packed, std::span<char> to) noexcept;
 
 }  // namespace glint

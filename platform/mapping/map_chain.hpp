@@ -1,4 +1,4 @@
-// From depth pictures to a map: voxels, outliers, smoothing, planes; the kernels in their order.
+// Map from depth images: the kernels voxel grid, outlier removal, smoothing and planes in sequence.
 #pragma once
 
 #include <memory>
@@ -12,10 +12,10 @@
 namespace glint {
 
 struct MapCounts {
-  std::int64_t measured = 0;  // points of all pictures
-  std::int64_t left_out = 0;  // not among these: within the pen and the hands
+  std::int64_t measured = 0;  // points of all images
+  std::int64_t left_out = 0;  // points inside pen and hands; not in `measured`
   int voxels = 0, kept = 0, smoothed = 0, on_planes = 0;
-  std::vector<std::string> notices;  // what was full or left out
+  std::vector<std::string> notices;  // overflows and dropped points
 };
 
 class MapChain {
@@ -28,17 +28,17 @@ class MapChain {
 
   void add_frame(const DepthPicture& picture, const CameraModel& camera, const Pose& T_world_camera,
                  std::span<const LeftOut> left_out = {});
-  // Voxels to planes of all frames so far; nothing is moved onto the planes yet.
+  // Runs voxels to planes for all frames so far; does not project points onto the planes yet.
   void finish();
-  // Moves the map's points onto their planes.
+  // Projects the map's points onto their planes.
   void snap();
 
-  [[nodiscard]] const PointCloud& voxel_points() const;  // those that outliers were dropped from
+  [[nodiscard]] const PointCloud& voxel_points() const;  // after outlier removal
   [[nodiscard]] const PointCloud& map() const;
-  // Which of voxel_points() became the map's i-th point.
+  // Index in voxel_points() of the map's i-th point.
   [[nodiscard]] int source_of(int i) const;
   [[nodiscard]] const PlaneSearch& planes() const;
-  // The plane that each of the map's points is on.
+  // Plane of each map point.
   [[nodiscard]] const PlaneSupport& support() const;
   [[nodiscard]] const MapCounts& counts() const { return counts_; }
 

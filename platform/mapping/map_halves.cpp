@@ -13,10 +13,11 @@ namespace glint {
 namespace {
 
 constexpr int k_planes_judged = 3;
-constexpr double k_slab_m = 0.03;         // raw points this near belong to a plane
-constexpr double k_foot_m = 0.05;         // if they stand over such a square with points of its own
+constexpr double k_slab_m = 0.03;  // raw points within this distance belong to a plane
+constexpr double k_foot_m = 0.05;  // side of a footprint square; only squares with points count
 constexpr double k_match_cosine = 0.985;  // 10 degrees
-// The other half's surface at a place: a plane through this many points this near, or more.
+// The other half's surface near a point: a plane through at least this many points within this
+// radius.
 constexpr double k_around_m = 0.05;
 constexpr double k_judges_min = 10;
 constexpr double k_across_cosine = 0.93969262;  // 20 degrees
@@ -30,7 +31,7 @@ double height_over(const Plane& plane, const Vector3& point) {
   return plane.normal.dot(point) - plane.offset_m;
 }
 
-// Where on its plane a map has points.
+// Footprint of a map on its plane: the squares with points.
 class Footprint {
  public:
   explicit Footprint(const Plane& plane) : axes_(directions_across(plane.normal)) {}
@@ -74,13 +75,13 @@ void match(const Plane& plane, const Vector3& middle, const PlaneSearch& others,
     if (out.matched && offset >= out.offset_m) continue;
     out.matched = true;
     out.offset_m = offset;
-    // The sine tells small angles apart that the cosine does not.
+    // The sine resolves small angles that the cosine does not.
     out.angle_deg =
         std::asin(std::min(plane.normal.cross(other.normal).norm(), 1.0)) * k_degrees_per_radian;
   }
 }
 
-// Raw points of the pictures that the plane's map has not seen.
+// Evaluates the plane with raw points of images that its map does not contain.
 void judge_by_held_out(const DepthSequence& sequence, const MapSettings& settings,
                        const Plane& plane, const Footprint& footprint, PlaneAgreement& out) {
   double sum = 0;
@@ -135,7 +136,7 @@ Cell cell_of(const Vector3& point) {
           static_cast<int>(std::floor(point.z() / k_around_m))};
 }
 
-// Of the map's points near a place, relative to it.
+// Plane sums of the map's points near a position, relative to it.
 PlaneSums sums_around(const PointCloud& map, const std::map<Cell, std::vector<int>>& cells,
                       const Vector3& place) {
   PlaneSums sums;
@@ -160,8 +161,8 @@ struct Judgement {
   }
 };
 
-// What snapping took, judged by the surface that the other half's map has there. The map's own
-// normals have already chosen what is moved, and would find no fault.
+// Evaluates the projection onto planes by the surface of the other half's map. The map's own
+// normals selected the projected points, so they cannot show a fault.
 void judge_snapping(MapChain& mine, const MapChain& other, MapHalves& out) {
   std::map<Cell, std::vector<int>> cells;
   for (int i = 0; i < other.map().count; ++i) cells[cell_of(point_of(other.map(), i))].push_back(i);

@@ -13,7 +13,7 @@
 namespace glint {
 namespace {
 
-constexpr int k_splat = 3;  // half a point's width in pixels
+constexpr int k_splat = 3;  // half the width of a point, pixels
 
 using Colour = std::array<std::uint8_t, 3>;  // red, green, blue
 

@@ -1,4 +1,4 @@
-// A map as a picture: seen from one of the cameras that made it, planes in colours.
+// Rendering of a map from one of its cameras, planes in colours.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace glint {
 
-// Points nearest to the camera are drawn; what is on no plane is grey, and all the darker the more
-// the surface turns away. Throws InputError where the file cannot be written.
+// Draws the points nearest to the camera. Points on no plane are grey; surfaces darken with their
+// angle to the viewing ray. Throws InputError if the file cannot be written.
 void write_map_picture(const std::string& path, const PointCloud& map, const PlaneSupport& planes,
                        const CameraModel& camera, const Pose& T_world_camera);
 

@@ -11,7 +11,7 @@ namespace glint {
 namespace {
 
 constexpr int k_points_at_once = 4096;
-constexpr double k_half_voxels = 32768;  // of the tree to each side, along an axis
+constexpr double k_half_voxels = 32768;  // half the tree's size along an axis, voxels
 constexpr double k_resolution_min_m = 0.002, k_resolution_max_m = 1.0;
 
 octomap::point3d point_of(const Vector3& v) {
@@ -26,12 +26,12 @@ struct Occupancy::Tree {
     Arena arena(slice_memory);
     (void)slice.prepare(k_points_at_once, arena);
   }
-  // Inner nodes follow their children in compact() only: once a picture, not once a voxel.
+  // compact() updates the inner nodes: once per image, not per voxel.
   void set(const octomap::OcTreeKey& key, bool occupied) {
     octree.setNodeValue(key, occupied ? octree.getProbHitLog() : octree.getProbMissLog(), true);
   }
-  // Whether the tree has a voxel there. The library itself turns a place into a whole number before
-  // it looks, which no far place fits.
+  // Returns whether the tree has a voxel there. The library converts coordinates to integers
+  // without a range check.
   [[nodiscard]] bool reaches(const Vector3& place) const {
     const double half_m = k_half_voxels * octree.getResolution();
     return place.allFinite() && place.cwiseAbs().maxCoeff() < half_m;
@@ -44,7 +44,7 @@ struct Occupancy::Tree {
   octomap::OcTree octree;
   std::vector<std::byte> slice_memory;
   PointCloud slice;
-  octomap::KeySet seen, free;  // of one picture
+  octomap::KeySet seen, free;  // of one image
   octomap::KeyRay ray;
 };
 
@@ -90,7 +90,7 @@ void Occupancy::add_view(const DepthPicture& picture, const CameraModel& camera,
         ++counts_.out_of_range;
         continue;
       }
-      if (!t.seen.insert(key).second) continue;  // a ray of this picture ended there already
+      if (!t.seen.insert(key).second) continue;  // an earlier ray of this image ended there
       const double range = (point - eye).norm();
       if (range <= short_m) continue;
       if (full()) {
@@ -131,7 +131,7 @@ Occupied Occupancy::at(const Vector3& place) const {
   return tree_->octree.isNodeOccupied(node) ? Occupied::yes : Occupied::no;
 }
 
-// The library's own writer tells the user on stderr that it is done.
+// The library's own writer prints a message to stderr.
 std::string Occupancy::file_bytes() const {
   std::ostringstream out(std::ios::binary);
   out << "# Octomap OcTree binary file\nid OcTree\nsize " << tree_->octree.size() << "\nres "

@@ -1,9 +1,9 @@
-// What is occupied, free and unknown around a map's surfaces, for collision checking: an octomap.
+// Occupancy octree (octomap) of a map for collision checking: occupied, free and unknown space.
 //
-// Rays from each picture's place to what it measured make what they pass through free; the map's
-// points make their voxels occupied, whatever rays grazed them. All else is unknown: what lies
-// behind a surface, and whatever nobody looked at. Source: Hornung et al. 2013, "OctoMap"; rays
-// after Amanatides and Woo 1987, as liboctomap has them.
+// Rays from each image's camera position to its measured points make the voxels that they traverse
+// free. The map's points make their voxels occupied, regardless of rays. All other space is
+// unknown: behind surfaces and outside all views. Source: Hornung et al. 2013, "OctoMap"; ray
+// traversal: Amanatides and Woo 1987, as in liboctomap.
 #pragma once
 
 #include <cstdint>
@@ -18,17 +18,17 @@
 namespace glint {
 
 struct OccupancySettings {
-  double resolution_m = 0.02;      // side of the smallest voxel
-  double stop_short_voxels = 1.5;  // a ray ends this far before its point: noise is no way through
+  double resolution_m = 0.02;          // side of the smallest voxel
+  double stop_short_voxels = 1.5;      // ray end before its point: depth noise must not open a wall
   std::int64_t nodes_max = 1LL << 25;  // about 1 GB
 };
 
 enum class Occupied : std::uint8_t { unknown, no, yes };
 
 struct OccupancyCounts {
-  std::int64_t rays = 0;           // of different voxels
-  std::int64_t out_of_range = 0;   // points beyond the tree, or not finite
-  std::int64_t rays_left_out = 0;  // once nodes_max were reached
+  std::int64_t rays = 0;           // one per end voxel of an image
+  std::int64_t out_of_range = 0;   // points outside the tree, or not finite
+  std::int64_t rays_left_out = 0;  // after nodes_max was reached
   std::int64_t points_left_out = 0;
 };
 
@@ -40,19 +40,19 @@ class Occupancy {
   Occupancy(const Occupancy&) = delete;
   Occupancy& operator=(const Occupancy&) = delete;
 
-  // What one picture saw through; the pixels that `settings` takes, but for points in `left_out`.
+  // Adds the free space of one image: pixels selected by `settings`, except points in `left_out`.
   void add_view(const DepthPicture& picture, const CameraModel& camera, const Pose& T_world_camera,
                 const DepthPointSettings& settings, std::span<const LeftOut> left_out = {});
-  // The map's points, after the views.
+  // Adds the map's points; call after the views.
   void add_surface(const PointCloud& map);
 
   [[nodiscard]] Occupied at(const Vector3& place) const;
   [[nodiscard]] double resolution_m() const { return settings_.resolution_m; }
   [[nodiscard]] const OccupancyCounts& counts() const { return counts_; }
 
-  // A .bt file, as octovis and octomap_server read it.
+  // Returns a .bt file for octovis and octomap_server.
   [[nodiscard]] std::string file_bytes() const;
-  // The data of octomap_msgs/Octomap (binary, id "OcTree"): the same without the file's header.
+  // Returns the data of octomap_msgs/Octomap (binary, id "OcTree"): the file without its header.
   [[nodiscard]] std::vector<std::int8_t> message_bytes() const;
 
  private:

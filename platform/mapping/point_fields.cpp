@@ -12,7 +12,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-// Where a value of interest stands: its word in a line, its byte in a record.
+// Position of a value: its word in a line, its byte in a record.
 struct Place {
   std::size_t word = 0, byte = 0;
   const PointField* field = nullptr;

@@ -1,4 +1,4 @@
-// The fields of a point as a file declares them, and its points read by them.
+// Point fields as declared by a file header, and readers of points with them.
 #pragma once
 
 #include <string>
@@ -16,11 +16,11 @@ struct PointField {
   std::size_t count = 1;
 };
 
-// Fields x, y, z, and normal_x, normal_y, normal_z or nx, ny, nz where they are.
-// ascii: a point a line; binary: one behind the other, little-endian, all in `rest()`; compressed:
-// how many bytes follow and how many they unpack to, four bytes each, then LZF of all points' first
-// field, then of their second, and so on.
-// Throw InputError: no x, y, z, too few lines, words or bytes. No memory is taken for points that
+// Reads fields x, y, z, and normal_x, normal_y, normal_z or nx, ny, nz if present. ascii: one point
+// per line. binary: contiguous little-endian records in `rest()`. compressed: packed and unpacked
+// size in bytes, four bytes each, then LZF of all points' first field, of their second, and so on.
+// Throws InputError for missing x, y, z and for too few lines, words or bytes. Allocates no memory
+// for points that the file is too small for.
 // the file is too small for.
 [[nodiscard]] HostCloud read_ascii_points(FileText& file, const std::vector<PointField>& fields,
                                           std::size_t points);

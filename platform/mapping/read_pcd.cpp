@@ -31,7 +31,7 @@ void check_sizes(const FileText& file, const std::vector<PointField>& fields) {
   }
 }
 
-// One line of the header but DATA.
+// Parses one header line other than DATA.
 void take_line(const FileText& file, const Words& words, std::vector<PointField>& fields,
                std::size_t& points) {
   const std::string_view name = words[0];
