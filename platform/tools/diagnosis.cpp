@@ -14,14 +14,14 @@ namespace glint {
 namespace {
 
 constexpr int k_markers_needed = 3;
-// Among more spots some have a tool's distances by chance: that explains nothing.
+// With more blobs, some match a tool's distances by chance: such a trial shows no cause.
 constexpr int k_spots_max = 40;
 
 std::string name_of_tool(const Cell& cell, int tool) {
   return cell.tools.items[static_cast<std::size_t>(tool)].name.data();
 }
 
-// Searches one frame anew with other settings; one tool at a time.
+// Repeats the search of one frame with other settings, one tool at a time.
 class Trials {
  public:
   Trials(const Cell& cell, const Frame& frame, const Tool& tool) : cell_(cell), frame_(frame) {
@@ -31,7 +31,7 @@ class Trials {
     cell_.reference = -1;
   }
 
-  // Whether the tool is found where `change(cell)` was made.
+  // Returns whether the tool is found after `change(cell)`.
   [[nodiscard]] bool finds(const auto& change) {
     Cell cell = cell_;
     change(cell);
@@ -114,8 +114,8 @@ const char* mismatch_text(Reason reason) {
   }
 }
 
-// Range, marker size and brightness, in this order: a lower threshold enlarges spots, so that it
-// can hide a wrong size, and a wrong size can stand for a wrong range. True: one of them is the
+// Tries range, marker size and brightness, in this order: a lower threshold enlarges blobs and can
+// hide a wrong size; a wrong size can imitate a wrong range. Returns true if one of them is the
 // cause.
 bool add_settings_rows(const Camera& camera, const Tool& tool, const Seen& seen, Trials& trials,
                        std::vector<CheckRow>& rows) {
@@ -185,7 +185,7 @@ bool add_settings_rows(const Camera& camera, const Tool& tool, const Seen& seen,
   return explained;
 }
 
-// What was seen, and what the trials that find the tool changed.
+// Adds the observations, and the change of the trial that finds the tool.
 void add_causes(const Cell& cell, Tracker& tracker, const Tool& tool, Reason reason,
                 std::vector<CheckRow>& rows) {
   const Seen seen(tracker);

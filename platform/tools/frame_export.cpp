@@ -18,11 +18,11 @@ Pose with_origin(const Pose& T_frame_tool, const Tool& tool, PoseOrigin origin) 
   return {T_frame_tool.rotation, T_frame_tool * tool.tip_m};
 }
 
-// The pose's covariance, of the tip about the camera's axes, as the exported pose has it.
+// Covariance of the exported pose: translation of its origin, rotation about the frame's axes.
 Matrix6 covariance_of(const FittedTool& fit, const Track& track, const Tool& tool,
                       PoseOrigin origin) {
   TipPlace tip = tip_of(tool);
-  if (origin == PoseOrigin::tool) tip.sigma_m = 0;  // the tip is not where the pose is
+  if (origin == PoseOrigin::tool) tip.sigma_m = 0;  // no tip error in the tool's origin
   Matrix6 covariance = tip_covariance(track, fit, tip);
   if (origin == PoseOrigin::tool) {
     covariance = moved_covariance(covariance, track.T_camera_tool.rotation * (-tool.tip_m));
@@ -30,7 +30,7 @@ Matrix6 covariance_of(const FittedTool& fit, const Track& track, const Tool& too
   if (track.base != ReferenceFrame::world) return covariance;
   const Quaternion world_camera =
       track.newest.pose.rotation * track.T_camera_tool.rotation.conjugate();
-  // The headset's own share is of the markers' middle.
+  // head_covariance refers to the centroid of the markers.
   const Vector3 to = (origin == PoseOrigin::tip ? tool.tip_m : Vector3(Vector3::Zero()));
   return turned_covariance(covariance, world_camera) +
          moved_covariance(track.head_covariance,
@@ -137,12 +137,12 @@ ExportedRows export_csv(RecordedFrames& recorded, const std::vector<std::size_t>
 }
 
 ExportedRows export_truth(RecordedFrames& recorded, const PoseExport& wanted, const LineOut& out) {
-  // The duration ends no motion, only the simulator's frames.
+  // The duration limits the simulator's frames, not its motion.
   Cell cell = recorded.cell;
   constexpr double k_longest_s = 3600;
   cell.simulator.duration_s = k_longest_s;
   const sim::Simulator simulator(scenario_of(cell));
-  std::map<std::uint64_t, int> deliveries;  // by their frame's number
+  std::map<std::uint64_t, int> deliveries;  // index by frame number
   for (int i = 0; i < simulator.frame_count(); ++i) {
     deliveries.emplace(simulator.timing(i).sequence, i);
   }
@@ -161,7 +161,7 @@ ExportedRows export_truth(RecordedFrames& recorded, const PoseExport& wanted, co
     if (delivery == deliveries.end()) continue;
     simulator.describe(delivery->second, made);
     if (made.mid_exposure != time) continue;
-    // A live run that was late stamps other arrivals.
+    // A delayed live run has other arrival times.
     alike += made.arrival == arrived.frame.arrival && same_place(made.head, arrived.head) ? 1 : 0;
     Pose pose = simulator.truth_tool(static_cast<int>(wanted.tool), time);
     if (wanted.frame == ReferenceFrame::camera) {

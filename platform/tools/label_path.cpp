@@ -14,7 +14,7 @@ namespace glint {
 namespace {
 
 constexpr double k_infinite = std::numeric_limits<double>::infinity();
-// A jump no hand makes: two labelings that have nothing to do with each other.
+// Cost of a jump that no hand makes: two unrelated labelings.
 constexpr double k_jump = 60;
 constexpr double k_noise_sigmas = 6;
 
@@ -70,7 +70,7 @@ class Paths {
     return std::min(frames_[f].labelings.size(), static_cast<std::size_t>(k_labelings_max));
   }
 
-  // Whether the time since the frame before is too short for any turn.
+  // Returns whether the time since the previous frame is too short for a rotation by 180 degrees.
   [[nodiscard]] bool linked(std::size_t f) const {
     const double seconds = (frames_[f].time - frames_[f - 1].time).seconds();
     return settings_.turn_max_rad_s * seconds < std::numbers::pi;
@@ -98,7 +98,7 @@ class Paths {
            settings_.turn_max_rad_s * seconds + noise_m / radius_m_;
   }
 
-  // Between a frame's labeling and another's; frames may be in any order.
+  // Cost of a step between two frames' labelings, in either order.
   [[nodiscard]] double step_cost(std::size_t f, std::size_t k, std::size_t other,
                                  std::size_t l) const {
     const double seconds = std::abs((frames_[f].time - frames_[other].time).seconds());
@@ -107,10 +107,10 @@ class Paths {
     return follows ? 0 : k_jump;
   }
 
-  // The least cost of all that is on one side of each labeling. direction 1: before it, -1: after.
+  // Least cost of all frames on one side of each labeling. direction 1: before it, -1: after it.
   [[nodiscard]] std::vector<Costs> pass(int direction) const {
     std::vector<Costs> costs(frames_.size());
-    std::size_t last = frames_.size();  // the nearest frame passed that has labelings
+    std::size_t last = frames_.size();  // the previous frame with labelings
     for (std::size_t n = 0; n < frames_.size(); ++n) {
       const std::size_t f = direction > 0 ? n : frames_.size() - 1 - n;
       if (states(f) == 0) continue;
@@ -125,7 +125,7 @@ class Paths {
     return costs;
   }
 
-  // Both neighbours have labelings, and none of either leads here.
+  // Returns whether both neighbours have labelings, but none can lead here.
   [[nodiscard]] bool stands_apart(std::size_t f, std::size_t k) const {
     for (const std::size_t other : {f - 1, f + 1}) {
       if (other >= frames_.size() || states(other) == 0) return false;

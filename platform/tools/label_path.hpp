@@ -1,16 +1,15 @@
-// Which labeling holds in each frame of a recording: the most likely path through all of them.
+// Labeling of a recording by dynamic programming (Viterbi): most likely path of labelings, with
+// margins.
 //
-// What:     a labeling costs its squared residuals in sigmas, and as much as chi-square would
-//           refuse for each marker fewer than the frame's best has. From frame to frame a path
-//           costs nothing where a hand can have moved the tool so, else k_jump. A frame's margin is
-//           by how much the best path through another pose costs more than the best path of all:
-//           twice the logarithm of their likelihoods' ratio.
+// What:     a labeling costs its squared residuals in sigmas, plus the chi-square limit for each
+//           marker fewer than the frame's best labeling has. A step between frames costs nothing if
+//           a hand can make the motion, else k_jump. A frame's margin is the extra cost of the best
+//           path through another pose: twice the log likelihood ratio.
 // Cost:     the square of k_labelings_max for each frame, forward and backward.
-// Worst:    a recording of markers that fit in k_labelings_max ways in each frame.
-// Accuracy: of the paths there are the best. Errors of the tool file and of the camera system
-//           repeat in each frame, so that a longer segment counts as (sigma / repeated error)^2
-//           frames.
-// Source:   Viterbi 1967; margins by the same pass backwards (max-marginals of a chain).
+// Worst:    markers that fit in k_labelings_max ways in every frame.
+// Accuracy: optimal among the paths. Errors of tool file and camera system repeat in each frame; a
+//           segment therefore counts as at most (sigma / repeated error)^2 frames.
+// Source:   Viterbi 1967; margins by the backward pass (max-marginals of a chain).
 #pragma once
 
 #include <span>
@@ -24,12 +23,12 @@ namespace glint {
 
 struct PathSettings {
   double sigma_m = 0.0005;            // of a marker's coordinate
-  double repeated_error_m = 0.00004;  // of it, what repeats in each frame at least
-  double speed_max_m_s = 5;           // of a hand-held tool's middle
-  double turn_max_rad_s = 20;         // of its rotation: half a turn takes 0.16 s
+  double repeated_error_m = 0.00004;  // minimum part of it that repeats in each frame
+  double speed_max_m_s = 5;           // of the centroid of a hand-held tool
+  double turn_max_rad_s = 20;         // of its rotation: 180 degrees take 0.16 s
 };
 
-// Of what is wrong once in fifty times: 2 ln 49.
+// Limit for an error probability of 1 in 50: 2 ln 49.
 inline constexpr double k_margin_min = 7.8;
 
 // All labelings of one frame.
@@ -39,13 +38,13 @@ struct LabeledFrame {
 };
 
 struct PathChoice {
-  int chosen = -1;    // of the frame's labelings; -1: it has none
-  double margin = 0;  // in units of chi-square; infinite where no other pose is in question
+  int chosen = -1;    // index in the frame's labelings; -1: none
+  double margin = 0;  // in units of chi-square; infinite without another pose
   [[nodiscard]] bool ambiguous() const { return chosen >= 0 && !(margin >= k_margin_min); }
 };
 
-// One choice a frame. Poses are other poses where they count as gross errors of each other. A
-// labeling that neither of its neighbours in time leads to has no margin.
+// Returns one choice per frame. Poses differ if they count as gross errors of each other. A
+// labeling that neither neighbour in time can lead to has margin 0.
 [[nodiscard]] std::vector<PathChoice> choose_path(std::span<const LabeledFrame> frames,
                                                   const Tool& tool, const PathSettings& settings);
 

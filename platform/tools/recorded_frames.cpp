@@ -18,7 +18,7 @@ std::string kind_of(const std::string& source, const std::string& stated) {
   if (source.empty() || !stated.empty()) return stated;
   const std::string kind = kind_at(source);
   if (!kind.empty()) return kind;
-  if (!std::filesystem::is_directory(source)) return "recording";  // whose reader names the fault
+  if (!std::filesystem::is_directory(source)) return "recording";  // its reader reports the error
   throw InputError(source +
                    ": no recorded frames in this folder; expected frames.csv, .mcap files, or "
                    "\"Depth AHaT.tar\" of StreamRecorder");
@@ -94,7 +94,7 @@ TrackedFrames track_frames(RecordedFrames& recorded, Search search,
   while (source.wait(arrived)) {
     ++tracked.frames;
     if (search == Search::everywhere) {
-      // A tool that was exchanged may be anywhere.
+      // A tool with a new identity is searched everywhere.
       for (Tool& tool : tools.items) tool.identity = static_cast<std::uint32_t>(tracked.frames);
       tracker->latest<ToolSet>().set(tools, static_cast<std::uint64_t>(tracked.frames), 0);
     }

@@ -1,4 +1,4 @@
-// Tracks a tool in bare marker positions, unlabelled: what any motion-capture system exports.
+// Tracking of a tool in unlabelled marker positions, as exported by a motion capture system.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct PointPose {
   Reason reason = Reason::none;  // ambiguous: another pose is nearly as likely
   std::uint8_t marker_mask = 0;
   double rms_m = 0;
-  // By how much the next pose is less likely, in units of chi-square; infinite where there is none.
+  // Margin to the next likely pose, in units of chi-square; infinite if there is none.
   double margin = 0;
   Pose pose;  // T_file_tool, in the frame of the file's coordinates
   Vector3 tip_m = Vector3::Zero();
@@ -32,8 +32,7 @@ struct PointsResult {
   double margin_min = 0;  // of the solved frames
 };
 
-// Frames that follow each other soon are decided together: label_path.hpp.
-// Throws InputError for a bad file.
+// Decides frames in close succession together (label_path.hpp). Throws InputError for a bad file.
 [[nodiscard]] PointsResult replay_points(const std::string& points_file,
                                          const std::string& tool_file);
 
