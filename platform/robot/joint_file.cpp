@@ -16,9 +16,9 @@ namespace glint {
 namespace {
 
 struct Position {
-  std::string name;  // empty: by its place
+  std::string name;  // empty: by order
   double value = 0;
-  std::string where;  // file and line or place
+  std::string where;  // file and line or index
 };
 
 std::optional<double> number_of(const std::string& word) {

@@ -21,7 +21,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// The child's end of the pipe is its standard output; only there does it stay open.
+// Standard streams of the child: the pipe's write end is its standard output and open nowhere else.
 class Files {
  public:
   explicit Files(int output) {
@@ -41,13 +41,13 @@ class Files {
 
 enum class Took : std::uint8_t { some, all, no_more_time };
 
-// What is in the pipe; waits for it until the deadline.
+// Reads from the pipe; waits for data until the deadline.
 Took take(int pipe, Clock::time_point deadline, std::string& bytes) {
   const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
   if (left.count() <= 0) return Took::no_more_time;
   pollfd ready{pipe, POLLIN, 0};
   if (::poll(&ready, 1, static_cast<int>(std::min<long long>(left.count(), 1000))) <= 0) {
-    return Took::some;  // looks at the clock again
+    return Took::some;  // the caller tests the deadline again
   }
   std::array<char, 65536> piece{};
   const ssize_t size = ::read(pipe, piece.data(), piece.size());
@@ -56,7 +56,7 @@ Took take(int pipe, Clock::time_point deadline, std::string& bytes) {
   return size == 0 ? Took::all : Took::some;
 }
 
-// Kills it at the deadline: a program may close its output and run on.
+// Waits for the exit and kills at the deadline: a program may close its output and continue.
 ProcessEnd end_of(pid_t process, Clock::time_point deadline) {
   int status = 0;
   while (::waitpid(process, &status, WNOHANG) == 0) {
@@ -77,7 +77,7 @@ ProcessOutput output_of(std::vector<std::string> command, const ProcessLimits& l
   std::vector<char*> arguments;
   for (std::string& word : command) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  std::array<int, 2> ends{};  // reading, writing
+  std::array<int, 2> ends{};  // read, write
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
     throw MissingDevice(command[0] + ": no pipe to it: " + std::strerror(errno));
   }

@@ -1,4 +1,4 @@
-// Runs a program that may crash, hang or write without end, and takes its output.
+// Subprocess with limits on time and output: for programs that may crash, hang or write endlessly.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,14 @@ namespace glint {
 enum class ProcessEnd : std::uint8_t {
   done,       // exit code 0
   failed,     // another exit code
-  killed,     // by a signal: it crashed
-  timed_out,  // and was killed for it
-  too_much,   // wrote more than the limit, and was killed for it
+  killed,     // by a signal: crash
+  timed_out,  // killed at the time limit
+  too_much,   // killed at the output limit
 };
 
 struct ProcessOutput {
   ProcessEnd end = ProcessEnd::failed;
-  std::string bytes;  // of its standard output
+  std::string bytes;  // standard output
 };
 
 struct ProcessLimits {
@@ -28,9 +28,9 @@ struct ProcessLimits {
   Duration time;
 };
 
-// command[0] is the program's path. Its input and its error output are /dev/null. Safe in a process
-// with other threads: posix_spawn runs no code of ours between fork and exec. Throws MissingDevice
-// where the program cannot be started.
+// command[0] is the program's path. Its standard input and error are /dev/null. Safe in a process
+// with other threads: posix_spawn runs no own code between fork and exec. Throws MissingDevice if
+// the program cannot be started.
 [[nodiscard]] ProcessOutput output_of(std::vector<std::string> command,
                                       const ProcessLimits& limits);
 

@@ -19,9 +19,9 @@ namespace glint {
 namespace {
 
 constexpr std::uintmax_t k_mesh_bytes_max = 256u << 20;
-// A link of ten metres is a crane's; one of a millimetre is nobody's.
+// Limits of a link's extent: a larger or smaller mesh has the wrong unit.
 constexpr double k_extent_max_m = 10, k_extent_min_m = 1e-3;
-// A binary STL says how many triangles it has: believed only where the file is as long.
+// Requires that a binary STL is at least as long as its triangle count implies.
 void check_binary_stl(const std::string& path, std::uintmax_t size) {
   std::ifstream file(path, std::ios::binary);
   char head[84] = {};
@@ -37,7 +37,7 @@ void check_binary_stl(const std::string& path, std::uintmax_t size) {
   }
 }
 
-// The program lies beside this one.
+// glint_mesh_reader is in the folder of this program.
 std::string reader_program() {
   std::error_code failed;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", failed);
@@ -120,8 +120,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Whether `path` lies in `folder`, by their words alone: a link in a package folder was put there
-// by the folder's owner and may lead out of it.
+// Returns whether `path` is in `folder`, lexically: symbolic links in a package folder are its
+// owner's and may lead out of it.
 bool lies_in(const fs::path& folder, const fs::path& path) {
   fs::path base = fs::absolute(folder.empty() ? "." : folder).lexically_normal();
   if (!base.has_filename()) base = base.parent_path();  // "folder/" has an empty last part
@@ -134,14 +134,14 @@ fs::path folder_of(const std::string& entry) {
   return entry.substr(entry.find('=') == std::string::npos ? 0 : entry.find('=') + 1);
 }
 
-// A name that is too long, say, is no file: not an error of its own.
+// Without exceptions: for example a name that is too long is not a file.
 bool is_file(const fs::path& path) {
   std::error_code error;
   return fs::is_regular_file(path, error);
 }
 
-// A path that names its place itself: absolute, or beside the URDF. A folder, a device or a pipe is
-// no mesh.
+// Checks a path that is absolute or relative to the URDF. Folders, devices and pipes are not
+// meshes.
 std::string confined(const fs::path& path, const std::string& name, const RobotFiles& files,
                      bool beside) {
   std::error_code error;  // an empty name has no absolute path
@@ -177,7 +177,7 @@ std::string find_mesh(const std::string& name, const RobotFiles& files) {
     const fs::path beside = fs::path(files.urdf).parent_path() / name;
     if (is_file(beside)) return confined(beside, name, files, true);
   }
-  // Below, the path grows shorter from its beginning: each part must be a name.
+  // The loop below removes leading parts of the path, so each part must be a name.
   const fs::path parts(rest);
   if (parts.is_absolute() || rest.find("//") != std::string::npos ||
       std::find(parts.begin(), parts.end(), "..") != parts.end()) {

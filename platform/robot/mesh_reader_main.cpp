@@ -1,9 +1,8 @@
-// glint_mesh_reader: reads one mesh file with assimp, in a process of its own with limits.
+// glint_mesh_reader: reads one mesh file with assimp, in a separate process with limits.
 //
-//   glint_mesh_reader FILE SCALE_X SCALE_Y SCALE_Z MEMORY_MB     writes
-//   platform/robot/mesh_bytes.hpp
-// assimp crashes or takes any amount of memory on a damaged file: then this process ends, not
-// glint.
+//   glint_mesh_reader FILE SCALE_X SCALE_Y SCALE_Z MEMORY_MB
+// The output format is that of platform/robot/mesh_bytes.hpp.
+// On a damaged file assimp may crash or allocate without limit: then this process ends, not glint.
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -24,7 +23,7 @@ namespace glint {
 namespace {
 
 constexpr int k_nodes_deep_max = 64;
-// Corners of real meshes are a tenth of a millimetre apart or more: this is a line or a point.
+// Corners of real meshes are at least 0.1 mm apart: a smaller triangle is a line or a point.
 constexpr double k_area_min_m2 = 1e-12;
 
 struct MeshReader {
@@ -35,7 +34,7 @@ struct MeshReader {
     for (unsigned f = 0; f < part.mNumFaces; ++f) {
       const aiFace& face = part.mFaces[f];
       if (face.mNumIndices != 3) {
-        ++mesh.skipped;  // a lone point or line
+        ++mesh.skipped;  // a single point or line
         continue;
       }
       Eigen::Vector3d corner[3];
@@ -70,7 +69,7 @@ struct MeshReader {
   }
 };
 
-// Address sanitizers reserve terabytes of addresses: there the limit does not hold.
+// An address sanitizer reserves terabytes of address space, so the limit is not set there.
 void limit_memory(rlim_t bytes) {
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);

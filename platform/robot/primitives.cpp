@@ -5,15 +5,15 @@
 namespace glint {
 namespace {
 
-// 48 corners: the flat sides of a cylinder of 10 cm lie 0.2 mm inside of it at most.
+// 48 corners: the flat sides of a cylinder of 10 cm are at most 0.2 mm inside it.
 constexpr int k_corners = 48;
 
 Vector3f on_circle(int corner, double radius_m, double z_m) {
-  const double angle = 2 * M_PI * (corner % k_corners) / k_corners;  // a closed ring
+  const double angle = 2 * M_PI * (corner % k_corners) / k_corners;  // closed ring
   return Eigen::Vector3d(radius_m * std::cos(angle), radius_m * std::sin(angle), z_m).cast<float>();
 }
 
-// Corners in circles: two rings as a band.
+// Triangles between two rings of corners.
 void add_band(std::vector<Triangle>& out, double low_radius, double low_z, double high_radius,
               double high_z) {
   for (int k = 0; k < k_corners; ++k) {

@@ -44,7 +44,7 @@ std::string joint_line(const TreeJoint& joint) {
   return line + "\n";
 }
 
-// The comments' part of the header, line by line.
+// Parser of the header's comments.
 class Reader {
  public:
   explicit Reader(const std::string& path)

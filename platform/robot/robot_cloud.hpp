@@ -1,5 +1,5 @@
-// A robot without meshes: its joints, and points that stand for its links' surfaces. What a host
-// makes of a URDF for a board that reads neither URDF nor meshes.
+// Robot model without meshes: joints, and points sampled on the links' surfaces. A host computes it
+// from a URDF for a companion computer without URDF and mesh readers.
 #pragma once
 
 #include <cstdint>
@@ -18,14 +18,14 @@ struct RobotCloud {
   std::string name;
   JointTree tree;
   std::vector<std::string> links, inputs;  // as in RobotModel
-  std::vector<Vector3f> points, normals;   // in their links' frames, metres
+  std::vector<Vector3f> points, normals;   // in the link frames, metres
   std::vector<std::uint16_t> point_links;
   float spacing_m = 0;
 
   [[nodiscard]] LinkCloud cloud() const { return {{points, normals, spacing_m}, point_links}; }
 };
 
-// A whole robot's points in its root's frame.
+// Points of the complete robot in its root's frame.
 struct PosedCloud {
   std::vector<Vector3f> points, normals;
   float spacing_m = 0;
@@ -34,26 +34,25 @@ struct PosedCloud {
   [[nodiscard]] ModelCloud cloud() const { return {points, normals, spacing_m}; }
 };
 
-// At these positions (radians, metres; one for each input). Both throw InputError naming `what`
-// where the positions are none.
+// At these positions (radians, metres; one per input). Both throw InputError naming `what` if the
+// positions are invalid.
 [[nodiscard]] LinkPoses link_poses(const RobotCloud& robot, std::span<const double> positions,
                                    const std::string& what);
 [[nodiscard]] PosedCloud posed_cloud(const RobotCloud& robot, std::span<const double> positions,
                                      const std::string& what);
 
-// A PLY file that any viewer opens: binary_little_endian, a vertex a point with float x y z, float
-// nx ny nz (in the link's frame) and ushort link; before them, as comments, what moves the links:
+// PLY format, binary_little_endian: one vertex per point with float x y z, float nx ny nz (in the
+// link's frame) and ushort link. Comments before them define the kinematic tree:
 //   comment glint robot cloud 1
 //   comment robot NAME
 //   comment spacing_m S
 //   comment input NAME                    one for each joint value, in their order
 //   comment link NAME                     the root; then for each joint, parents first:
 //   comment joint KIND PARENT INPUT MULTIPLIER OFFSET AX AY AZ X Y Z QX QY QZ QW
-//   comment link NAME                     that it carries
-// KIND: fixed, turning, sliding; PARENT, INPUT: numbers from 0, INPUT -1 for none; the axis in the
-// joint's frame; T_parent_joint as metres and a quaternion. Numbers have digits enough to come back
-// as they were.
-// Throws InputError where the file cannot be written.
+//   comment link NAME                     the joint's child
+// KIND: fixed, turning, sliding. PARENT, INPUT: indices from 0, INPUT -1 for none. The axis is in
+// the joint's frame; T_parent_joint is metres and a quaternion. Numbers are written with full
+// precision. Throws InputError if the file cannot be written.
 void write_robot_cloud(const std::string& path, const RobotCloud& robot);
 
 // Throws InputError naming file, line, found and expected.

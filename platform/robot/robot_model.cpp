@@ -13,7 +13,7 @@
 namespace glint {
 namespace {
 
-constexpr std::size_t k_triangles_max = 4'000'000;  // of a whole robot: 144 MB
+constexpr std::size_t k_triangles_max = 4'000'000;  // of a complete robot: 144 MB
 
 Pose pose_of(const urdf::Pose& pose) {
   const urdf::Rotation& r = pose.rotation;
@@ -21,7 +21,7 @@ Pose pose_of(const urdf::Pose& pose) {
           {pose.position.x, pose.position.y, pose.position.z}};
 }
 
-// Links and joints from the root down, in the order of the file.
+// Builds the tree from the root down, in the order of the file.
 class TreeBuilder {
  public:
   TreeBuilder(const UrdfFile& file, const std::string& path, RobotModel& robot)
@@ -31,7 +31,7 @@ class TreeBuilder {
     number_inputs();
     robot_.links.push_back(file_.model->getRoot()->name);
     link_[robot_.links[0]] = 0;
-    // Each round takes at least one joint: the joints form a tree.
+    // Each iteration adds at least one joint, since the joints form a tree.
     std::vector<std::string> left = file_.joints;
     while (!left.empty()) {
       std::vector<std::string> later;
@@ -100,7 +100,7 @@ class TreeBuilder {
                      "' is planar or floating; expected revolute, continuous, prismatic or fixed");
   }
 
-  // A joint that mimics one that mimics another follows that other's value.
+  // Resolves chains of mimic joints to the joint with its own value.
   void follow(const urdf::Joint& joint, TreeJoint& to) const {
     const urdf::Joint* at = &joint;
     for (std::size_t steps = 0; at->mimic; ++steps) {
@@ -130,7 +130,7 @@ class TreeBuilder {
   std::map<std::string, int> link_, input_;
 };
 
-// Equal corners become one: a renderer then moves a sixth of them.
+// Merges equal corners, so that a renderer transforms a sixth of them.
 class Welder {
  public:
   explicit Welder(int link) { surface_.link = link; }

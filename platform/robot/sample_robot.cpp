@@ -15,8 +15,8 @@ double area_of(const Triangle& t) {
 
 }  // namespace
 
-// Area is walked along triangle by triangle: point i is at (i + u) / n of it. Within its triangle
-// a point is uniform by the square root of one number (Osada et al. 2002, section 4.1).
+// Cumulative area over the triangles: point i is at (i + u) / n of it. Within its triangle a point
+// is uniform by the square root of one number (Osada et al. 2002, section 4.1).
 RobotCloud sample_robot(const RobotModel& robot, int points) {
   if (points < 1 || points > k_model_points_max) {
     throw InputError(std::to_string(points) + " points of a robot; expected 1 to " +

@@ -1,4 +1,4 @@
-// Points over a robot's surface, evenly by area.
+// Uniform sampling of points on a robot's surface.
 #pragma once
 
 #include "platform/robot/robot_cloud.hpp"
@@ -6,9 +6,9 @@
 
 namespace glint {
 
-// So many points: the surface, triangle by triangle, is cut into as many parts of equal area, and
-// each part has a point at a random place of it (by counter: the same model gives the same points).
-// Throws InputError: no points, or more than k_model_points_max.
+// Stratified sampling: divides the surface, triangle by triangle, into `points` parts of equal area
+// and places one point at random in each (counter-based: the same model yields the same points).
+// Throws InputError for no points or more than k_model_points_max.
 [[nodiscard]] RobotCloud sample_robot(const RobotModel& robot, int points);
 
 }  // namespace glint

@@ -17,10 +17,10 @@ namespace glint {
 namespace {
 
 constexpr std::size_t k_urdf_bytes_max = 16u << 20;
-constexpr int k_nesting_max = 64;     // XML parsers recurse for every level; a URDF has five
-constexpr int k_attributes_max = 64;  // of one element
+constexpr int k_nesting_max = 64;     // XML parsers recurse per level; a URDF has five
+constexpr int k_attributes_max = 64;  // per element
 
-// What urdfdom complains of, in place of its lines on stderr.
+// Captures urdfdom's error messages instead of printing them to stderr.
 class Complaints : public console_bridge::OutputHandler {
  public:
   Complaints() { console_bridge::useOutputHandler(this); }
@@ -46,7 +46,7 @@ class Complaints : public console_bridge::OutputHandler {
   refuse(path, line, "elements nested more than " + std::to_string(k_nesting_max) + " deep");
 }
 
-// tinyxml2 limits the depth itself while it reads (XML_ELEMENT_DEPTH_EXCEEDED).
+// tinyxml2 limits the depth while parsing (XML_ELEMENT_DEPTH_EXCEEDED).
 void parse(const std::string& text, const std::string& path, tinyxml2::XMLDocument& document) {
   const tinyxml2::XMLError error = document.Parse(text.data(), text.size());
   if (error == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED) {
@@ -57,7 +57,7 @@ void parse(const std::string& text, const std::string& path, tinyxml2::XMLDocume
   }
 }
 
-// As XML 1.0, 3.3.3 has it for an attribute's value.
+// Normalises an attribute value by XML 1.0, section 3.3.3.
 std::string blanks_for_breaks(std::string value) {
   for (char& c : value) c = c == '\t' || c == '\n' || c == '\r' ? ' ' : c;
   return value;
@@ -72,9 +72,9 @@ bool is_plain_name(std::string_view name) {
          std::all_of(name.begin(), name.end(), later);
 }
 
-// The elements and attributes alone, written anew. urdfdom's own parser takes other characters for
-// tags than tinyxml2 does (in comments, CDATA, a DOCTYPE, attributes) and recurses without a limit:
-// in this text both find the same elements.
+// Rewrites only elements and attributes. urdfdom's parser recognises tags differently from tinyxml2
+// (in comments, CDATA, a DOCTYPE, attributes) and recurses without a limit. In this text both find
+// the same elements.
 class PlainCopy : public tinyxml2::XMLVisitor {
  public:
   explicit PlainCopy(const std::string& path) : path_(path) {}
@@ -85,7 +85,7 @@ class PlainCopy : public tinyxml2::XMLVisitor {
     check_name(element.Name(), element);
     text_.append(1, '<').append(element.Name());
     for (int count = 0; attribute != nullptr; attribute = attribute->Next()) {
-      // urdfdom's parser compares each with all before.
+      // urdfdom's parser compares each attribute with all previous ones.
       if (++count > k_attributes_max) {
         refuse(path_, element.GetLineNum(),
                "an element with more than " + std::to_string(k_attributes_max) + " attributes");
@@ -131,8 +131,8 @@ std::vector<std::string> joints_of(const tinyxml2::XMLElement& robot, const std:
   return joints;
 }
 
-// Each link is the child of one joint at most, and the way up from it ends at the root. Checked in
-// the file itself: of two parents urdfdom keeps the last without an error.
+// Requires that each link is the child of at most one joint and that its ancestors end at the root.
+// Checks the file itself: of two parents urdfdom keeps the last without an error.
 void check_tree(const tinyxml2::XMLElement& robot, const std::string& path) {
   std::map<std::string, std::string> parent, by;
   for (const auto* joint = robot.FirstChildElement("joint"); joint != nullptr;
