@@ -50,7 +50,6 @@ std::size_t MapSlices::bytes(const MapSettings& s) noexcept {
 Reason MapSlices::prepare(const MapSettings& s, int pictures_a_map, Arena& arena) noexcept {
   stage_ = Stage::idle;
   totals_ = {};
-  out_ = 0;
   pictures_since_ = 0;
   if (!fits(s) || pictures_a_map < 1) return Reason::out_of_range;
   settings_ = s;
