@@ -30,6 +30,22 @@ class TestMemory {
   Arena arena_;
 };
 
+// Exactly so many bytes, from the beginning of a line on: an arena over it loses none.
+class ExactMemory {
+ public:
+  explicit ExactMemory(std::size_t bytes) : bytes_(bytes + Arena::k_alignment) {
+    void* begin = bytes_.data();
+    std::size_t room = bytes_.size();
+    std::align(Arena::k_alignment, bytes, begin, room);
+    arena_ = Arena({static_cast<std::byte*>(begin), bytes});
+  }
+  [[nodiscard]] Arena& arena() { return arena_; }
+
+ private:
+  std::vector<std::byte> bytes_;
+  Arena arena_{std::span<std::byte>()};
+};
+
 struct TestCloud {
   explicit TestCloud(int capacity) : memory(PointCloud::bytes(std::max(capacity, 1))) {
     EXPECT_EQ(points.prepare(std::max(capacity, 1), memory.arena()), Reason::none);

@@ -72,5 +72,76 @@ TEST(DepthPoints, LeaveOutWhatIsNoDepthAndCountWhatDoesNotFit) {
   EXPECT_EQ(dropped, 4);
 }
 
+TEST(DepthPoints, NumberThePixelsThatAStrideTakes) {
+  const struct {
+    int width, height, stride, pixels;
+  } cases[] = {{8, 6, 1, 48}, {8, 6, 2, 12}, {8, 6, 3, 6}, {8, 6, 4, 4},
+               {8, 6, 8, 1},  {9, 7, 8, 2},  {9, 9, 8, 4}, {0, 6, 1, 0}};
+  for (const auto& [width, height, stride, pixels] : cases) {
+    EXPECT_EQ(pixels_of({width, height, {}}, stride), pixels) << width << ' ' << stride;
+  }
+}
+
+// Every pixel stands on its own ray, whatever the stride and the slices.
+TEST(DepthPoints, StandOnTheRaysOfTheirPixels) {
+  const std::vector<float> depth(48, 2.0f);
+  for (const int stride : {1, 2, 3, 5}) {
+    DepthPointSettings settings;
+    settings.stride = stride;
+    int dropped = 0;
+    std::vector<Point> expected;
+    for (int v = 0; v < 6; v += stride) {
+      for (int u = 0; u < 8; u += stride) {
+        expected.push_back({2 * (static_cast<float>(u) - 3.5f) / 10,
+                            2 * (static_cast<float>(v) - 2.5f) / 10, 2.0f});
+      }
+    }
+    const std::vector<Point> found = points_of(depth, settings, {}, 4, 48, dropped);
+    ASSERT_EQ(found.size(), expected.size()) << stride;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_LT(squared_distance(found[i], expected[i]), 1e-12) << stride << ' ' << i;
+    }
+    EXPECT_EQ(dropped, 0);
+  }
+}
+
+TEST(DepthPoints, AreTakenAtBothLimitsAndNotBeyond) {
+  const DepthPointSettings settings;
+  const float near = settings.depth_min_m, far = settings.depth_max_m;
+  std::vector<float> depth(48, 0.0f);
+  depth[0] = near, depth[1] = far;
+  depth[2] = std::nextafter(near, 0.0f), depth[3] = std::nextafter(far, 9.0f);
+  int dropped = 0;
+  const std::vector<Point> points = points_of(depth, settings, {}, 48, 48, dropped);
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_FLOAT_EQ(points[0][2], near);
+  EXPECT_FLOAT_EQ(points[1][2], far);
+}
+
+TEST(DepthPoints, LeaveOutPixelsWithoutARay) {
+  const std::vector<float> depth(48, 1.0f);
+  CameraModel camera = small_pinhole();
+  camera.fx = 1e-3;  // only rays that are not 1,000 times as far aside as ahead
+  camera.cx = 3.5;
+  TestCloud cloud(48);
+  int dropped = 0;
+  const DepthPicture picture{8, 6, depth};
+  EXPECT_EQ(add_depth_points(picture, camera, {}, {}, 0, 100, cloud.points, dropped), 48);
+  EXPECT_EQ(cloud.points.count, 6);  // the column of the axis
+  for (const Point& point : cloud.all()) EXPECT_EQ(point[0], 0);
+}
+
+TEST(DepthPoints, LookAtNoPixelWhereNoneIsAskedFor) {
+  const std::vector<float> depth(48, 1.0f);
+  TestCloud cloud(48);
+  int dropped = 0;
+  for (const int most : {0, -3}) {
+    EXPECT_EQ(
+        add_depth_points({8, 6, depth}, small_pinhole(), {}, {}, 5, most, cloud.points, dropped),
+        5);
+  }
+  EXPECT_EQ(cloud.points.count, 0);
+}
+
 }  // namespace
 }  // namespace glint

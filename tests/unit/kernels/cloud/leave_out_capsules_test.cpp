@@ -81,5 +81,46 @@ TEST(LeaveOutCapsules, LooksAtTheFirstOnesOnly) {
   EXPECT_EQ(leave_out_capsules(std::span(many).last(1), 0, cloud.points), 1);
 }
 
+TEST(LeaveOutCapsules, TakesOffAPointAtExactlyTheirRadius) {
+  TestCloud cloud(5);
+  const std::vector<LeftOut> line = {{{0, 0, 0}, {2, 0, 0}, 0.5}};
+  const float beyond = std::nextafter(0.5f, 1.0f);
+  for (const Point& p : std::vector<Point>{
+           {1, 0.5f, 0}, {1, beyond, 0}, {-0.5f, 0, 0}, {-beyond, 0, 0}, {2.5f, 0, 0}}) {
+    ASSERT_TRUE(cloud.points.add(p[0], p[1], p[2]));
+  }
+  EXPECT_EQ(leave_out_capsules(line, 0, cloud.points), 3);
+  EXPECT_EQ(cloud.all(), (std::vector<Point>{{1, beyond, 0}, {-beyond, 0, 0}}));
+}
+
+// Place, normal and weight.
+TEST(LeaveOutCapsules, MovesUpAllOfAPoint) {
+  TestCloud cloud(3);
+  PointCloud& points = cloud.points;
+  for (const float x : {0.0f, 5.0f, 6.0f}) {
+    const int i = points.count;
+    ASSERT_TRUE(points.add(x, x + 1, x + 2, x + 3));
+    points.normal_x[i] = x + 4, points.normal_y[i] = x + 5, points.normal_z[i] = x + 6;
+  }
+  const std::vector<LeftOut> ball = {{{0, 1, 2}, {0, 1, 2}, 1}};
+  EXPECT_EQ(leave_out_capsules(ball, -7, points), 1) << "there is none before the first";
+  ASSERT_EQ(points.count, 2);
+  for (int i = 0; i < 2; ++i) {
+    const float x = 5.0f + static_cast<float>(i);
+    const Column<float>* columns[] = {&points.x,       &points.y,        &points.z,
+                                      &points.weight,  &points.normal_x, &points.normal_y,
+                                      &points.normal_z};
+    for (int c = 0; c < 7; ++c) EXPECT_EQ((*columns[c])[i], x + static_cast<float>(c)) << c;
+  }
+}
+
+TEST(LeaveOutCapsules, CountTheLastOneThatMayBe) {
+  TestCloud cloud(1);
+  ASSERT_TRUE(cloud.points.add(0, 0, 0));
+  std::vector<LeftOut> many(k_left_out_max - 1, {Vector3(9, 9, 9), Vector3(9, 9, 9), 1});
+  many.push_back({Vector3::Zero(), Vector3::Zero(), 1});
+  EXPECT_EQ(leave_out_capsules(many, 0, cloud.points), 1);
+}
+
 }  // namespace
 }  // namespace glint

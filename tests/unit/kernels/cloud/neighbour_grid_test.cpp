@@ -1,24 +1,13 @@
 #include "kernels/cloud/neighbour_grid.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
-#include "clouds.hpp"
+#include "sorted_cloud.hpp"
 
 namespace glint {
 namespace {
-
-struct SortedCloud {
-  explicit SortedCloud(const std::vector<Point>& of, float cell_m, int slice = 1 << 20)
-      : cloud(of), memory(NeighbourGrid::bytes(static_cast<int>(of.size()))) {
-    EXPECT_EQ(grid.prepare(static_cast<int>(of.size()), memory.arena()), Reason::none);
-    grid.begin(cloud.points, cell_m);
-    while (!grid.sorted()) grid.sort(slice);
-  }
-  TestCloud cloud;
-  TestMemory memory;
-  NeighbourGrid grid;
-};
 
 // Near the origin, and in single cells far apart: pointers must leap.
 std::vector<Point> clusters() {
@@ -120,6 +109,112 @@ TEST(NeighbourGrid, KeepsTheFirstPointsWhenFull) {
   EXPECT_EQ(grid.dropped(), 1);
   EXPECT_EQ(grid.place_in_cloud(0), 1);
   EXPECT_EQ(grid.place_in_cloud(1), 0);
+}
+
+TEST(NeighbourGrid, EndsAtTheSameCellAlongEachAxisAndEitherWay) {
+  const float edge = static_cast<float>(k_grid_cells_half);
+  const float inside = std::nextafter(edge, 0.0f);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const float side : {-1.0f, 1.0f}) {
+      Point on{0.5f, 0.5f, 0.5f}, within = on;
+      on[axis] = side * edge;
+      within[axis] = side * inside;
+      const SortedCloud sorted({on, within}, 1.0f);
+      EXPECT_EQ(sorted.grid.out_of_range(), 1) << axis << ' ' << side;
+      ASSERT_EQ(sorted.grid.count(), 1) << axis << ' ' << side;
+      EXPECT_EQ(sorted.grid.place_in_cloud(0), 1);
+      // One cell at each end stays empty.
+      const std::uint32_t digit = sorted.grid.key(0) >> (axis * k_grid_axis_bits) & 1023;
+      EXPECT_EQ(digit, side < 0 ? 1u : 1022u);
+    }
+  }
+}
+
+// A cell holds its lower boundary and not its upper one, on both sides of zero.
+TEST(NeighbourGrid, PutsAPointOnABoundaryIntoTheCellAbove) {
+  const SortedCloud sorted(
+      {{-1, 0, 0}, {-0.5f, 0, 0}, {0, 0, 0}, {0.5f, 0, 0}, {1, 0, 0}, {1.5f, 0, 0}}, 1.0f);
+  ASSERT_EQ(sorted.grid.cells(), 3);
+  for (int cell = 0; cell <= 3; ++cell) EXPECT_EQ(sorted.grid.first_point(cell), 2 * cell);
+}
+
+TEST(NeighbourGrid, CountsDownThePointsLeftInEachPass) {
+  const TestCloud cloud(std::vector<Point>{{0, 0, 0}, {k_not_a_number, 0, 0}, {1, 1, 1}});
+  TestMemory memory(NeighbourGrid::bytes(3));
+  NeighbourGrid grid;
+  ASSERT_EQ(grid.prepare(3, memory.arena()), Reason::none);
+  EXPECT_TRUE(grid.sorted()) << "there is nothing to sort yet";
+  EXPECT_EQ(grid.left_in_pass(), 0);
+  EXPECT_EQ(grid.count(), 0);
+  grid.begin(cloud.points, 1.0f);
+  for (const int left : {3, 2, 1}) {
+    EXPECT_FALSE(grid.keyed());
+    EXPECT_EQ(grid.left_in_pass(), left);
+    grid.sort(0);  // at least one
+  }
+  for (int pass = 0; pass < 4; ++pass) {
+    for (const int left : {2, 1}) {
+      EXPECT_TRUE(grid.keyed() && !grid.sorted());
+      EXPECT_EQ(grid.left_in_pass(), left);
+      grid.sort(1);
+    }
+  }
+  EXPECT_TRUE(grid.sorted());
+  EXPECT_EQ(grid.left_in_pass(), 0);
+  grid.sort(1);
+  EXPECT_TRUE(grid.sorted()) << "it is sorted once";
+}
+
+// Also where it is left in the midst of a pass.
+TEST(NeighbourGrid, BegunAgainSortsAsANewOne) {
+  std::vector<Point> first = random_points(90, 5, 10);
+  first[3][1] = k_not_a_number;
+  const TestCloud large(first);
+  const std::vector<Point> points = random_points(60, 5, 11);
+  const SortedCloud fresh(points, 1.0f);
+  for (const int slices : {5, 50, 150, 350, 1'000}) {
+    TestMemory memory(NeighbourGrid::bytes(80));
+    NeighbourGrid used;
+    ASSERT_EQ(used.prepare(80, memory.arena()), Reason::none);
+    used.begin(large.points, 0.5f);
+    for (int i = 0; i < slices; ++i) used.sort(1);
+    if (slices == 1'000) {
+      EXPECT_EQ(used.dropped(), 9);
+      EXPECT_EQ(used.out_of_range(), 1);
+    }
+    used.begin(fresh.cloud.points, 1.0f);
+    while (!used.sorted()) used.sort(17);
+    EXPECT_EQ(used.dropped() + used.out_of_range(), 0);
+    ASSERT_EQ(used.count(), 60);
+    ASSERT_EQ(used.cells(), fresh.grid.cells());
+    for (int cell = 0; cell <= used.cells(); ++cell) {
+      ASSERT_EQ(used.first_point(cell), fresh.grid.first_point(cell));
+    }
+    for (int i = 0; i < 60; ++i) {
+      ASSERT_EQ(used.place_in_cloud(i), fresh.grid.place_in_cloud(i));
+      ASSERT_EQ(used.x()[i], fresh.grid.x()[i]);
+      ASSERT_EQ(used.y()[i], fresh.grid.y()[i]);
+      ASSERT_EQ(used.z()[i], fresh.grid.z()[i]);
+    }
+  }
+}
+
+// A capacity at the limit is not out of range: what it lacks is memory.
+TEST(NeighbourGrid, TakesTheMemoryThatItStatesAndRefusesLess) {
+  NeighbourGrid grid;
+  TestMemory one(NeighbourGrid::bytes(1));
+  EXPECT_EQ(grid.prepare(0, one.arena()), Reason::out_of_range);
+  EXPECT_EQ(grid.prepare(k_cloud_points_max + 1, one.arena()), Reason::out_of_range);
+  EXPECT_EQ(grid.prepare(k_cloud_points_max, one.arena()), Reason::not_prepared);
+  EXPECT_EQ(grid.prepare(1, one.arena()), Reason::none);
+  for (int points = 1; points <= 70; ++points) {
+    const std::size_t bytes = NeighbourGrid::bytes(points);
+    ExactMemory enough(bytes), less(bytes - 1);
+    EXPECT_EQ(grid.prepare(points, enough.arena()), Reason::none) << points;
+    // Where points fill whole lines it states a line too many for two of its columns.
+    if (points % 16 == 0) continue;
+    EXPECT_EQ(grid.prepare(points, less.arena()), Reason::not_prepared) << points;
+  }
 }
 
 }  // namespace

@@ -192,5 +192,107 @@ TEST(VoxelGrid, RefusesWhatItCannotWorkWith) {
   EXPECT_EQ(grid.count(), 0);
 }
 
+// Exactly on the grid's end, along each axis and either way.
+TEST(VoxelGrid, EndsAtTheSameVoxelAlongEachAxisAndEitherWay) {
+  const float edge = static_cast<float>(k_voxel_range), inside = std::nextafter(edge, 0.0f);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const float side : {-1.0f, 1.0f}) {
+      Point on{0, 0, 0}, within{0, 0, 0};
+      on[axis] = side * edge;
+      within[axis] = side * inside;
+      TestGrid test(4, 1.0f);
+      test.add(TestCloud(std::vector<Point>{on, within}));
+      EXPECT_EQ(test.grid.out_of_range(), 1) << axis << ' ' << side;
+      EXPECT_EQ(test.written(), std::vector<Point>{within}) << axis << ' ' << side;
+    }
+  }
+}
+
+TEST(VoxelGrid, LooksOnceForAllPointsThatShareAVoxelWithTheLast) {
+  TestGrid test(8, 1.0f);
+  const TestCloud cloud(std::vector<Point>(100, Point{0.5f, 0, 0}));
+  test.add(cloud);
+  EXPECT_EQ(test.grid.probes(), 1);
+  test.add(cloud, 30);
+  EXPECT_EQ(test.grid.probes(), 1 + 4) << "once a slice";
+  TestCloud out(1);
+  test.grid.write(0, 1, out.points);
+  EXPECT_EQ(out.points.weight[0], 200);
+}
+
+TEST(VoxelGrid, CountsAnewWhenCleared) {
+  TestGrid test(1, 1.0f);
+  test.add(TestCloud(std::vector<Point>{{0, 0, 0}, {1.5f, 0, 0}, {k_not_a_number, 0, 0}}));
+  EXPECT_EQ(test.grid.dropped(), 1);
+  EXPECT_EQ(test.grid.out_of_range(), 1);
+  const std::int64_t probes = test.grid.probes();
+  test.grid.clear();
+  EXPECT_EQ(test.grid.count(), 0);
+  EXPECT_EQ(test.grid.dropped(), 0);
+  EXPECT_EQ(test.grid.out_of_range(), 0);
+  EXPECT_EQ(test.grid.reason(), Reason::none);
+  EXPECT_EQ(test.grid.probes(), probes) << "counted since prepare()";
+  test.add(TestCloud(std::vector<Point>{{1.5f, 0, 0}}));
+  EXPECT_EQ(test.written(), (std::vector<Point>{{1.5f, 0, 0}}));
+  TestMemory memory(VoxelGrid::bytes(1));
+  ASSERT_EQ(test.grid.prepare({1.0f}, 1, memory.arena()), Reason::none);
+  EXPECT_EQ(test.grid.probes(), 0);
+}
+
+TEST(VoxelGrid, AddsAndWritesNothingWhereNothingIsAskedFor) {
+  TestGrid test(8, 1.0f);
+  const TestCloud cloud(std::vector<Point>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
+  for (const int most : {0, -5}) EXPECT_EQ(test.grid.add(cloud.points, 1, most), 1);
+  EXPECT_EQ(test.grid.count(), 0);
+  EXPECT_EQ(test.grid.add(cloud.points, 1, 1), 2);
+  EXPECT_EQ(test.grid.add(cloud.points, 2, 100), 3);
+  EXPECT_EQ(test.written(), (std::vector<Point>{{1, 0, 0}, {2, 0, 0}}));
+  TestCloud out(8);
+  for (const int most : {0, -5}) EXPECT_EQ(test.grid.write(1, most, out.points), 1);
+  EXPECT_EQ(out.points.count, 0);
+}
+
+TEST(VoxelGrid, GoesOnWritingBehindWhereACloudWasFull) {
+  TestGrid test(10, 1.0f);
+  test.add(TestCloud(std::vector<Point>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}));
+  TestCloud first(2), second(2);
+  const int at = test.grid.write(1, 10, first.points);
+  EXPECT_EQ(at, 3);
+  EXPECT_EQ(test.grid.write(at, 10, second.points), 4);
+  EXPECT_EQ(first.all(), (std::vector<Point>{{1, 0, 0}, {2, 0, 0}}));
+  EXPECT_EQ(second.all(), (std::vector<Point>{{3, 0, 0}}));
+}
+
+// At most half of the slots are taken, and their number is a power of two.
+TEST(VoxelGrid, TakesTheMemoryThatItStatesAndRefusesLess) {
+  constexpr std::size_t k_voxel = 8 + 3 * 8 + 4 + 4;  // key, sums, points, slot
+  VoxelGrid grid;
+  for (int voxels = 1; voxels <= 40; ++voxels) {
+    std::size_t slots = 2;
+    while (slots < 2 * static_cast<std::size_t>(voxels)) slots *= 2;
+    const std::size_t bytes = Arena::rounded(static_cast<std::size_t>(voxels) * k_voxel) +
+                              Arena::rounded(slots * sizeof(std::int32_t));
+    EXPECT_EQ(VoxelGrid::bytes(voxels), bytes) << voxels;
+    ExactMemory enough(bytes), less(bytes - 1);
+    EXPECT_EQ(grid.prepare({0.01f}, voxels, enough.arena()), Reason::none) << voxels;
+    EXPECT_EQ(grid.prepare({0.01f}, voxels, less.arena()), Reason::not_prepared) << voxels;
+  }
+}
+
+// A capacity at the limit is not out of range: what it lacks is memory.
+TEST(VoxelGrid, TakesEachSettingAtItsLimitAndRefusesItBeyond) {
+  const auto reason_of = [](float voxel_m, int voxels) {
+    TestMemory memory(VoxelGrid::bytes(10));
+    VoxelGrid grid;
+    return grid.prepare({voxel_m}, voxels, memory.arena());
+  };
+  EXPECT_EQ(reason_of(0.01f, 1), Reason::none);
+  EXPECT_EQ(reason_of(0.01f, k_cloud_points_max), Reason::not_prepared);
+  EXPECT_EQ(reason_of(0.01f, k_cloud_points_max + 1), Reason::out_of_range);
+  EXPECT_EQ(reason_of(1e-38f, 10), Reason::none);
+  EXPECT_EQ(reason_of(1e-40f, 10), Reason::out_of_range) << "its inverse is infinite";
+  EXPECT_EQ(reason_of(-0.01f, 10), Reason::out_of_range);
+}
+
 }  // namespace
 }  // namespace glint
