@@ -16,6 +16,9 @@ SurfacePoint surface_of(const std::vector<Point>& relative, std::vector<float> w
   }
   // What lies behind the end is not to be taken for a neighbour.
   for (auto& column : columns) column.resize(relative.size() + k_four_spare, 0.02f);
+  // And nothing is read further behind it.
+  for (auto& column : columns) column.resize(column.size() + 4, k_not_a_number);
+  weights.resize(weights.size() + 4, k_not_a_number);
   const Neighbours near{columns[0].data(), columns[1].data(), columns[2].data(), weights.data(),
                         static_cast<int>(relative.size())};
   return local_surface(near, k_radius);
@@ -130,6 +133,46 @@ TEST(LocalSurface, NeverCarriesAPointFurtherThanTheRadius) {
     ASSERT_LE(found.offset_m.norm(), static_cast<double>(k_radius) * (1 + 1e-9));
     ASSERT_NEAR(found.normal.norm(), 1, 1e-9);
   }
+}
+
+// Five neighbours around at height 0 and two at the middle: the sheet passes through each of the
+// five, and at the middle through the mean of the two, weighted by exp(-d^2 / r^2) alone.
+TEST(LocalSurface, WeighsNeighboursByTheExponentialOfTheirSquaredDistance) {
+  const double r = static_cast<double>(k_radius);
+  for (const auto& [first, second] :
+       {std::pair{1.0, 0.0}, std::pair{1.0, -0.2}, std::pair{-1.0, 0.1}, std::pair{-0.9, 0.4},
+        std::pair{0.7, -0.8}}) {
+    std::vector<Point> near{{0, 0, static_cast<float>(first * r)},
+                            {0, 0, static_cast<float>(second * r)}};
+    for (int i = 0; i < 5; ++i) {
+      const double angle = 2 * M_PI * i / 5;
+      near.push_back({static_cast<float>(0.8 * r * std::cos(angle)),
+                      static_cast<float>(0.8 * r * std::sin(angle)), 0});
+    }
+    const double plane = (first + second) / 7;
+    const double a = std::exp(-(first - plane) * (first - plane));
+    const double b = std::exp(-(second - plane) * (second - plane));
+    const SurfacePoint found = surface_of(near);
+    ASSERT_TRUE(found.curved);
+    EXPECT_NEAR(found.offset_m.z(), r * (a * first + b * second) / (a + b), 5e-8)
+        << first << ' ' << second;
+    EXPECT_LT(found.offset_m.head<2>().norm(), 1e-7);
+    EXPECT_GT(found.normal.z(), 1 - 1e-9);
+  }
+}
+
+TEST(LocalSurface, IsCurvedForAsManyNeighboursAsTheSheetHasCoefficientsAndForNoFewer) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<float> side(-0.02f, 0.02f);
+  int curved = 0;
+  for (int round = 0; round < 3'000; ++round) {
+    std::vector<Point> near{{0, 0, 0}};
+    for (int i = 0; i < 4; ++i) near.push_back({side(random), side(random), side(random)});
+    ASSERT_FALSE(surface_of(near).curved) << round;
+    near.push_back({side(random), side(random), side(random)});
+    curved += surface_of(near).curved ? 1 : 0;
+  }
+  EXPECT_GT(curved, 1'000);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "plain_surface.hpp"
+#include "walk_steps.hpp"
 
 namespace glint {
 namespace {
@@ -176,6 +177,142 @@ TEST(MovingLeastSquares, RefusesWhatItCannotWorkWith) {
   EXPECT_EQ(smoothing.prepare({}, 0, memory.arena()), Reason::out_of_range);
   EXPECT_EQ(smoothing.prepare({}, 10'000, memory.arena()), Reason::not_prepared);
   EXPECT_EQ(smoothing.reason(), Reason::not_prepared);
+}
+
+// A crowd in one place, whose points all are neighbours.
+TEST(MovingLeastSquares, CountsTheStepsOfACrowdByHand) {
+  const struct {
+    int crowd, candidates, room;
+  } cases[] = {{1, 4096, 50}, {2, 4096, 50}, {3, 4096, 50}, {40, 4096, 50}, {40, 40, 50},
+               {40, 39, 50},  {40, 2, 50},   {40, 1, 50},   {40, 4096, 7}};
+  for (const auto& [crowd, candidates, room] : cases) {
+    MovingLeastSquaresSettings settings;
+    settings.candidates_max = candidates;
+    TestSmoothing test(50, settings);
+    const TestCloud cloud(std::vector<Point>(static_cast<std::size_t>(crowd), {0.01f, 0, 0}));
+    const int near = std::min(crowd, candidates);
+    const bool lonely = near < k_plane_neighbours_min;
+    const int of_point =
+        k_surface_steps + near * k_near_steps + (lonely ? 0 : near * k_neighbour_steps);
+    for (const int slice : {1 << 20, 3}) {
+      TestCloud out(room);
+      test.smoothing.begin(cloud.points);
+      int steps = 0;
+      for (bool done = false; !done; steps += test.smoothing.steps()) {
+        done = test.smoothing.step(slice, out.points);
+      }
+      EXPECT_EQ(steps, sorting_steps(crowd, crowd) + k_lone_cell_steps + near * k_gather_steps +
+                           crowd * of_point)
+          << crowd << " of " << candidates;
+      EXPECT_EQ(out.points.count, lonely ? 0 : std::min(crowd, room));
+      EXPECT_EQ(test.smoothing.lonely(), lonely ? crowd : 0);
+      EXPECT_EQ(test.smoothing.flat(), lonely ? 0 : crowd);
+      EXPECT_EQ(test.smoothing.cut(), crowd > candidates ? crowd : 0);
+      EXPECT_EQ(test.smoothing.dropped(), lonely ? 0 : std::max(crowd - room, 0));
+    }
+  }
+}
+
+TEST(MovingLeastSquares, StatesTheStepsOfThePointWithTheMostCandidates) {
+  MovingLeastSquaresSettings few;
+  few.candidates_max = 200;
+  TestSmoothing test(300, few);
+  const TestCloud cloud(std::vector<Point>(300, Point{0.25f, 0.5f, -0.75f}));
+  TestCloud out(300);
+  test.smoothing.begin(cloud.points);
+  while (!test.smoothing.step(1, out.points) && out.points.count == 0) {
+  }
+  EXPECT_EQ(MovingLeastSquares::steps_max(few) - test.smoothing.steps(), k_worst_cell_more);
+}
+
+TEST(MovingLeastSquares, CountsANeighbourAtExactlyTheRadius) {
+  MovingLeastSquaresSettings settings;
+  settings.radius_m = 0.03125f;
+  TestSmoothing test(10, settings);
+  // The corner has two neighbours, each of these one.
+  EXPECT_EQ(test.run({{0, 0, 0}, {0.03125f, 0, 0}, {0, 0.03125f, 0}}).size(), 1u);
+  EXPECT_EQ(test.smoothing.lonely(), 2);
+  EXPECT_EQ(test.smoothing.source_of(0), 0);
+}
+
+TEST(MovingLeastSquares, TakesWeightsAsItsSettingSaysAndKeepsThemAnyway) {
+  const std::vector<Point> points = sheet_points(12, 0.01f, 0.003f, 6);
+  const auto smoothed = [&](NeighbourWeights weights, bool uneven) {
+    MovingLeastSquaresSettings settings;
+    settings.weights = weights;
+    TestSmoothing test(200, settings);
+    TestCloud cloud(points), out(200);
+    for (int i = 0; i < cloud.points.count; ++i) {
+      cloud.points.weight[i] = uneven ? static_cast<float>(1 + i % 5) : 1.0f;
+    }
+    test.smoothing.begin(cloud.points);
+    while (!test.smoothing.step(20, out.points)) {
+    }
+    for (int i = 0; i < out.points.count; ++i) {
+      EXPECT_EQ(out.points.weight[i], cloud.points.weight[test.smoothing.source_of(i)]) << i;
+    }
+    return out.all();
+  };
+  const auto even = smoothed(NeighbourWeights::by_measurements, false);
+  EXPECT_EQ(smoothed(NeighbourWeights::equal, true), even);
+  EXPECT_EQ(smoothed(NeighbourWeights::equal, false), even);
+  EXPECT_NE(smoothed(NeighbourWeights::by_measurements, true), even);
+}
+
+TEST(MovingLeastSquares, BegunAgainSmoothsAsANewOneAndCountsAnew) {
+  const std::vector<Point> points = sheet_points(12, 0.01f, 0.003f, 7);
+  std::vector<Point> wrong(60, Point{0, 0, 0});
+  wrong[0][2] = k_not_a_number;
+  for (int i = 1; i < 100; ++i) wrong.push_back({0.1f * static_cast<float>(i), 0, 0});
+  MovingLeastSquaresSettings few;
+  few.candidates_max = 50;
+  TestSmoothing used(144, few), fresh(144, few);
+  (void)used.run(wrong, 9, 10);
+  EXPECT_EQ(used.smoothing.out_of_range(), 1);
+  EXPECT_EQ(used.smoothing.dropped(), 14 + 49) << "of the grid and of the cloud";
+  EXPECT_EQ(used.smoothing.cut(), 59);
+  EXPECT_EQ(used.smoothing.flat(), 59);
+  EXPECT_EQ(used.smoothing.lonely(), 85);
+  EXPECT_EQ(used.smoothing.reason(), Reason::cloud_full) << "which counts before a search cut";
+  EXPECT_EQ(used.run(points), fresh.run(points));
+  EXPECT_EQ(used.smoothing.out_of_range(), 0);
+  EXPECT_EQ(used.smoothing.dropped(), 0);
+  EXPECT_EQ(used.smoothing.cut(), fresh.smoothing.cut());
+  EXPECT_EQ(used.smoothing.flat(), fresh.smoothing.flat());
+  EXPECT_EQ(used.smoothing.lonely(), fresh.smoothing.lonely());
+  for (int i = 0; i < 144; ++i) {
+    ASSERT_EQ(used.smoothing.source_of(i), fresh.smoothing.source_of(i));
+  }
+}
+
+TEST(MovingLeastSquares, TakesEachSettingAtItsLimitAndRefusesItBeyond) {
+  const auto reason_of = [](float radius_m, int candidates, int points = 10) {
+    TestMemory memory(MovingLeastSquares::bytes({0.03f, 100, {}}, 10));
+    MovingLeastSquares smoothing;
+    const Reason reason = smoothing.prepare({radius_m, candidates, {}}, points, memory.arena());
+    EXPECT_EQ(smoothing.reason(), reason == Reason::none ? reason : Reason::not_prepared);
+    if (reason != Reason::none) {
+      TestCloud cloud(1);
+      smoothing.begin(cloud.points);
+      EXPECT_TRUE(smoothing.step(1, cloud.points));
+    }
+    return reason;
+  };
+  EXPECT_EQ(reason_of(1e-38f, 100), Reason::none);
+  EXPECT_EQ(reason_of(0.03f, 1), Reason::none);
+  EXPECT_EQ(reason_of(0.03f, k_cloud_points_max), Reason::not_prepared);
+  EXPECT_EQ(reason_of(0.03f, k_cloud_points_max + 1), Reason::out_of_range);
+  EXPECT_EQ(reason_of(0.03f, 0), Reason::out_of_range);
+  EXPECT_EQ(reason_of(0, 100), Reason::out_of_range);
+  EXPECT_EQ(reason_of(-1, 100), Reason::out_of_range);
+  EXPECT_EQ(reason_of(1e-40f, 100), Reason::out_of_range);
+  EXPECT_EQ(reason_of(k_not_a_number, 100), Reason::out_of_range);
+  EXPECT_EQ(reason_of(0.03f, 100, 0), Reason::out_of_range);
+  EXPECT_EQ(reason_of(0.03f, 100, k_cloud_points_max), Reason::not_prepared);
+  ExactMemory enough(MovingLeastSquares::bytes({}, 10));
+  EXPECT_EQ(MovingLeastSquares().prepare({}, 10, enough.arena()), Reason::none);
+  ExactMemory less(MovingLeastSquares::bytes({}, 10) - 1);
+  EXPECT_EQ(MovingLeastSquares().prepare({}, 10, less.arena()), Reason::not_prepared);
 }
 
 }  // namespace
