@@ -1,6 +1,7 @@
 #include "kernels/cloud/plane_sample.hpp"
 
 #include <cmath>
+#include <tuple>
 
 #include "clouds.hpp"
 #include "kernels/geometry.hpp"
@@ -109,6 +110,85 @@ TEST(PlaneSample, IsEmptyWhenClearedOrPreparedAnewAndFullAtItsCapacity) {
   TestMemory memory(PlaneSample::bytes());
   EXPECT_EQ(test.sample.prepare(memory.arena()), Reason::none);
   EXPECT_EQ(test.sample.count(), 0);
+}
+
+// Twenty bits a point, spread evenly over the sample; what stands above them is not read.
+TEST(PlaneSample, DrawsAnyThreeOfItsPoints) {
+  constexpr std::uint64_t k_points = 7;
+  const std::vector<Point> points = random_points(7, 1, 3);
+  TestSample test;
+  test.add(points, points);
+  const PlaneGate any{0.01f, 0};
+  const auto first_of = [](std::uint64_t i) { return ((i << 20) + k_points - 1) / k_points; };
+  for (std::uint64_t draw = 0; draw < 2 * 343; ++draw) {
+    const std::uint64_t a = draw % 7, b = draw / 7 % 7, c = draw / 49 % 7;
+    // The first number that stands for a point, and the last.
+    const auto number_of = [&](std::uint64_t i) {
+      return draw < 343 ? first_of(i) : first_of(i + 1) - 1;
+    };
+    const std::uint64_t drawn =
+        number_of(a) | number_of(b) << 20 | number_of(c) << 40 | std::uint64_t{0xF} << 60;
+    CandidatePlane found;
+    const bool is_plane = test.sample.candidate_of(drawn, any, found);
+    ASSERT_EQ(is_plane, a != b && b != c && a != c) << a << b << c;
+    if (!is_plane) continue;
+    const Vector3 from = vector_at(points, a);
+    const Vector3 normal =
+        (vector_at(points, b) - from).cross(vector_at(points, c) - from).normalized();
+    ASSERT_LT((Vector3(found.nx, found.ny, found.nz) - normal).norm(), 1e-4) << a << b << c;
+    ASSERT_NEAR(found.offset_m, normal.dot(from), 1e-4) << a << b << c;
+  }
+}
+
+TEST(PlaneSample, TakesWhatIsExactlyAtItsGate) {
+  const Point up{0, 0, 1};
+  TestSample flat;
+  flat.add({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {up, up, up});
+  CandidatePlane found;
+  EXPECT_TRUE(flat.sample.candidate_of(k_all_three, {0.01f, 1}, found));
+  const float height = 0.0078125f, cosine = 0.75f;
+  const PlaneGate gate{height, cosine};
+  for (const auto& [z, along, on] : {std::tuple{height, cosine, 1}, std::tuple{-height, -cosine, 1},
+                                     std::tuple{std::nextafter(height, 1.0f), 1.0f, 0},
+                                     std::tuple{std::nextafter(-height, -1.0f), 1.0f, 0},
+                                     std::tuple{0.0f, std::nextafter(cosine, 0.0f), 0}}) {
+    TestSample test;
+    test.add({{0.5f, 0.25f, z}}, {{0.5f, 0, along}});
+    EXPECT_EQ(test.sample.score({0, 0, 1, 0}, gate), on) << z << ' ' << along;
+  }
+}
+
+TEST(PlaneSample, HasNoCandidateOfWhatIsNoNumber) {
+  const Point up{0, 0, 1};
+  for (std::size_t wrong = 0; wrong < 3; ++wrong) {
+    std::vector<Point> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, normals(3, up);
+    points[wrong][wrong] = k_not_a_number;
+    TestSample test;
+    test.add(points, normals);
+    CandidatePlane found;
+    EXPECT_FALSE(test.sample.candidate_of(k_all_three, {}, found));
+    EXPECT_EQ(test.sample.score({}, {}), 2) << "a number's comparison with it is false";
+  }
+}
+
+// Steele, Lea and Flood's SplitMix64: its first numbers, as its authors' program prints them.
+TEST(PlaneSample, DrawsTheNumbersOfSplitMix64) {
+  const std::uint64_t expected[] = {6457827717110365317u, 3203168211198807973u,
+                                    9817491932198370423u, 4593380528125082431u,
+                                    16408922859458223821u};
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(random_at(1234567, 0, i), expected[i]) << i;
+  // A stream begins 2^40 numbers behind the last one.
+  constexpr std::uint64_t k_further = 0x9E3779B97F4A7C15u << 40;
+  for (int stream = 0; stream < 5; ++stream) {
+    EXPECT_EQ(random_at(7, stream + 1, 3), random_at(7 + k_further, stream, 3));
+  }
+}
+
+TEST(PlaneSample, TakesTheMemoryThatItStatesAndRefusesLess) {
+  ExactMemory enough(PlaneSample::bytes()), less(PlaneSample::bytes() - 1);
+  PlaneSample sample;
+  EXPECT_EQ(sample.prepare(enough.arena()), Reason::none);
+  EXPECT_EQ(sample.prepare(less.arena()), Reason::not_prepared);
 }
 
 }  // namespace

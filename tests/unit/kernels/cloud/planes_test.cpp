@@ -1,89 +1,16 @@
 #include "kernels/cloud/planes.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
-#include "clouds.hpp"
-#include "kernels/cloud/snap_to_planes.hpp"
+#include "oriented_clouds.hpp"
 
 namespace glint {
 namespace {
 
-struct Oriented {
-  Point point;
-  Point normal;
-};
-
-TestCloud cloud_of(const std::vector<Oriented>& points) {
-  TestCloud cloud(static_cast<int>(points.size()));
-  for (const Oriented& p : points) {
-    const int i = cloud.points.count;
-    EXPECT_TRUE(cloud.points.add(p.point[0], p.point[1], p.point[2]));
-    cloud.points.normal_x[i] = p.normal[0];
-    cloud.points.normal_y[i] = p.normal[1];
-    cloud.points.normal_z[i] = p.normal[2];
-  }
-  return cloud;
-}
-
-struct TestSearch {
-  explicit TestSearch(int points, PlaneSettings settings = {})
-      : memory(PlaneSearch::bytes(points) + PlaneSupport::bytes(points)) {
-    EXPECT_EQ(search.prepare(settings, points, memory.arena()), Reason::none);
-    PlaneSupportSettings wide;  // the test's floors are sparse
-    wide.radius_m = 0.2f;
-    EXPECT_EQ(support.prepare(wide, points, memory.arena()), Reason::none);
-  }
-  void run(const PointCloud& points, int slice = 1 << 20) {
-    search.begin(points);
-    while (!search.step(slice)) {
-    }
-    support.begin(points, search);
-    while (!support.step(slice)) {
-    }
-  }
-  TestMemory memory;
-  PlaneSearch search;
-  PlaneSupport support;
-};
-
-// A floor of 6,000 points, a wall of 3,000, 1,500 here and there, and 400 on the floor's plane that
-// stand across it; 3 mm noise, normals a few degrees off and of either sign.
-std::vector<Oriented> room(std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<float> side(-1, 1);
-  std::normal_distribution<float> noise(0, 0.003f), tilt(0, 0.05f);
-  std::vector<Oriented> out;
-  const auto sign = [&] { return random() % 2 == 0 ? 1.0f : -1.0f; };
-  const auto unit = [](float x, float y, float z) {
-    const float length = std::sqrt(x * x + y * y + z * z);
-    return Point{x / length, y / length, z / length};
-  };
-  for (int i = 0; i < 6'000; ++i) {
-    out.push_back({{side(random), side(random), 0.5f + noise(random)},
-                   unit(tilt(random), tilt(random), sign())});
-  }
-  for (int i = 0; i < 3'000; ++i) {
-    out.push_back({{-1 + noise(random), side(random), 0.5f * (1 + side(random))},
-                   unit(sign(), tilt(random), tilt(random))});
-  }
-  for (int i = 0; i < 1'500; ++i) {
-    out.push_back({{side(random), side(random), side(random)},
-                   unit(side(random), side(random), side(random))});
-  }
-  for (int i = 0; i < 400; ++i) {
-    out.push_back({{side(random), side(random), 0.5f}, {0, 1, 0}});
-  }
-  return out;
-}
-
 TEST(Planes, OfAsManyPointsAsAskedForAreFoundAndOfOneLessAreNot) {
-  std::vector<Oriented> tile;
-  for (int i = 0; i < 400; ++i) {
-    tile.push_back({{0.01f * static_cast<float>(i % 20), 0.01f * static_cast<float>(i / 20), 0.5f},
-                    {0, 0, 1}});
-  }
-  const TestCloud cloud = cloud_of(tile);
+  const TestCloud cloud = cloud_of(tile(400, 20, 0.5f, {0, 0, 1}));
   for (const int points_min : {400, 401}) {
     PlaneSettings settings;
     settings.points_min = points_min;
@@ -94,12 +21,8 @@ TEST(Planes, OfAsManyPointsAsAskedForAreFoundAndOfOneLessAreNot) {
 }
 
 TEST(Planes, CountTheStepsOfEveryPassAndTry) {
-  std::vector<Oriented> tile;
-  for (int i = 0; i < 600; ++i) {
-    tile.push_back({{0.01f * static_cast<float>(i % 25), 0.01f * static_cast<float>(i / 25), 0.5f},
-                    {1, 0, 0}});  // no plane through them has this normal
-  }
-  const TestCloud cloud = cloud_of(tile);
+  // No plane through them has this normal.
+  const TestCloud cloud = cloud_of(tile(600, 25, 0.5f, {1, 0, 0}));
   const auto steps_of = [&](const PlaneSettings& settings) {
     TestSearch test(1'000, settings);
     test.search.begin(cloud.points);
@@ -154,137 +77,6 @@ TEST(Planes, TakeNoPointWhoseNormalStandsAcrossAndNoneBeyondTheThreshold) {
     ASSERT_LT(std::abs(height), 0.010001);
   }
   EXPECT_EQ(taken, test.search.plane(0).points + test.search.plane(1).points);
-}
-
-TEST(Planes, MakeTheirPointsFlatAndMoveNoOther) {
-  const std::vector<Oriented> points = room(2);
-  TestCloud cloud = cloud_of(points);
-  TestSearch test(20'000);
-  test.run(cloud.points);
-  for (int at = 0; at < cloud.points.count;)
-    at = snap_to_planes(test.search, test.support, at, 7, cloud.points);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint8_t on = test.support.plane_of(static_cast<int>(i));
-    const Point now = cloud.at(static_cast<int>(i));
-    const double moved = std::sqrt(squared_distance(now, points[i].point));
-    if (on == PlaneSearch::k_no_plane) {
-      ASSERT_EQ(moved, 0);
-      continue;
-    }
-    ASSERT_LE(moved, 0.010001);
-    const Plane& plane = test.search.plane(on);
-    const Vector3 place(static_cast<double>(now[0]), static_cast<double>(now[1]),
-                        static_cast<double>(now[2]));
-    ASSERT_NEAR(plane.normal.dot(place), plane.offset_m, 2e-7);
-    ASSERT_EQ(cloud.points.normal_z[static_cast<int>(i)], static_cast<float>(plane.normal.z()));
-  }
-}
-
-// A table of 1 cm voxels, and beside it a wall that crosses its plane, with normals that are wrong
-// by the worst of luck: only the wall's other points tell that the stripe is no part of the table.
-TEST(PlaneSupport, TakesOffAStripeAndLeavesEdgesOn) {
-  std::vector<Oriented> points;
-  for (int i = 0; i < 60 * 60; ++i) {
-    points.push_back(
-        {{0.01f * static_cast<float>(i % 60), 0.01f * static_cast<float>(i / 60), 0}, {0, 0, 1}});
-  }
-  const std::size_t table = points.size();
-  for (int i = 0; i < 40 * 40; ++i) {
-    points.push_back(
-        {{1.2f, 0.01f * static_cast<float>(i % 40), 0.01f * static_cast<float>(i / 40) - 0.2f},
-         {0, 0, 1}});
-  }
-  const TestCloud cloud = cloud_of(points);
-  TestSearch test(20'000);
-  test.search.begin(cloud.points);
-  while (!test.search.step(1'000)) {
-  }
-  ASSERT_EQ(test.search.count(), 1);
-  TestMemory memory(PlaneSupport::bytes(20'000));
-  PlaneSupport support;
-  ASSERT_EQ(support.prepare({}, 20'000, memory.arena()), Reason::none);
-  support.begin(cloud.points, test.search);
-  while (!support.step(13)) {
-  }
-  int stripe = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto place = static_cast<int>(i);
-    const bool on = test.search.plane_of(place) == 0;
-    if (i < table) {
-      ASSERT_EQ(support.plane_of(place), 0);
-    } else {
-      stripe += on ? 1 : 0;
-      ASSERT_EQ(support.plane_of(place), PlaneSearch::k_no_plane);
-    }
-  }
-  EXPECT_GE(stripe, 40);
-  EXPECT_EQ(support.taken_off(), stripe);
-}
-
-TEST(PlaneSupport, CountsItsStepsAndRefusesSettingsThatFindNothing) {
-  const std::vector<Oriented> points = room(3);
-  const TestCloud cloud = cloud_of(points);
-  TestSearch test(20'000);
-  test.run(cloud.points);
-  PlaneSupport& support = test.support;
-  support.begin(cloud.points, test.search);
-  constexpr int k_most = 500;
-  std::int64_t steps = 0;
-  for (bool done = false; !done; steps += support.steps()) {
-    done = support.step(SliceSize{k_most, k_most});
-    EXPECT_LE(support.steps(), k_most + PlaneSupport::steps_max(PlaneSupportSettings{}));
-  }
-  // Each point costs its share, and on a plane at least a look at itself.
-  std::int64_t on_planes = 0;
-  for (int i = 0; i < cloud.points.count; ++i)
-    on_planes += test.search.plane_of(i) != PlaneSearch::k_no_plane ? 1 : 0;
-  EXPECT_GE(steps, k_support_steps * std::int64_t{cloud.points.count} + k_vote_steps * on_planes);
-  for (const float radius : {0.0f, -1.0f, 1e-40f}) {
-    PlaneSupportSettings settings;
-    settings.radius_m = radius;
-    TestMemory memory(PlaneSupport::bytes(100));
-    EXPECT_EQ(PlaneSupport().prepare(settings, 100, memory.arena()), Reason::out_of_range)
-        << radius;
-  }
-}
-
-// Every pair of points is looked at.
-TEST(PlaneSupport, LeavesOnAPlaneWhatAPlainCountOfNeighboursLeaves) {
-  const std::vector<Oriented> points = room(5);
-  const TestCloud cloud = cloud_of(points);
-  TestSearch test(20'000);
-  test.run(cloud.points, 211);
-  constexpr float k_limit = 0.2f * 0.2f;
-  int taken_off = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint8_t plane = test.search.plane_of(static_cast<int>(i));
-    int near = 0, on_plane = 0;
-    for (std::size_t j = 0; j < points.size() && plane != PlaneSearch::k_no_plane; ++j) {
-      const float dx = points[j].point[0] - points[i].point[0],
-                  dy = points[j].point[1] - points[i].point[1];
-      const float dz = points[j].point[2] - points[i].point[2];
-      if (dx * dx + dy * dy + dz * dz > k_limit) continue;
-      ++near;
-      on_plane += test.search.plane_of(static_cast<int>(j)) == plane ? 1 : 0;
-    }
-    const bool stays = plane == PlaneSearch::k_no_plane ||
-                       static_cast<float>(on_plane) >= 0.4f * static_cast<float>(near);
-    taken_off += stays ? 0 : 1;
-    ASSERT_EQ(test.support.plane_of(static_cast<int>(i)), stays ? plane : PlaneSearch::k_no_plane)
-        << i << ": " << on_plane << " of " << near;
-  }
-  EXPECT_EQ(test.support.taken_off(), taken_off);
-  EXPECT_GT(taken_off, 0);
-}
-
-TEST(PlaneSupport, RefusesWhatItCannotWorkWith) {
-  TestMemory memory(PlaneSupport::bytes(10));
-  PlaneSupport support;
-  EXPECT_EQ(support.prepare({0, 0.4f, 100}, 10, memory.arena()), Reason::out_of_range);
-  EXPECT_EQ(support.prepare({0.05f, 1.5f, 100}, 10, memory.arena()), Reason::out_of_range);
-  EXPECT_EQ(support.prepare({0.05f, 0.4f, 0}, 10, memory.arena()), Reason::out_of_range);
-  EXPECT_EQ(support.prepare({}, 10'000, memory.arena()), Reason::not_prepared);
-  EXPECT_EQ(support.plane_of(0), PlaneSearch::k_no_plane);
 }
 
 TEST(Planes, AreTheSameInSlices) {
@@ -342,8 +134,6 @@ TEST(Planes, OfACloudBeyondTheCapacityAreThoseOfItsFirstPointsAndItSaysSo) {
   EXPECT_EQ(test.search.reason(), Reason::cloud_full);
   ASSERT_EQ(test.search.count(), 1);
   EXPECT_EQ(test.search.plane_of(6'000), PlaneSearch::k_no_plane);
-  EXPECT_EQ(snap_to_planes(test.search, test.support, 0, 1 << 20, cloud.points),
-            cloud.points.count);
 }
 
 TEST(Planes, EndWithAsManyAsMayBe) {
@@ -371,6 +161,186 @@ TEST(Planes, RefuseWhatTheyCannotWorkWith) {
   EXPECT_EQ(search.prepare(settings, 10, memory.arena()), Reason::out_of_range);
   EXPECT_EQ(search.prepare({}, 100'000, memory.arena()), Reason::not_prepared);
   EXPECT_EQ(search.reason(), Reason::not_prepared);
+}
+
+// Points at exactly the threshold, and normals at exactly the angle, in pairs that leave the plane
+// where it is.
+TEST(Planes, TakeWhatIsExactlyAtTheGate) {
+  const float height = 0.0078125f, beyond = std::nextafter(height, 1.0f);
+  PlaneSettings settings;
+  settings.points_min = 400;
+  settings.gate.threshold_m = height;
+  const float cosine = settings.gate.normal_cosine_min;
+  std::vector<Oriented> points = tile(400, 20, 0, {0, 0, 1});
+  for (const float z : {height, -height, beyond, -beyond})
+    points.push_back({{0.1f, 0.1f, z}, {0, 0, 1}});
+  for (const float along : {cosine, -cosine, std::nextafter(cosine, 0.0f)}) {
+    points.push_back({{0.1f, 0.1f, 0}, {0, 0.34f, along}});
+  }
+  TestSearch test(410, settings);
+  test.run(cloud_of(points).points);
+  ASSERT_EQ(test.search.count(), 1);
+  EXPECT_EQ(test.search.plane(0).points, 404);
+  for (int i = 400; i < 407; ++i) {
+    const bool on = i < 402 || i == 404 || i == 405;
+    EXPECT_EQ(test.search.plane_of(i), on ? 0 : PlaneSearch::k_no_plane) << i;
+  }
+}
+
+// Normals along one axis alone.
+TEST(Planes, AreFoundAcrossEachAxis) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<Oriented> points = tile(600, 25, 0.5f, {0, 0, 1});
+    for (Oriented& p : points) {
+      std::swap(p.point[axis], p.point[2]);
+      std::swap(p.normal[axis], p.normal[2]);
+    }
+    TestSearch test(600);
+    test.run(cloud_of(points).points);
+    ASSERT_EQ(test.search.count(), 1) << axis;
+    const Plane& plane = test.search.plane(0);
+    EXPECT_NEAR(std::abs(plane.normal[static_cast<Eigen::Index>(axis)]), 1, 1e-12);
+    EXPECT_NEAR(plane.offset_m / plane.normal[static_cast<Eigen::Index>(axis)], 0.5, 1e-9);
+    EXPECT_EQ(plane.points, 600);
+  }
+}
+
+// Against the smallest principal axis of their points.
+TEST(Planes, AreTheLeastSquaresOfTheirPoints) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<float> noise(-0.004f, 0.004f);
+  std::vector<Oriented> points = tile(900, 30, 0, {0, 0, 1});
+  Vector3 mean = Vector3::Zero();
+  std::vector<Vector3> places;
+  for (Oriented& p : points) {
+    p.point = {p.point[0] + 0.7f, p.point[1] - 0.4f, 1.5f + 0.2f * p.point[0] + noise(random)};
+    places.emplace_back(static_cast<double>(p.point[0]), static_cast<double>(p.point[1]),
+                        static_cast<double>(p.point[2]));
+    mean += places.back() / 900;
+  }
+  Matrix3 covariance = Matrix3::Zero();
+  for (const Vector3& p : places) covariance += (p - mean) * (p - mean).transpose() / 900;
+  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(covariance);
+  Vector3 normal = solver.eigenvectors().col(0);
+  TestSearch test(900);
+  test.run(cloud_of(points).points);
+  ASSERT_EQ(test.search.count(), 1);
+  const Plane& plane = test.search.plane(0);
+  ASSERT_EQ(plane.points, 900);
+  if (normal.dot(plane.normal) < 0) normal = -normal;
+  EXPECT_LT((plane.normal - normal).norm(), 1e-9);
+  EXPECT_NEAR(plane.offset_m, normal.dot(mean), 1e-9);
+  EXPECT_NEAR(plane.rms_m, std::sqrt(solver.eigenvalues()(0)), 1e-9);
+}
+
+// Beside 50 points that are on none.
+TEST(Planes, WithTooFewOfTheFreePointsAreNone) {
+  std::vector<Oriented> points = tile(400, 20, 0.5f, {0, 0, 1});
+  for (const Oriented& p : tile(50, 50, 0.9f, {0, 1, 0})) points.push_back(p);
+  for (const int points_min : {400, 401}) {
+    PlaneSettings settings;
+    settings.points_min = points_min;
+    TestSearch test(450, settings);
+    test.run(cloud_of(points).points);
+    EXPECT_EQ(test.search.count(), points_min == 400 ? 1 : 0);
+  }
+}
+
+TEST(Planes, AreAsManyAsAskedForOfMore) {
+  std::vector<Oriented> points;
+  for (const float z : {0.0f, 1.0f, 2.0f}) {
+    for (const Oriented& p : tile(200, 20, z, {0, 0, 1})) points.push_back(p);
+  }
+  for (const int planes_max : {0, 1, 2, 3, k_planes_max}) {
+    PlaneSettings settings;
+    settings.points_min = 100;
+    settings.planes_max = planes_max;
+    TestSearch test(600, settings);
+    test.run(cloud_of(points).points);
+    EXPECT_EQ(test.search.count(), std::min(planes_max, 3));
+    if (planes_max > 0) continue;
+    test.search.begin(cloud_of(points).points);
+    EXPECT_TRUE(test.search.step(1));
+    EXPECT_EQ(test.search.steps(), 0);
+  }
+}
+
+TEST(Planes, BegunAgainAreThoseOfANewSearch) {
+  const TestCloud before = cloud_of(room(1)), cloud = cloud_of(room(2));
+  TestSearch used(11'000), fresh(11'000);
+  for (const int calls : {3, 1'000'000}) {  // left in its midst, and ended
+    used.search.begin(before.points);
+    for (int i = 0; i < calls && !used.search.step(500); ++i) {
+    }
+    used.run(cloud.points);
+    fresh.run(cloud.points);
+    ASSERT_EQ(used.search.count(), fresh.search.count());
+    for (int i = 0; i < used.search.count(); ++i) {
+      EXPECT_EQ(used.search.plane(i).normal, fresh.search.plane(i).normal);
+      EXPECT_EQ(used.search.plane(i).offset_m, fresh.search.plane(i).offset_m);
+      EXPECT_EQ(used.search.plane(i).rms_m, fresh.search.plane(i).rms_m);
+      EXPECT_EQ(used.search.plane(i).points, fresh.search.plane(i).points);
+    }
+    for (int i = 0; i < cloud.points.count; ++i) {
+      ASSERT_EQ(used.search.plane_of(i), fresh.search.plane_of(i));
+    }
+  }
+}
+
+TEST(Planes, OfACloudOfExactlyTheCapacityAreThoseOfAll) {
+  const TestCloud cloud = cloud_of(tile(600, 25, 0.5f, {0, 0, 1}));
+  TestSearch exact(600), less(599);
+  exact.run(cloud.points);
+  EXPECT_EQ(exact.search.reason(), Reason::none);
+  EXPECT_EQ(exact.search.plane_of(599), 0);
+  less.run(cloud.points);
+  EXPECT_EQ(less.search.reason(), Reason::cloud_full);
+  EXPECT_EQ(less.search.plane_of(598), 0);
+  EXPECT_EQ(less.search.plane_of(599), PlaneSearch::k_no_plane);
+}
+
+TEST(Planes, TakeEachSettingAtItsLimitAndRefuseItBeyond) {
+  const auto reason_of = [](auto change, int points = 10) {
+    TestMemory memory(PlaneSearch::bytes(10));
+    PlaneSettings settings;
+    change(settings);
+    PlaneSearch search;
+    const Reason reason = search.prepare(settings, points, memory.arena());
+    EXPECT_EQ(search.reason(), reason == Reason::none ? reason : Reason::not_prepared);
+    EXPECT_EQ(search.count(), 0);
+    EXPECT_EQ(search.plane_of(0), PlaneSearch::k_no_plane);
+    EXPECT_TRUE(search.step(1)) << "nothing has begun";
+    return reason;
+  };
+  constexpr Reason none = Reason::none, out = Reason::out_of_range;
+  using S = PlaneSettings;
+  const auto as_is = [](S&) {};
+  EXPECT_EQ(reason_of([](S& s) { s.planes_max = 0; }), none);
+  EXPECT_EQ(reason_of([](S& s) { s.planes_max = -1; }), out);
+  EXPECT_EQ(reason_of([](S& s) { s.planes_max = k_planes_max; }), none);
+  EXPECT_EQ(reason_of([](S& s) { s.planes_max = k_planes_max + 1; }), out);
+  EXPECT_EQ(reason_of([](S& s) { s.points_min = 3; }), none);
+  EXPECT_EQ(reason_of([](S& s) { s.points_min = 2; }), out);
+  EXPECT_EQ(reason_of([](S& s) { s.tries = 1; }), none);
+  EXPECT_EQ(reason_of([](S& s) { s.tries = 0; }), out);
+  EXPECT_EQ(reason_of([](S& s) { s.scored_max = 1; }), none);
+  EXPECT_EQ(reason_of([](S& s) { s.scored_max = 0; }), out);
+  EXPECT_EQ(reason_of([](S& s) { s.gate.threshold_m = 1e-30f; }), none);
+  EXPECT_EQ(reason_of([](S& s) { s.gate.threshold_m = 0; }), out);
+  EXPECT_EQ(reason_of([](S& s) { s.gate.threshold_m = INFINITY; }), out);
+  for (const float cosine : {-1.0f, 0.0f, 1.0f}) {
+    EXPECT_EQ(reason_of([&](S& s) { s.gate.normal_cosine_min = cosine; }), none);
+  }
+  for (const float cosine : {-1.01f, 1.01f, k_not_a_number}) {
+    EXPECT_EQ(reason_of([&](S& s) { s.gate.normal_cosine_min = cosine; }), out);
+  }
+  EXPECT_EQ(reason_of(as_is, 1), none);
+  EXPECT_EQ(reason_of(as_is, 0), out);
+  EXPECT_EQ(reason_of(as_is, k_cloud_points_max), Reason::not_prepared);
+  EXPECT_EQ(reason_of(as_is, k_cloud_points_max + 1), out);
+  ExactMemory enough(PlaneSearch::bytes(10)), less(PlaneSearch::bytes(10) - 1);
+  EXPECT_EQ(PlaneSearch().prepare({}, 10, enough.arena()), none);
+  EXPECT_EQ(PlaneSearch().prepare({}, 10, less.arena()), Reason::not_prepared);
 }
 
 }  // namespace

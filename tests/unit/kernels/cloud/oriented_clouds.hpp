@@ -1,0 +1,93 @@
+// Clouds whose points have normals, and a search for their planes.
+#pragma once
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "clouds.hpp"
+#include "kernels/cloud/plane_support.hpp"
+#include "kernels/cloud/planes.hpp"
+
+namespace glint {
+
+struct Oriented {
+  Point point;
+  Point normal;
+};
+
+inline TestCloud cloud_of(const std::vector<Oriented>& points) {
+  TestCloud cloud(static_cast<int>(points.size()));
+  for (const Oriented& p : points) {
+    const int i = cloud.points.count;
+    EXPECT_TRUE(cloud.points.add(p.point[0], p.point[1], p.point[2]));
+    cloud.points.normal_x[i] = p.normal[0];
+    cloud.points.normal_y[i] = p.normal[1];
+    cloud.points.normal_z[i] = p.normal[2];
+  }
+  return cloud;
+}
+
+struct TestSearch {
+  explicit TestSearch(int points, PlaneSettings settings = {})
+      : memory(PlaneSearch::bytes(points) + PlaneSupport::bytes(points)) {
+    EXPECT_EQ(search.prepare(settings, points, memory.arena()), Reason::none);
+    PlaneSupportSettings wide;  // the test's floors are sparse
+    wide.radius_m = 0.2f;
+    EXPECT_EQ(support.prepare(wide, points, memory.arena()), Reason::none);
+  }
+  void run(const PointCloud& points, int slice = 1 << 20) {
+    search.begin(points);
+    while (!search.step(slice)) {
+    }
+    support.begin(points, search);
+    while (!support.step(slice)) {
+    }
+  }
+  TestMemory memory;
+  PlaneSearch search;
+  PlaneSupport support;
+};
+
+// A floor of 6,000 points, a wall of 3,000, 1,500 here and there, and 400 on the floor's plane that
+// stand across it; 3 mm noise, normals a few degrees off and of either sign.
+inline std::vector<Oriented> room(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<float> side(-1, 1);
+  std::normal_distribution<float> noise(0, 0.003f), tilt(0, 0.05f);
+  std::vector<Oriented> out;
+  const auto sign = [&] { return random() % 2 == 0 ? 1.0f : -1.0f; };
+  const auto unit = [](float x, float y, float z) {
+    const float length = std::sqrt(x * x + y * y + z * z);
+    return Point{x / length, y / length, z / length};
+  };
+  for (int i = 0; i < 6'000; ++i) {
+    out.push_back({{side(random), side(random), 0.5f + noise(random)},
+                   unit(tilt(random), tilt(random), sign())});
+  }
+  for (int i = 0; i < 3'000; ++i) {
+    out.push_back({{-1 + noise(random), side(random), 0.5f * (1 + side(random))},
+                   unit(sign(), tilt(random), tilt(random))});
+  }
+  for (int i = 0; i < 1'500; ++i) {
+    out.push_back({{side(random), side(random), side(random)},
+                   unit(side(random), side(random), side(random))});
+  }
+  for (int i = 0; i < 400; ++i) {
+    out.push_back({{side(random), side(random), 0.5f}, {0, 1, 0}});
+  }
+  return out;
+}
+
+// Points 1 cm apart, `across` of them side by side, at the height z with this normal.
+inline std::vector<Oriented> tile(int points, int across, float z, const Point& normal) {
+  std::vector<Oriented> out;
+  for (int i = 0; i < points; ++i) {
+    out.push_back(
+        {{0.01f * static_cast<float>(i % across), 0.01f * static_cast<float>(i / across), z},
+         normal});
+  }
+  return out;
+}
+
+}  // namespace glint
