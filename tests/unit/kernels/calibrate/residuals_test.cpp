@@ -138,6 +138,71 @@ TEST(Residuals, StateARangeAsASensorWithABiasDoes) {
               1e-6);
 }
 
+// Each part by its own sigma, along each axis; the sign is that of what is modelled less what was
+// measured.
+TEST(Residuals, AreModelLessMeasurementInSigmasAlongEachAxis) {
+  const Vector3 off(0.003, -0.002, 0.001), lever(0.01, 0.02, -0.15), post(1, 2, 3);
+  const Quaternion turned = from_rotation_vector({0.01, -0.02, 0.03});
+  const PivotSample sample{k_turn, post - k_turn * turned * lever + off, 0.02, 0.004};
+  const PivotResidual<double> pivot = pivot_residual<double>(sample, k_turn * turned, lever, post);
+  EXPECT_LT((pivot.position - off / 0.004).norm(), 1e-12);
+  EXPECT_LT((pivot.rotation - 2 * turned.vec() / 0.02).norm(), 1e-12);
+  EXPECT_LT((marker_residual<double>(k_turn * k_point + post - off, 0.004, k_turn, post, k_point) -
+             off / 0.004)
+                .norm(),
+            1e-12);
+  EXPECT_LT((axis_residual<double>(k_turn, k_point, k_turn * k_point - off) - off).norm(), 1e-15);
+}
+
+TEST(Residuals, AlignARotationByItsSigmaWhicheverOfItsQuaternionsStandsForIt) {
+  const PoseOf<double> x{k_turn, {1, 0, 2}}, y{from_rotation_vector({0.2, 0.1, -0.4}), {0, 0.1, 0}};
+  const PoseOf<double> seen = blended_pose<double>(even_piece(), 1.002);
+  const Quaternion off = from_rotation_vector({0.01, -0.02, 0.03});
+  const Vector3 shift(0.003, -0.002, 0.001);
+  // The reference stands for the body, turned by `off` in the body's frame.
+  const Pose T_x{x.rotation, x.translation}, T_y{y.rotation, y.translation};
+  const Pose body{(seen.rotation * off.conjugate()).normalized(), seen.translation + shift};
+  AlignSample sample{0.9, T_x.inverse() * body * T_y.inverse(), even_piece(), 0.004, 0.02};
+  for (int sign = 0; sign < 2; ++sign) {
+    const AlignResidual<double> residual = align_residual<double>(sample, x, y, 0.102);
+    EXPECT_LT((residual.position - shift / 0.004).norm(), 1e-9);
+    EXPECT_LT((residual.rotation - 2 * off.vec() / 0.02).norm(), 1e-9);
+    sample.pose.rotation.coeffs() *= -1;
+  }
+}
+
+// The pixel of the marker less the measured one, along both axes of the picture.
+TEST(Residuals, StateAPixelAcrossTheRayByItsSigmas) {
+  DepthSample sample;
+  sample.marker_m = k_point;
+  sample.sigma_x_px = 0.1;
+  sample.sigma_y_px = 0.25;
+  const Vector3 at(0.02, -0.03, 0.6), centre = k_turn * k_point + at;
+  const Vector3 right = centre.unitOrthogonal(), down = centre.normalized().cross(right);
+  sample.ray = centre.normalized();
+  sample.per_x = 250 * right;
+  sample.per_y = 400 * down;
+  sample.surface_range_m = centre.norm();
+  const Vector3 moved = at + 0.001 * right - 0.002 * down;
+  const Vector3 found = depth_residual<double>(sample, k_turn, moved, Vector3::Zero());
+  EXPECT_NEAR(found.x(), 250 * 0.001 / centre.norm() / 0.1, 1e-9);
+  EXPECT_NEAR(found.y(), 400 * -0.002 / centre.norm() / 0.25, 1e-9);
+}
+
+TEST(Residuals, ProjectAsTheBrownLensDoesAndMissByAPixelsDistance) {
+  CameraModel camera;
+  camera.lens = Lens::brown;
+  camera.fx = 253, camera.fy = 257, camera.cx = 258, camera.cy = 244.5;
+  camera.distortion = {-0.2, 0.05, 0.0008, -0.0011, 0.01, 0, 0, 0};
+  double lens[k_lens_numbers] = {camera.fx, camera.fy, camera.cx, camera.cy};
+  for (std::size_t i = 0; i < 8; ++i) lens[4 + i] = camera.distortion[i];
+  for (const Vector2& plane : {Vector2(0, 0), Vector2(0.3, -0.4), Vector2(-0.5, 0.6)}) {
+    const Vector2 pixel = project(camera, {plane.x(), plane.y(), 1}).value;
+    const Vector2 miss = lens_residual<double>(plane, pixel - Vector2(1.5, -2.5), lens);
+    EXPECT_LT((miss - Vector2(1.5, -2.5)).norm(), 1e-9);
+  }
+}
+
 TEST(Residuals, StayFiniteAtTheirWorst) {
   // Nothing moved, nothing turned, all in one place.
   MotionPiece piece = even_piece();

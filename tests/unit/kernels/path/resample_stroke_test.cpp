@@ -222,6 +222,132 @@ TEST(ResampleStroke, GivesNothingWithoutSamplesAndOnePointOfOne) {
   EXPECT_EQ(resampled({at(0, {0, 0, 0})}, {}).size(), 1u);
 }
 
+TEST(ResampleStroke, TakesEachSettingAtItsLimitAndRefusesItBeyond) {
+  StrokeResampler resampler;
+  const auto reason_of = [&](auto change) {
+    StrokeSettings settings;
+    change(settings);
+    return resampler.begin(settings);
+  };
+  using S = StrokeSettings;
+  constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double k_infinity = std::numeric_limits<double>::infinity();
+  for (double S::*setting :
+       {&S::spacing_m, &S::turn_rad, &S::acceleration_m_s2, &S::turn_acceleration_rad_s2}) {
+    EXPECT_EQ(reason_of([&](S& s) { s.*setting = 1e-9; }), Reason::none);
+    for (const double wrong : {0.0, -1e-9, k_nan, k_infinity}) {
+      EXPECT_EQ(reason_of([&](S& s) { s.*setting = wrong; }), Reason::out_of_range) << wrong;
+    }
+  }
+  EXPECT_EQ(reason_of([](S& s) { s.turn_rad = M_PI; }), Reason::none);
+  EXPECT_EQ(reason_of([](S& s) { s.turn_rad = std::nextafter(M_PI, 4); }), Reason::out_of_range);
+  EXPECT_EQ(reason_of([](S& s) { s.gap_max = Duration{1}; }), Reason::none);
+  EXPECT_EQ(reason_of([](S& s) { s.gap_max = Duration{0}; }), Reason::out_of_range);
+  EXPECT_EQ(reason_of([](S& s) { s.gap_max = Duration{-1}; }), Reason::out_of_range);
+}
+
+TEST(ResampleStroke, TakesASampleUpToEachLimitAndNotBeyond) {
+  const auto reason_of = [](UncertainPose second) {
+    StrokeResampler resampler;
+    EXPECT_EQ(resampler.begin({.spacing_m = 0.0009765625}), Reason::none);  // 2^-10
+    EXPECT_EQ(resampler.add(at(1, {0, 0, 0})), Reason::none);
+    return resampler.add(second);
+  };
+  UncertainPose sample = at(1.1, {0, 0, 0});
+  EXPECT_EQ(reason_of(sample), Reason::none);
+  ++sample.time.nanoseconds;
+  EXPECT_EQ(reason_of(sample), Reason::too_old);
+  sample = at(1, {0, 0, 0});
+  EXPECT_EQ(reason_of(sample), Reason::frame_late);
+  ++sample.time.nanoseconds;
+  EXPECT_EQ(reason_of(sample), Reason::none);
+  EXPECT_EQ(reason_of(at(1.01, {0, 0.5, 0})), Reason::none) << "512 spacings";
+  EXPECT_EQ(reason_of(at(1.01, {0, std::nextafter(0.5, 1), 0})), Reason::out_of_range);
+  for (const double scale : {1 + 4e-7, 1 - 4e-7}) {
+    EXPECT_EQ(reason_of(at(1.01, {0, 0, 0}, Quaternion(scale, 0, 0, 0))), Reason::none);
+  }
+  for (const double scale : {1 + 6e-7, 1 - 6e-7, 0.0, std::nan("")}) {
+    EXPECT_EQ(reason_of(at(1.01, {0, 0, 0}, Quaternion(scale, 0, 0, 0))), Reason::out_of_range);
+  }
+}
+
+// Half way between two samples, along each axis and about each.
+TEST(ResampleStroke, AddsAHandsAccelerationAlongAndAboutEachAxis) {
+  std::vector<UncertainPose> apart = {at(0, {0, 0, 0}), at(0.09, {0.004, 0, 0})};
+  ++apart[1].time.nanoseconds;  // half of which is rounded up
+  apart[1].covariance = 3 * declared_noise();
+  const auto points = resampled(
+      apart, {.spacing_m = 0.002, .acceleration_m_s2 = 3, .turn_acceleration_rad_s2 = 20});
+  ASSERT_EQ(points.size(), 3u);
+  EXPECT_EQ(points[1].time.nanoseconds, 45'000'001);
+  const double bow = 0.5 * 0.25 * 0.090000001 * 0.090000001;
+  Matrix6 expected = 2 * declared_noise();
+  for (int i = 0; i < 6; ++i) {
+    const double off = bow * (i < 3 ? 3 : 20);
+    expected(i, i) += off * off;
+  }
+  EXPECT_LT((points[1].covariance - expected).norm(), 1e-12 * expected.norm());
+}
+
+// A stroke left in its midst, and one that ended.
+TEST(ResampleStroke, BegunAgainGivesThePointsOfANewOne) {
+  StrokeResampler used, fresh;
+  ASSERT_EQ(fresh.begin({}), Reason::none);
+  UncertainPose point;
+  for (const bool ended : {false, true}) {
+    ASSERT_EQ(used.begin({.spacing_m = 0.001}), Reason::none);
+    for (int i = 0; i < 40; ++i) {
+      ASSERT_EQ(used.add(at(0.004 * i, Vector3(0.001 * i, 0, 0))), Reason::none);
+      while (used.next(point) != Next::none) {
+      }
+    }
+    if (ended) {
+      used.end();
+      while (used.next(point) != Next::none) {
+      }
+      EXPECT_EQ(used.next(point), Next::none) << "it has ended";
+    }
+    ASSERT_EQ(used.begin({}), Reason::none);
+    ASSERT_EQ(fresh.begin({}), Reason::none);
+    EXPECT_EQ(used.next(point), Next::none);
+    for (int i = 0; i < 60; ++i) {
+      const UncertainPose sample = on_a_ring(0.004 * i, 0.2);
+      ASSERT_EQ(used.add(sample), Reason::none);
+      ASSERT_EQ(fresh.add(sample), Reason::none);
+      if (i == 59) used.end(), fresh.end();
+      for (Next next = Next::point; next != Next::none;) {
+        UncertainPose a, b;
+        next = used.next(a);
+        ASSERT_EQ(next, fresh.next(b)) << i;
+        ASSERT_EQ(a.time, b.time);
+        ASSERT_EQ(a.pose.translation, b.pose.translation);
+        ASSERT_EQ(a.covariance, b.covariance);
+      }
+    }
+  }
+}
+
+// An end is a point of its own where it lies half a spacing or half a turn beyond the last.
+TEST(ResampleStroke, EndsWithAPointWhereItIsFarEnoughFromTheLast) {
+  const auto count = [](double way, double turn) {
+    std::vector<UncertainPose> line;
+    for (int i = 0; i <= 50; ++i) {
+      line.push_back(at(0.01 * i, Vector3(0.02 * way * i, 0, 0),
+                        from_rotation_vector(Vector3(0, 0.02 * turn * i, 0))));
+    }
+    const auto points = resampled(line, {.spacing_m = 0.01, .turn_rad = 0.1});
+    EXPECT_EQ(points.back().time, line.back().time);
+    EXPECT_EQ(points.back().pose.translation, line.back().pose.translation);
+    return points.size();
+  };
+  EXPECT_EQ(count(0.0248, 0), 3u);  // 0, 10, and the end in the place of 20 mm
+  EXPECT_EQ(count(0.0252, 0), 4u);
+  EXPECT_EQ(count(0.021, 0.248 - 0.2), 3u);
+  EXPECT_EQ(count(0, 0.245), 3u);
+  EXPECT_EQ(count(0, 0.255), 4u);
+  EXPECT_EQ(count(0.0052, 0), 2u) << "the end alone, beside the first";
+}
+
 TEST(ResampleStroke, AsksForNoMemory) {
   StrokeResampler resampler;
   const HeapCount heap;

@@ -90,5 +90,88 @@ TEST(ForwardKinematics, StaysRigidOverTheLongestChain) {
   EXPECT_NEAR(last.rotation.norm(), 1, 1e-14);
 }
 
+// Each kind of joint, on a branch of its own.
+TEST(ForwardKinematics, MovesEachKindOfJointByItsPosition) {
+  const Pose at{Quaternion(Eigen::AngleAxisd(0.5, Vector3(1, 1, 0).normalized())), {0.1, 0.2, 0.3}};
+  const Vector3 axis = Vector3(2, -1, 3).normalized();
+  JointTree tree;
+  tree.joint_count = 4;
+  tree.input_count = 2;
+  tree.joints[0] = {at, axis, JointKind::turning, 0, 1, -2, 0.25};
+  tree.joints[1] = {at, axis, JointKind::sliding, 0, 1, 3, -0.5};
+  tree.joints[2] = {at, axis, JointKind::fixed, 1, 0, 1, 0};
+  tree.joints[3] = {at, axis, JointKind::turning, 2, -1, 7, 0.125};
+  LinkPoses poses;
+  poses.T_root_link[0].translation = Vector3(9, 9, 9);
+  const std::vector<double> values{40, 0.75};
+  ASSERT_EQ(forward_kinematics(tree, values, poses), Reason::none);
+  ASSERT_EQ(poses.count, 5);
+  const auto turned = [&](double by) {
+    return Pose{Quaternion(Eigen::AngleAxisd(by, axis)), Vector3::Zero()};
+  };
+  const Pose slid{Quaternion::Identity(), (3 * 0.75 - 0.5) * axis};
+  const Pose expected[] = {{},
+                           at * turned(-2 * 0.75 + 0.25),
+                           at * slid,
+                           at * turned(-2 * 0.75 + 0.25) * at,
+                           at * slid * at * turned(0.125)};
+  for (std::size_t link = 0; link < 5; ++link) {
+    const Pose& found = poses.T_root_link[link];
+    EXPECT_LT((found.translation - expected[link].translation).norm(), 1e-14) << link;
+    EXPECT_LT(
+        (found.rotation.toRotationMatrix() - expected[link].rotation.toRotationMatrix()).norm(),
+        1e-14)
+        << link;
+  }
+}
+
+TEST(ForwardKinematics, TakesEachPositionUpToItsLimit) {
+  const double beyond = std::nextafter(k_joint_position_max, 1e9);
+  const auto reason_of = [](int joint, double value, double offset = 0) {
+    JointTree tree = two_bars();
+    tree.joints[2] = {{}, Vector3::UnitX(), JointKind::sliding, 2, joint < 0 ? -1 : 1, 2, offset};
+    LinkPoses poses;
+    return forward_kinematics(tree, std::vector<double>{0, value}, poses);
+  };
+  for (const double side : {-1.0, 1.0}) {
+    EXPECT_EQ(reason_of(1, side * k_joint_position_max / 2), Reason::none);
+    EXPECT_EQ(reason_of(1, side * beyond / 2), Reason::out_of_range);
+    EXPECT_EQ(reason_of(1, 0, side * k_joint_position_max), Reason::none);
+    EXPECT_EQ(reason_of(1, 0, side * beyond), Reason::out_of_range);
+    EXPECT_EQ(reason_of(-1, 0, side * k_joint_position_max), Reason::none);
+    EXPECT_EQ(reason_of(-1, 0, side * beyond), Reason::out_of_range);
+  }
+}
+
+TEST(ForwardKinematics, RefusesATreeThatIsNoneAndLeavesThePoses) {
+  LinkPoses poses;
+  poses.count = 7;
+  for (Pose& pose : poses.T_root_link) pose.translation = Vector3(1, 2, 3);
+  const auto reason_of = [&](auto change, std::size_t values = 2) {
+    JointTree tree = two_bars();
+    change(tree);
+    const Reason reason = forward_kinematics(tree, std::vector<double>(values, 0.1), poses);
+    EXPECT_EQ(poses.count, 7);
+    for (const Pose& pose : poses.T_root_link) EXPECT_EQ(pose.translation, Vector3(1, 2, 3));
+    return reason;
+  };
+  using T = JointTree;
+  constexpr Reason wrong = Reason::not_prepared;
+  EXPECT_EQ(reason_of([](T& t) { t.joint_count = -1; }), wrong);
+  EXPECT_EQ(reason_of([](T& t) { t.joint_count = k_robot_joints_max + 1; }), wrong);
+  EXPECT_EQ(reason_of([](T& t) { t.joints[0].parent_link = -1; }), wrong);
+  EXPECT_EQ(reason_of([](T& t) { t.joints[0].parent_link = 1; }), wrong);
+  EXPECT_EQ(reason_of([](T& t) { t.joints[2].parent_link = 3; }), wrong);
+  EXPECT_EQ(reason_of([](T& t) { t.joints[2].input = 2; }), wrong);
+  EXPECT_EQ(reason_of([](T& t) { t.input_count = 3; }), Reason::out_of_range);
+  EXPECT_EQ(reason_of([](T&) {}, 3), Reason::out_of_range);
+  EXPECT_EQ(reason_of([](T&) {}, 1), Reason::out_of_range);
+  JointTree none;
+  EXPECT_EQ(forward_kinematics(none, {}, poses), Reason::none) << "a root alone is a tree";
+  EXPECT_EQ(poses.count, 1);
+  EXPECT_EQ(poses.T_root_link[0].translation, Vector3(0, 0, 0));
+  EXPECT_EQ(poses.T_root_link[1].translation, Vector3(1, 2, 3));
+}
+
 }  // namespace
 }  // namespace glint
