@@ -3,53 +3,15 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/heap_count.hpp"
-#include "tests/unit/kernels/registration/box_model.hpp"
+#include "tests/unit/kernels/registration/followed_world.hpp"
 
 namespace glint::follow_reference_test {
 namespace {
 
+using test::at;
 using test::k_truth;
-using test::Model;
-
-constexpr int k_pixels = 160 * 120;
-
-Time at(double seconds) { return {static_cast<std::int64_t>(seconds * 1e9)}; }
-
-struct World {
-  Model model;
-  Pinhole camera{160, 120, 150, 150, 80, 60};
-  std::vector<float> depth = std::vector<float>(k_pixels);
-  std::mt19937 random{3};
-  ReferenceFollower follower;
-
-  World() {
-    EXPECT_EQ(follower.prepare(k_pixels, 64), Reason::none);
-    Matrix6 covariance = Matrix6::Zero();
-    covariance.diagonal() << 1e-6, 1e-6, 1e-6, 1e-6, 1e-6, 1e-6;
-    follower.begin(k_truth, covariance, at(0));
-  }
-  [[nodiscard]] SceneView view() const {
-    return {camera, depth, {}, {model.corners, model.faces}, {}};
-  }
-  // With 1 % of noise, and a wall behind.
-  void draw(const Pose& truth) {
-    std::vector<std::int32_t> face(depth.size());
-    std::vector<ProjectedCorner> corners(64);
-    EXPECT_EQ(render_depth({model.corners, model.faces}, truth, camera, {depth, face, corners}),
-              Reason::none);
-    std::normal_distribution<float> noise(0, 0.01f);
-    for (float& z : depth) z = z == 0 ? 1.9f : z * (1 + noise(random));
-  }
-  // Slices that it took.
-  int look(Time time) {
-    int slices = 0;
-    if (!follower.look(view(), time)) return slices;
-    do {
-      ++slices;
-    } while (follower.step());
-    return slices;
-  }
-};
+using test::k_world_pixels;
+using test::World;
 
 Vector6 error_of(const Pose& found, const Pose& truth) {
   Vector6 error;
@@ -176,12 +138,12 @@ TEST(FollowReference, WantsAReferenceAndNewerPictures) {
   EXPECT_EQ(world.follower.report().outcome, FollowOutcome::late);
   ReferenceFollower none;
   EXPECT_EQ(none.prepare(0, 64), Reason::out_of_range);
-  ASSERT_EQ(none.prepare(k_pixels, 64), Reason::none);
+  ASSERT_EQ(none.prepare(k_world_pixels, 64), Reason::none);
   EXPECT_FALSE(none.look(world.view(), at(1)));
   EXPECT_EQ(none.report().outcome, FollowOutcome::no_reference);
   EXPECT_FALSE(none.step());
   none.settings.time_constant_s = 0;
-  EXPECT_EQ(none.prepare(k_pixels, 64), Reason::out_of_range);
+  EXPECT_EQ(none.prepare(k_world_pixels, 64), Reason::out_of_range);
 }
 
 TEST(FollowReference, LeavesAPictureUnfinishedWhenANewReferenceComes) {

@@ -145,5 +145,19 @@ TEST(PoseCloudSlices, TakeNothingFromTheHeap) {
   EXPECT_EQ(heap.count(), 0u);
 }
 
+TEST(PoseCloudSlices, TakeAsManyPointsAsThereMayBeAndNoMore) {
+  for (const std::size_t count :
+       {std::size_t{k_model_points_max}, std::size_t{k_model_points_max} + 1}) {
+    const std::vector<Vector3f> points(count, Vector3f(1, 0, 0));
+    const std::vector<std::uint16_t> links(count, 0);
+    std::vector<Vector3f> moved(count), turned(count);
+    LinkPoses poses;
+    poses.count = 1;
+    PoseCloudRun run;
+    EXPECT_EQ(run.start({{points, points, 0.01f}, links}, poses, moved, turned),
+              count > k_model_points_max ? Reason::out_of_range : Reason::none);
+  }
+}
+
 }  // namespace
 }  // namespace glint::model_cloud_test

@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <map>
 #include <random>
+#include <set>
+#include <span>
+#include <vector>
 
 #include "kernels/registration/align_model.hpp"
 #include "kernels/registration/match_points.hpp"
@@ -87,35 +92,84 @@ TEST(PatchCovariance, KnowsHowSureItIsWhereNeighboursErrAlike) {
   EXPECT_LT(mean.patches, 2);
 }
 
-// Eq. of the header, patch by patch from single pairs.
-TEST(PatchCovariance, IsThatOfTheSumsOfItsPatches) {
-  NoisyScene scene(8, 3);
-  const SceneView one[] = {scene.view()};
-  const Result<Matrix6> found = patch_covariance(one, k_truth, k_gate_m, scene.scratch);
-  ASSERT_EQ(found.reason, Reason::none);
-  const Vector3 middle = one[0].T_camera_world * k_truth.translation;
-  Matrix6 matrix = Matrix6::Zero();
-  std::map<std::pair<int, int>, Vector6> patches;
-  const AlignmentScratch::View& view = scene.scratch.views[0];
-  for (int i = 0; i < view.seen_count; ++i) {
-    const SeenPoint& point = view.seen[static_cast<std::size_t>(i)];
-    AlignmentSums pair;
-    add_pairs({&point, 1}, Pose{}, Matching::projective, k_gate_m, one[0], {},
-              one[0].T_camera_world.inverse().rotation, middle, pair);
-    if (pair.count == 0) continue;
-    matrix += pair.matrix;
-    const auto patch =
-        std::pair(point.pixel % k_width / k_patch_pixels, point.pixel / k_width / k_patch_pixels);
-    const auto [at, added] = patches.try_emplace(patch, Vector6::Zero());
-    at->second += pair.slope;
+// Eq. of the header, patch by patch from single pairs; each view has patches of its own.
+Matrix6 plain_patch_covariance(std::span<const SceneView> views, const Pose& T_world_base,
+                               const AlignmentScratch& scratch) {
+  Matrix6 matrix = Matrix6::Zero(), spread = Matrix6::Zero();
+  double count = 0;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const Vector3 origin = views[v].T_camera_world * T_world_base.translation;
+    std::map<std::pair<int, int>, Vector6> patches;
+    const AlignmentScratch::View& view = scratch.views[v];
+    for (int i = 0; i < view.seen_count; ++i) {
+      const SeenPoint& point = view.seen[static_cast<std::size_t>(i)];
+      AlignmentSums pair;
+      add_pairs({&point, 1}, Pose{}, Matching::projective, k_gate_m, views[v], {},
+                views[v].T_camera_world.inverse().rotation, origin, pair);
+      if (pair.count == 0) continue;
+      matrix += pair.matrix;
+      const auto patch =
+          std::pair(point.pixel % k_width / k_patch_pixels, point.pixel / k_width / k_patch_pixels);
+      const auto [at, added] = patches.try_emplace(patch, Vector6::Zero());
+      at->second += pair.slope;
+    }
+    for (const auto& [patch, sum] : patches) spread += sum * sum.transpose();
+    count += static_cast<double>(patches.size());
   }
-  Matrix6 spread = Matrix6::Zero();
-  for (const auto& [patch, sum] : patches) spread += sum * sum.transpose();
   const Matrix6 whole = matrix.selfadjointView<Eigen::Lower>();
   const Matrix6 inverse = whole.inverse();
-  const double count = static_cast<double>(patches.size());
-  const Matrix6 expected = count / (count - 6) * inverse * spread * inverse;
-  EXPECT_LT((found.value - expected).norm(), 1e-9 * expected.norm());
+  return count / (count - 6) * inverse * spread * inverse;
+}
+
+TEST(PatchCovariance, IsThatOfTheSumsOfItsPatches) {
+  NoisyScene scene(8, 3);
+  ASSERT_EQ(scene.scratch.prepare(2, k_width * k_height, 64), Reason::none);
+  const Pose other{Quaternion(Eigen::AngleAxisd(0.7, Vector3(1, 2, -1).normalized())),
+                   {0.3, -0.1, 0.2}};
+  SceneView views[] = {scene.view(), scene.view()};
+  for (SceneView& view : views) view.T_camera_world = other.inverse();
+  // The second camera sees the lower half alone.
+  std::vector<std::uint8_t> mask(k_width * k_height, 0);
+  std::fill(mask.begin() + k_width * 125, mask.end(), 1);
+  views[1].mask = mask;
+  for (const std::size_t count : {1u, 2u}) {
+    const std::span<const SceneView> of_count = std::span(views).first(count);
+    const Result<Matrix6> found =
+        patch_covariance(of_count, other * k_truth, k_gate_m, scene.scratch);
+    ASSERT_EQ(found.reason, Reason::none);
+    const Matrix6 expected = plain_patch_covariance(of_count, other * k_truth, scene.scratch);
+    EXPECT_LT((found.value - expected).norm(), 1e-9 * expected.norm()) << count;
+  }
+}
+
+TEST(PatchCovariance, NeedsAsManyPatchesAsDeclared) {
+  NoisyScene scene(1, 5);
+  const SceneView one[] = {scene.view()};
+  ASSERT_EQ(patch_covariance(one, k_truth, k_gate_m, scene.scratch).reason, Reason::none);
+  const AlignmentScratch::View& memory = scene.scratch.views[0];
+  const auto patch_of = [](int pixel) {
+    return std::pair(pixel % k_width / k_patch_pixels, pixel / k_width / k_patch_pixels);
+  };
+  std::set<std::pair<int, int>> with_pairs;
+  for (int i = 0; i < memory.seen_count; ++i) {
+    const SeenPoint& point = memory.seen[static_cast<std::size_t>(i)];
+    AlignmentSums pair;
+    add_pairs({&point, 1}, Pose{}, Matching::projective, k_gate_m, one[0], {},
+              Quaternion::Identity(), k_truth.translation, pair);
+    if (pair.count > 0) with_pairs.insert(patch_of(point.pixel));
+  }
+  ASSERT_GT(with_pairs.size(), static_cast<std::size_t>(k_patches_least));
+  for (const int count : {k_patches_least - 1, k_patches_least}) {
+    const std::set<std::pair<int, int>> shown(with_pairs.begin(),
+                                              std::next(with_pairs.begin(), count));
+    std::vector<std::uint8_t> mask;
+    for (int i = 0; i < k_width * k_height; ++i)
+      mask.push_back(shown.contains(patch_of(i)) ? 1 : 0);
+    SceneView few[] = {scene.view()};
+    few[0].mask = mask;
+    EXPECT_EQ(patch_covariance(few, k_truth, k_gate_m, scene.scratch).reason,
+              count < k_patches_least ? Reason::degenerate : Reason::none);
+  }
 }
 
 TEST(PatchCovariance, TakesNothingFromTheHeap) {

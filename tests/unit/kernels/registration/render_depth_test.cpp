@@ -3,31 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-
 #include <limits>
 #include <vector>
 
-#include "kernels/registration/seen_points.hpp"
+#include "tests/unit/kernels/registration/wall_picture.hpp"
 
 namespace glint::render_depth_test {
 namespace {
 
-struct Picture {
-  Pinhole camera{64, 48, 60, 60, 32, 24};
-  std::vector<float> z = std::vector<float>(64 * 48);
-  std::vector<std::int32_t> face = std::vector<std::int32_t>(64 * 48);
-  std::vector<ProjectedCorner> corners = std::vector<ProjectedCorner>(64);
-
-  Reason render(const std::vector<Vector3f>& points, const std::vector<Face>& faces,
-                const Pose& pose = {}) {
-    return render_depth({points, faces}, pose, camera, {z, face, corners});
-  }
-  [[nodiscard]] std::size_t at(int x, int y) const { return static_cast<std::size_t>(y * 64 + x); }
-};
-
-// A wall that leans: z = 1 + x / 2.
-const std::vector<Vector3f> k_wall = {{-1, -2, 0.5f}, {1, -2, 1.5f}, {1, 2, 1.5f}, {-1, 2, 0.5f}};
-const std::vector<Face> k_two = {{0, 1, 2}, {0, 2, 3}};
+using test::k_two;
+using test::k_wall;
+using test::Picture;
 
 TEST(RenderDepth, GivesAPlanesDepthAtEachPixelsCentre) {
   Picture picture;
@@ -109,22 +95,6 @@ TEST(RenderDepth, EndsAfterItsBudgetOfTests) {
   EXPECT_GT(picture.z[picture.at(50, 10)], 0);
 }
 
-TEST(SeenPoints, AreNoMoreThanThereIsRoomFor) {
-  Picture picture;
-  SceneView view;
-  view.camera = picture.camera;
-  view.model = {k_wall, k_two};
-  const DepthBuffer buffer{picture.z, picture.face, picture.corners};
-  std::vector<SeenPoint> all(64 * 48);
-  const int count = seen_points(view, {}, 4, buffer, all);
-  EXPECT_GT(count, 100);
-  std::vector<SeenPoint> few(50);
-  few[40].pixel = -7;
-  EXPECT_EQ(seen_points(view, {}, 4, buffer, std::span(few).first(40)), 40);
-  EXPECT_EQ(few[40].pixel, -7);
-  for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(few[i].pixel, all[i].pixel);
-}
-
 // Far beyond what an integer holds, on each side.
 TEST(RenderDepth, DrawsNothingOfATriangleFarOutsideThePicture) {
   for (const float far : {1e11f, -1e11f}) {
@@ -135,6 +105,107 @@ TEST(RenderDepth, DrawsNothingOfATriangleFarOutsideThePicture) {
     EXPECT_EQ(picture.render({{-1, far, 1}, {-1, more, 1}, {1, more, 1}}, {{0, 1, 2}}),
               Reason::none);
     for (const std::int32_t face : picture.face) ASSERT_LT(face, 0);
+  }
+}
+
+// Rotated and shifted as if the corners had been so before.
+TEST(RenderDepth, TakesTheModelWhereItsPoseHasIt) {
+  const Pose pose{Quaternion(Eigen::AngleAxisd(0.4, Vector3(1, -2, 0.5).normalized())),
+                  {0.1, -0.2, 0.6}};
+  std::vector<Vector3f> moved;
+  for (const Vector3f& corner : k_wall) {
+    moved.emplace_back((pose * corner.cast<double>()).cast<float>());
+  }
+  Picture a, b;
+  ASSERT_EQ(a.render(k_wall, k_two, pose), Reason::none);
+  ASSERT_EQ(b.render(moved, k_two), Reason::none);
+  int both = 0;
+  for (std::size_t i = 0; i < a.z.size(); ++i) {
+    if (a.face[i] < 0 || b.face[i] < 0) continue;
+    EXPECT_NEAR(a.z[i], b.z[i], 1e-5);
+    ++both;
+  }
+  EXPECT_GT(both, 500);
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    const Vector3 p = moved[i].cast<double>();
+    EXPECT_NEAR(a.corners[i].u, 60 * p.x() / p.z() + 32, 1e-3);
+    EXPECT_NEAR(a.corners[i].v, 60 * p.y() / p.z() + 24, 1e-3);
+    EXPECT_NEAR(a.corners[i].inverse_z, 1 / p.z(), 1e-5);
+  }
+}
+
+TEST(RenderDepth, SeesBothSidesOfAFaceAndKeepsTheFirstOfTwoInOnePlace) {
+  const std::vector<Vector3f> points = {{-1, -1, 2}, {1, -1, 2}, {0, 1, 2}};
+  for (const std::vector<Face>& faces : {std::vector<Face>{{0, 1, 2}}, std::vector<Face>{{0, 2, 1}},
+                                         std::vector<Face>{{0, 1, 2}, {2, 1, 0}, {1, 2, 0}}}) {
+    Picture picture;
+    ASSERT_EQ(picture.render(points, faces), Reason::none);
+    EXPECT_FLOAT_EQ(picture.z[picture.at(32, 20)], 2);
+    EXPECT_EQ(picture.face[picture.at(32, 20)], 0);
+    for (std::size_t i = 0; i < picture.z.size(); ++i) {
+      EXPECT_EQ(picture.face[i] >= 0, picture.z[i] > 0);
+      EXPECT_LE(picture.face[i], 0);
+    }
+  }
+}
+
+TEST(RenderDepth, LeavesOutAFaceWithAnyCornerThatIsNotAhead) {
+  for (std::size_t behind = 0; behind < 4; ++behind) {
+    std::vector<Vector3f> points = {{-1, -1, 1}, {1, -1, 1}, {0, 1, 1}};
+    if (behind < 3) points[behind].z() = 0.04f;
+    Picture picture;
+    ASSERT_EQ(picture.render(points, {{0, 1, 2}}), Reason::none);
+    int drawn = 0;
+    for (const std::int32_t face : picture.face) drawn += face >= 0 ? 1 : 0;
+    EXPECT_EQ(drawn > 0, behind == 3) << behind;
+  }
+}
+
+// A face whose box has 48 pixels: 256 tests a pixel suffice for 16,384 of them.
+TEST(RenderDepth, DrawsWhatItsTestsSufficeForAndNoFaceMore) {
+  const auto corner = [](int x, int y, float z) {
+    return Vector3f((static_cast<float>(x) - 32) / 60 * z, (static_cast<float>(y) - 24) / 60 * z,
+                    z);
+  };
+  // From 8 to 16 across and from 6 to 12 down; the last face is nearer.
+  const std::vector<Vector3f> points = {corner(8, 6, 2), corner(16, 6, 2), corner(8, 12, 2),
+                                        corner(8, 6, 1), corner(16, 6, 1), corner(8, 12, 1)};
+  constexpr int k_faces = 64 * 48 * k_render_tests_a_pixel / 48;
+  for (const int faces : {k_faces, k_faces + 1}) {
+    std::vector<Face> many(static_cast<std::size_t>(faces), Face{0, 1, 2});
+    many.back() = {3, 4, 5};
+    Picture picture;
+    EXPECT_EQ(picture.render(points, many), faces == k_faces ? Reason::none : Reason::search_full);
+    EXPECT_EQ(picture.face[picture.at(9, 7)], faces == k_faces ? faces - 1 : 0);
+  }
+}
+
+TEST(RenderDepth, TakesEachSizeAtItsLimitAndRefusesItBeyond) {
+  std::vector<float> z(13);
+  std::vector<std::int32_t> face(13);
+  std::vector<ProjectedCorner> corners(5);
+  std::vector<Face> faces = {{0, 1, 2}};
+  const auto reason = [&](int width, int height, std::size_t zs, std::size_t numbers,
+                          std::size_t corner_count) {
+    return render_depth({k_wall, faces}, {}, {width, height, 2, 2, 2, 1},
+                        {std::span(z).first(zs), std::span(face).first(numbers),
+                         std::span(corners).first(corner_count)});
+  };
+  EXPECT_EQ(reason(4, 3, 12, 12, 4), Reason::none);
+  EXPECT_EQ(reason(4, 3, 12, 12, 5), Reason::none);
+  EXPECT_EQ(reason(4, 3, 12, 12, 3), Reason::out_of_range);
+  EXPECT_EQ(reason(4, 3, 11, 11, 4), Reason::out_of_range);
+  EXPECT_EQ(reason(4, 3, 13, 13, 4), Reason::out_of_range);
+  EXPECT_EQ(reason(4, 3, 12, 11, 4), Reason::out_of_range);
+  EXPECT_EQ(reason(0, 3, 0, 0, 4), Reason::out_of_range);
+  EXPECT_EQ(reason(4, 0, 0, 0, 4), Reason::out_of_range);
+  EXPECT_EQ(reason(-4, -3, 12, 12, 4), Reason::out_of_range);
+  EXPECT_EQ(reason(1, 1, 1, 1, 4), Reason::none);
+  for (const std::int32_t wrong : {-1, 4}) {
+    for (const Face& with : {Face{wrong, 1, 2}, Face{0, wrong, 2}, Face{0, 1, wrong}}) {
+      faces = {with};
+      EXPECT_EQ(reason(4, 3, 12, 12, 5), Reason::out_of_range) << wrong;
+    }
   }
 }
 

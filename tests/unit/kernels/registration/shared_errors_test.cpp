@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "kernels/registration/align_model.hpp"
+#include "kernels/registration/match_points.hpp"
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/registration/box_model.hpp"
 
@@ -111,6 +115,64 @@ TEST(SharedErrors, StatesWhereNothingIsSeen) {
   ASSERT_EQ(small.prepare(1, 100, 64), Reason::none);
   EXPECT_EQ(shared_error_covariance(one, k_truth, k_gate_m, {}, small).reason,
             Reason::not_prepared);
+}
+
+// The header's equation from single pairs, for two cameras that share their errors.
+TEST(SharedErrors, AreThoseOfTheSumsOfAllPairs) {
+  BiasedScene scene(Vector3(0.003, -0.002, 0.004));
+  ASSERT_EQ(scene.scratch.prepare(2, k_width * k_height, 64), Reason::none);
+  SceneView views[] = {scene.view(), scene.view()};
+  const Pose other{Quaternion(Eigen::AngleAxisd(0.7, Vector3(1, 2, -1).normalized())),
+                   {0.3, -0.1, 0.2}};
+  std::vector<std::uint8_t> mask(k_width * k_height, 1);
+  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = i % 5 == 0 ? 0 : 1;
+  views[1].mask = mask;
+  // The base is where each camera sees it.
+  const Pose T_world_base = other * k_truth;
+  views[0].T_camera_world = views[1].T_camera_world = other.inverse();
+  const SharedErrors errors{0.005, 0.002};
+  const Result<Matrix6> found =
+      shared_error_covariance(views, T_world_base, k_gate_m, errors, scene.scratch);
+  ASSERT_EQ(found.reason, Reason::none);
+  Matrix6 matrix = Matrix6::Zero();
+  std::array<Vector6, 3> sums{Vector6::Zero(), Vector6::Zero(), Vector6::Zero()};
+  for (std::size_t v = 0; v < 2; ++v) {
+    const AlignmentScratch::View& memory = scene.scratch.views[v];
+    for (int i = 0; i < memory.seen_count; ++i) {
+      const SeenPoint& seen = memory.seen[static_cast<std::size_t>(i)];
+      AlignmentSums pair;
+      add_pairs({&seen, 1}, Pose{}, Matching::projective, k_gate_m, views[v], {}, other.rotation,
+                views[v].T_camera_world * T_world_base.translation, pair);
+      if (pair.count == 0) continue;
+      matrix += pair.matrix;
+      // A metre of depth moves the scene's point along the ray by range / z.
+      const Vector3 p = seen.point.cast<double>(), n = seen.normal.cast<double>();
+      const double along = p.norm() / p.z(), cosine = -n.dot(p) / p.norm();
+      const Vector3 lever = other.rotation * (p - k_truth.translation);
+      const Vector3 gradient = other.rotation * n * (-1 / cosine);
+      Vector6 derivative;
+      derivative << gradient, lever.cross(gradient);
+      const double right = (seen.pixel % k_width + 0.5) / (0.5 * k_width) - 1;
+      const double down = (seen.pixel / k_width + 0.5) / (0.5 * k_height) - 1;
+      sums[0] += derivative * along;
+      sums[1] += derivative * along * right;
+      sums[2] += derivative * along * down;
+    }
+  }
+  const Matrix6 inverse = Matrix6(matrix.selfadjointView<Eigen::Lower>()).inverse();
+  Matrix6 expected = Matrix6::Zero();
+  for (const Vector6& sum : sums) {
+    const Vector6 moves = errors.depth_sigma_m * inverse * sum;
+    expected += moves * moves.transpose();
+  }
+  // Rays that turn about the camera carry the base along.
+  const Vector3 lever = T_world_base.translation - other.translation;
+  for (int axis = 0; axis < 3; ++axis) {
+    Vector6 moves;
+    moves << Vector3::Unit(axis).cross(lever), Vector3::Unit(axis);
+    expected += errors.ray_sigma_rad * errors.ray_sigma_rad * moves * moves.transpose();
+  }
+  EXPECT_LT((found.value - expected).norm(), 1e-6 * expected.norm());
 }
 
 }  // namespace

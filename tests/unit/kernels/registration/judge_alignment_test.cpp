@@ -1,0 +1,313 @@
+// What is counted of a model's pixels, each kind by hand; the shares, and the steps.
+#include "kernels/registration/judge_alignment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "kernels/registration/judge_links.hpp"
+
+namespace glint::judge_alignment_test {
+namespace {
+
+constexpr int k_width = 16, k_height = 12, k_pixels = k_width * k_height;
+constexpr int k_on_model = 8 * 6;
+
+// A square one metre ahead, on pixels 4 to 11 of rows 3 to 8. Neighbouring pixels are 62 mm apart,
+// so that each has its own scene point nearest.
+struct Square {
+  Pinhole camera{k_width, k_height, 16, 16, 8, 6};
+  std::vector<Vector3f> corners = {
+      {-0.25f, -0.1875f, 1}, {0.25f, -0.1875f, 1}, {0.25f, 0.1875f, 1}, {-0.25f, 0.1875f, 1}};
+  std::vector<Face> faces = {{0, 1, 2}, {0, 2, 3}};
+  std::vector<float> depth = std::vector<float>(k_pixels, 3.0f);
+  std::vector<std::uint8_t> mask;
+  JudgeSettings settings{0.02, 0.25};
+  AlignmentScratch scratch;
+  int set = 0;  // pixels of the model that have a depth
+
+  Square() { EXPECT_EQ(scratch.prepare(2, k_pixels, 4), Reason::none); }
+  static std::size_t pixel_of(int i) {
+    return static_cast<std::size_t>((3 + i / 8) * k_width + 4 + i % 8);
+  }
+  // The next pixels of the model.
+  void next(int count, float depth_m, int mask_value = 1) {
+    for (int i = 0; i < count; ++i, ++set) {
+      depth[pixel_of(set)] = depth_m;
+      if (!mask.empty()) mask[pixel_of(set)] = static_cast<std::uint8_t>(mask_value);
+    }
+  }
+  [[nodiscard]] SceneView view() const { return {camera, depth, mask, {corners, faces}, {}}; }
+  [[nodiscard]] Judgement judged() {
+    EXPECT_EQ(set, k_on_model);
+    const SceneView one[] = {view()};
+    return judge_alignment(one, {}, settings, scratch);
+  }
+};
+
+TEST(JudgeAlignment, CountsEachKindOfPixelUpToItsLimit) {
+  Square scene;
+  scene.next(5, 0);
+  scene.next(7, 0.7f);    // in front: hidden
+  scene.next(3, 0.75f);   // just not
+  scene.next(4, 1.3f);    // behind: seen through
+  scene.next(2, 1.25f);   // just not
+  scene.next(1, 1.03f);   // near, but no inlier
+  scene.next(2, 1.015f);  // an inlier
+  scene.next(24, 1);
+  const Judgement judged = scene.judged();
+  EXPECT_EQ(judged.reason, Reason::none);
+  EXPECT_EQ(judged.rendered, 48);
+  EXPECT_EQ(judged.measured, 43);
+  EXPECT_EQ(judged.hidden, 7);
+  EXPECT_EQ(judged.seen_through, 4);
+  EXPECT_EQ(judged.inliers, 26);
+  EXPECT_EQ(judged.mask_pixels, 0);
+  EXPECT_EQ(judged.mask_covered, 0);
+  EXPECT_NEAR(judged.median_m, k_distance_step_m / 2, 1e-12);
+  const AlignmentScratch::View& memory = scene.scratch.views[0];
+  const OutlineCounts outline =
+      look_beside_outline(scene.view(), memory.z, memory.triangle, scene.settings.far_m);
+  EXPECT_EQ(judged.outline.falls, outline.falls);
+  EXPECT_EQ(judged.outline.goes_on, outline.goes_on);
+  EXPECT_GT(judged.outline.falls, 0);
+}
+
+// What the mask excludes hides the model from however near, and is no scene point of it.
+TEST(JudgeAlignment, CountsByTheMaskWhatIsNotTheModel) {
+  Square scene;
+  scene.mask.assign(k_pixels, 0);
+  for (std::size_t i = 0; i < 6; ++i) scene.mask[i] = 2;  // of these a measured pixel each
+  scene.depth[0] = 0;                                     // but one
+  scene.next(6, 0.99f, 0);                                // just in front
+  scene.next(5, 1, 0);                                    // at the model
+  scene.next(4, 1.3f, 0);                                 // behind
+  scene.next(3, 0.99f, 1);
+  scene.next(2, 0, 1);
+  scene.next(28, 1, 1);
+  const Judgement judged = scene.judged();
+  EXPECT_EQ(judged.measured, 46);
+  EXPECT_EQ(judged.hidden, 6);
+  EXPECT_EQ(judged.seen_through, 4);
+  EXPECT_EQ(judged.inliers, 31);
+  EXPECT_EQ(judged.mask_pixels, 5 + 31);
+  EXPECT_EQ(judged.mask_covered, 31);
+}
+
+TEST(JudgeAlignment, AddsUpOverViews) {
+  Square scene;
+  scene.next(10, 1.3f);
+  scene.next(8, 0.5f);
+  scene.next(30, 1);
+  const Judgement one = scene.judged();
+  const SceneView twice[] = {scene.view(), scene.view()};
+  const Judgement two = judge_alignment(twice, {}, scene.settings, scene.scratch);
+  EXPECT_EQ(two.rendered, 2 * one.rendered);
+  EXPECT_EQ(two.measured, 2 * one.measured);
+  EXPECT_EQ(two.hidden, 2 * one.hidden);
+  EXPECT_EQ(two.seen_through, 2 * one.seen_through);
+  EXPECT_EQ(two.inliers, 2 * one.inliers);
+  EXPECT_EQ(two.outline.falls, 2 * one.outline.falls);
+  EXPECT_EQ(two.median_m, one.median_m);
+  const SceneView thrice[] = {twice[0], twice[0], twice[0]};
+  EXPECT_EQ(judge_alignment(thrice, {}, scene.settings, scene.scratch).reason,
+            Reason::not_prepared);
+}
+
+// Of an even number of distances the lower one of the middle two.
+TEST(JudgeAlignment, HasTheMiddleDistanceForItsMedian) {
+  for (const auto& [near, far, is_near] :
+       {std::tuple{2, 1, true}, std::tuple{1, 1, true}, std::tuple{1, 2, false},
+        std::tuple{20, 21, false}, std::tuple{24, 24, true}}) {
+    Square scene;
+    scene.next(near, 1);
+    scene.next(far, 1.03f);  // along the ray up to 1.04 times as far
+    scene.next(k_on_model - near - far, 0);
+    const double median = scene.judged().median_m;
+    EXPECT_GE(median, is_near ? k_distance_step_m / 2 : 0.03) << near << ' ' << far;
+    EXPECT_LE(median, is_near ? k_distance_step_m / 2 : 0.0313) << near << ' ' << far;
+  }
+}
+
+TEST(JudgeAlignment, TakesTheStepsOfItsPixelsInSlicesOfAnySize) {
+  Square scene;
+  scene.depth.assign(k_pixels, 0);  // the grid is empty: no search takes steps
+  scene.set = k_on_model;
+  const SceneView one[] = {scene.view()};
+  constexpr int k_slots = 512;  // of a grid of 192 points
+  const int expected = k_pixels * (k_scene_pixel_steps + k_outline_pixel_steps) +
+                       k_slots * (k_grid_clear_steps + k_grid_sum_steps) +
+                       k_on_model * k_judged_steps;
+  JudgeRun run;
+  for (const int budget : {1, 100, SliceSize::k_steps_max}) {
+    for (const float depth : {0.0f, -1.0f}) {  // not measured: only judged
+      scene.depth.assign(k_pixels, depth);
+      run.start({}, scene.settings);
+      int steps = 0;
+      for (bool done = false; !done;) {
+        StepBudget left(budget);
+        done = run.step(one, left, scene.scratch);
+        steps += budget - left.left();
+        ASSERT_LE(budget - left.left(), budget + k_judged_steps + k_outline_pixel_steps);
+      }
+      EXPECT_EQ(steps, expected) << budget;
+      EXPECT_EQ(run.result().rendered, k_on_model);
+      EXPECT_EQ(run.result().measured, 0);
+    }
+  }
+  StepBudget more;
+  EXPECT_TRUE(run.step(one, more, scene.scratch)) << "it has ended";
+  EXPECT_EQ(more.left(), SliceSize::k_steps_max);
+}
+
+// A search takes steps of the budget, too: those that it takes by itself.
+TEST(JudgeAlignment, TakesTheStepsOfItsSearches) {
+  Square scene;
+  scene.next(k_on_model, 1);
+  const SceneView one[] = {scene.view()};
+  Judgement judged = scene.judged();
+  ASSERT_EQ(judged.inliers, k_on_model);
+  const AlignmentScratch::View& memory = scene.scratch.views[0];
+  StepBudget searches;
+  for (int i = 0; i < k_on_model; ++i) {
+    (void)memory.grid.nearest(memory.seen[static_cast<std::size_t>(i)].point,
+                              static_cast<float>(k_distance_steps * k_distance_step_m), searches);
+  }
+  const auto steps_of = [&] {
+    JudgeRun run;
+    run.start({}, scene.settings);
+    StepBudget budget;
+    while (!run.step(one, budget, scene.scratch)) {
+    }
+    return budget.left();
+  };
+  const int found = steps_of();
+  scene.faces.clear();  // nothing to judge
+  const SceneView empty[] = {scene.view()};
+  JudgeRun run;
+  run.start({}, scene.settings);
+  StepBudget budget;
+  while (!run.step(empty, budget, scene.scratch)) {
+  }
+  EXPECT_EQ(budget.left() - found,
+            k_on_model * k_judged_steps + SliceSize::k_steps_max - searches.left());
+}
+
+TEST(Judgement, HasTheSharesOfItsCounts) {
+  Judgement j;
+  EXPECT_EQ(j.inlier_share(), 0);
+  EXPECT_EQ(j.seen_through_share(), 0);
+  EXPECT_EQ(j.unhidden_seen_through_share(), 0);
+  EXPECT_EQ(j.mask_share(), 0);
+  EXPECT_EQ(j.visible_share(), 0);
+  EXPECT_EQ(j.outline_share(), 1);
+  j.rendered = 100, j.measured = 50, j.hidden = 10, j.inliers = 30, j.seen_through = 5;
+  j.mask_pixels = 8, j.mask_covered = 6;
+  j.outline.falls = 10, j.outline.goes_on = 30;
+  EXPECT_DOUBLE_EQ(j.inlier_share(), 0.75);
+  EXPECT_DOUBLE_EQ(j.seen_through_share(), 0.1);
+  EXPECT_DOUBLE_EQ(j.unhidden_seen_through_share(), 0.125);
+  EXPECT_DOUBLE_EQ(j.mask_share(), 0.75);
+  EXPECT_DOUBLE_EQ(j.visible_share(), 0.4);
+  EXPECT_DOUBLE_EQ(j.outline_share(), 0.5);
+  // All that was measured is hidden, or all but one pixel.
+  j.hidden = 50;
+  EXPECT_EQ(j.inlier_share(), 0);
+  EXPECT_EQ(j.unhidden_seen_through_share(), 0);
+  EXPECT_EQ(j.visible_share(), 0);
+  j.hidden = 49;
+  EXPECT_EQ(j.inlier_share(), 30);
+  EXPECT_EQ(j.unhidden_seen_through_share(), 5);
+  EXPECT_DOUBLE_EQ(j.visible_share(), 0.01);
+  j = {};
+  j.rendered = j.measured = j.seen_through = j.mask_pixels = j.mask_covered = 1;
+  EXPECT_EQ(j.visible_share(), 1);
+  EXPECT_EQ(j.seen_through_share(), 1);
+  EXPECT_EQ(j.mask_share(), 1);
+}
+
+// The two faces of the square are a link each.
+TEST(JudgeLinks, CountsTheSameKindsByLink) {
+  Square scene;
+  scene.next(5, 0);
+  scene.next(7, 0.7f);
+  scene.next(3, 0.75f);
+  scene.next(4, 1.3f);
+  scene.next(2, 1.25f);
+  scene.next(1, 1.03f);
+  scene.next(26, 1);
+  const Judgement judged = scene.judged();
+  const SceneView one[] = {scene.view()};
+  const std::vector<std::uint16_t> numbers = {3, 1};
+  const std::span<const std::uint16_t> links[] = {numbers};
+  const LinkJudgement found = judge_links(one, links, {}, scene.settings, scene.scratch);
+  ASSERT_EQ(found.reason, Reason::none);
+  const LinkCounts &a = found.links[3], &b = found.links[1];
+  EXPECT_GT(a.looked_at, 10);
+  EXPECT_GT(b.looked_at, 10);
+  EXPECT_EQ(a.looked_at + b.looked_at, judged.measured - judged.hidden);
+  EXPECT_EQ(a.explained + b.explained, judged.inliers);
+  EXPECT_EQ(a.seen_through + b.seen_through, judged.seen_through);
+  // Pixels of each face, by hand.
+  LinkCounts upper;
+  for (int i = 0; i < k_on_model; ++i) {
+    const std::size_t pixel = Square::pixel_of(i);
+    if (scene.scratch.views[0].triangle[pixel] != 0) continue;
+    const float depth = scene.depth[pixel];
+    if (depth == 0 || depth == 0.7f) continue;
+    ++upper.looked_at;
+    upper.explained += depth == 1 ? 1 : 0;
+    upper.seen_through += depth == 1.3f ? 1 : 0;
+  }
+  EXPECT_EQ(a.looked_at, upper.looked_at);
+  EXPECT_EQ(a.explained, upper.explained);
+  EXPECT_EQ(a.seen_through, upper.seen_through);
+  // A face without a number adds nothing, nor does one whose number is no link.
+  const std::span<const std::uint16_t> first[] = {std::span(numbers).first(1)};
+  const LinkJudgement fewer = judge_links(one, first, {}, scene.settings, scene.scratch);
+  EXPECT_EQ(fewer.links[3].looked_at, a.looked_at);
+  EXPECT_EQ(fewer.links[1].looked_at, 0);
+  const std::vector<std::uint16_t> last = {k_robot_links_max - 1, k_robot_links_max};
+  const std::span<const std::uint16_t> of_last[] = {last};
+  const LinkJudgement at_end = judge_links(one, of_last, {}, scene.settings, scene.scratch);
+  EXPECT_EQ(at_end.links[k_robot_links_max - 1].looked_at, a.looked_at);
+}
+
+TEST(JudgeLinks, LeavesOutWhatTheMaskExcludesInFrontAlone) {
+  Square scene;
+  scene.mask.assign(k_pixels, 0);
+  scene.next(6, 0.99f, 0);
+  scene.next(5, 1, 0);
+  scene.next(37, 1, 1);
+  const SceneView one[] = {scene.view()};
+  const std::vector<std::uint16_t> numbers = {0, 0};
+  const std::span<const std::uint16_t> links[] = {numbers};
+  const LinkJudgement found = judge_links(one, links, {}, scene.settings, scene.scratch);
+  EXPECT_EQ(found.links[0].looked_at, 42);
+  EXPECT_EQ(found.links[0].explained, 37);
+  EXPECT_EQ(found.links[0].seen_through, 0);
+}
+
+TEST(JudgeLinks, AddsUpOverTheViewsThatHaveNumbers) {
+  Square scene;
+  scene.next(k_on_model, 1);
+  const SceneView two[] = {scene.view(), scene.view()};
+  const std::vector<std::uint16_t> numbers = {0, 0}, others = {1, 1};
+  const std::span<const std::uint16_t> both[] = {numbers, others}, second[] = {{}, others};
+  const LinkJudgement found = judge_links(two, both, {}, scene.settings, scene.scratch);
+  EXPECT_EQ(found.links[0].explained, k_on_model);
+  EXPECT_EQ(found.links[1].explained, k_on_model);
+  const LinkJudgement one = judge_links(two, second, {}, scene.settings, scene.scratch);
+  EXPECT_EQ(one.links[0].looked_at, 0);
+  EXPECT_EQ(one.links[1].looked_at, k_on_model);
+  const LinkJudgement first =
+      judge_links(two, std::span(both).first(1), {}, scene.settings, scene.scratch);
+  EXPECT_EQ(first.links[0].looked_at, k_on_model);
+  EXPECT_EQ(first.links[1].looked_at, 0);
+}
+
+}  // namespace
+}  // namespace glint::judge_alignment_test
