@@ -156,7 +156,9 @@ struct ByThemselves {
     int dropped = 0;
     (void)add_depth_points(picture.view().picture, picture.camera, picture.T_world_camera, {}, 0,
                            2'000, points.points, dropped);
-    voxels.add(points.points, 0, points.points.count);
+    for (int at = 0; at < points.points.count;) {
+      at = voxels.add(points.points, at, k_map_pixels_at_once);
+    }
     voxels.write(0, most, voxel_points.points);
     const SliceSize one(k_cloud_points_max, 1);
     outliers.begin(voxel_points.points);
@@ -202,7 +204,10 @@ TEST(MapSliceSteps, OfEachStageAreItsKernelsOfEachCallAndOfBeginningTheNext) {
     EXPECT_EQ(taken[stage].steps, kernel.steps + kernel.calls * call + begin)
         << static_cast<int>(stage);
   }
-  EXPECT_EQ(taken[Stage::points].calls, 1'200 / k_map_pixels_at_once);
+  const int pixels = 40 * 30, probe = steps_of_row(1, 1.005f) - steps_of_row(1);
+  EXPECT_EQ(taken[Stage::points].calls, pixels / k_map_pixels_at_once);
+  EXPECT_EQ(taken[Stage::points].steps, taken[Stage::points].calls * call + pixels * pixel_steps() +
+                                            static_cast<int>(alone.voxels.probes()) * probe);
   // One voxel, one point a call, each for the same steps.
   EXPECT_EQ(taken[Stage::voxels].calls, alone.voxels.count());
   EXPECT_EQ(taken[Stage::voxels].steps % alone.voxels.count(), 0);
