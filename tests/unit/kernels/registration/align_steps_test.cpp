@@ -188,6 +188,34 @@ TEST(AlignSteps, AreCountedWithinTheirLimits) {
   EXPECT_EQ(slices(1, false, k_gates_max + 5), 2 * k_gates_max);
 }
 
+// Triangles are rendered for nothing: what is left are the points seen, once for their middle and
+// once a step for their pair, and the solution of each step.
+TEST(AlignSteps, TakeTheirStepsFromTheBudgetInSlicesOfAnySize) {
+  TwoViews scene(0.004);
+  constexpr int k_steps = 3;
+  Gate gate = k_projective;
+  gate.step = 3;
+  gate.steps_max = k_steps;
+  AlignmentSettings settings = gates({gate});
+  settings.rest_shift_m = settings.rest_turn_rad = -1;  // never
+  const std::vector<SceneView> views = scene.views();
+  for (const int budget : {1, 1'000, SliceSize::k_steps_max}) {
+    AlignmentRun run;
+    run.start(k_truth, settings);
+    int steps = 0;
+    for (bool more = true; more;) {
+      StepBudget left(budget);
+      more = run.step(views, left, scene.scratch);
+      steps += budget - left.left();
+      ASSERT_LE(budget - left.left(), budget + k_pair_steps + k_solve_steps);
+    }
+    const int seen = scene.scratch.views[0].seen_count + scene.scratch.views[1].seen_count;
+    EXPECT_GT(seen, 300);
+    EXPECT_EQ(steps, seen * (k_middle_steps + k_steps * k_pair_steps) + k_steps * k_solve_steps)
+        << budget;
+  }
+}
+
 // A grid of the scene's measured pixels: of every second one where points are further apart.
 TEST(AlignSteps, SearchTheSceneNoThinnerThanEveryOtherPixel) {
   TwoViews scene(0.001);

@@ -135,6 +135,28 @@ TEST(PoseCloudSlices, EndAtALinkThatHasNoPose) {
   EXPECT_FALSE(run.step(budget)) << "it has ended";
 }
 
+// Left in its midst, ended at a link without a pose, or refused.
+TEST(PoseCloudSlices, StartedAgainPoseAsANewRun) {
+  Arm fresh;
+  ASSERT_EQ(pose_cloud(fresh.cloud(), fresh.poses, fresh.moved, fresh.turned), Reason::none);
+  PoseCloudRun run;
+  for (const int before : {0, 1, 2}) {
+    Arm used, wrong;
+    StepBudget some(before == 0 ? 5'000 : SliceSize::k_steps_max);
+    if (before == 1) wrong.poses.count = 6;
+    if (before == 2) wrong.links.pop_back();
+    (void)run.start(wrong.cloud(), wrong.poses, wrong.moved, wrong.turned);
+    EXPECT_EQ(run.step(some), before == 0);
+    ASSERT_EQ(run.start(used.cloud(), used.poses, used.moved, used.turned), Reason::none);
+    EXPECT_EQ(run.reason(), Reason::none);
+    StepBudget all;
+    EXPECT_FALSE(run.step(all));
+    EXPECT_EQ(SliceSize::k_steps_max - all.left(), k_steps);
+    EXPECT_EQ(used.moved, fresh.moved) << before;
+    EXPECT_EQ(used.turned, fresh.turned) << before;
+  }
+}
+
 TEST(PoseCloudSlices, TakeNothingFromTheHeap) {
   Arm arm;
   const HeapCount heap;
