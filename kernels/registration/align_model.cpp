@@ -104,11 +104,9 @@ void AlignmentRun::find_middle(std::span<const SceneView> views, StepBudget& bud
     of_view_ += memory.seen[static_cast<std::size_t>(at_)].point.cast<double>();
   }
   if (at_ < memory.seen_count) return;
-  if (memory.seen_count > 0) {
-    const Pose T_world_camera = views[view_].T_camera_world.inverse();
-    of_all_ += T_world_camera.rotation * of_view_ + memory.seen_count * T_world_camera.translation;
-    seen_ += memory.seen_count;
-  }
+  const Pose T_world_camera = views[view_].T_camera_world.inverse();
+  of_all_ += T_world_camera.rotation * of_view_ + memory.seen_count * T_world_camera.translation;
+  seen_ += memory.seen_count;
   phase_ = Phase::start_view;
   if (++view_ < views.size()) return;
   view_ = 0;

@@ -285,27 +285,30 @@ TEST(AlignSteps, StartedAnewAreThoseOfANewRun) {
   TwoViews scene(0.004);
   const std::vector<SceneView> views = scene.views();
   AlignmentRun used, fresh;
-  used.start({Quaternion::Identity(), {0, 0, -3}}, gates({k_projective}));
+  used.start({Quaternion::Identity(), {0, 0, -3}}, gates({k_projective, k_projective}));
   while (used.step(views, scene.scratch)) {
   }
   EXPECT_EQ(used.result().reason, Reason::degenerate);
-  EXPECT_EQ(used.result().steps, 1);
+  EXPECT_EQ(used.result().steps, 1) << "and goes to no further gate";
+  EXPECT_EQ(used.result().pairs, 0);
   EXPECT_FALSE(used.step(views, scene.scratch)) << "it has ended";
   Gate more = k_projective;
   more.steps_max = 4;
-  used.start(start_off(), gates({more, more}));
-  for (int i = 0; i < 5; ++i) EXPECT_TRUE(used.step(views, scene.scratch));  // left in its midst
-  for (AlignmentRun* run : {&used, &fresh}) {
-    run->start(start_off(), gates({more, k_projective}));
-    while (run->step(views, scene.scratch)) {
+  for (const int slices : {1, 2, 5}) {  // left in its midst
+    used.start(start_off(), gates({more, more}));
+    for (int i = 0; i < slices; ++i) EXPECT_TRUE(used.step(views, scene.scratch));
+    for (AlignmentRun* run : {&used, &fresh}) {
+      run->start(start_off(), gates({more, k_projective}));
+      while (run->step(views, scene.scratch)) {
+      }
     }
+    EXPECT_EQ(used.result().steps, fresh.result().steps);
+    EXPECT_EQ(used.result().pairs, fresh.result().pairs);
+    EXPECT_EQ(used.result().reason, Reason::none);
+    EXPECT_EQ(used.result().T_world_base.translation, fresh.result().T_world_base.translation);
+    EXPECT_EQ(used.result().covariance, fresh.result().covariance);
+    EXPECT_EQ(used.middle(), fresh.middle());
   }
-  EXPECT_EQ(used.result().steps, fresh.result().steps);
-  EXPECT_EQ(used.result().pairs, fresh.result().pairs);
-  EXPECT_EQ(used.result().reason, Reason::none);
-  EXPECT_EQ(used.result().T_world_base.translation, fresh.result().T_world_base.translation);
-  EXPECT_EQ(used.result().covariance, fresh.result().covariance);
-  EXPECT_EQ(used.middle(), fresh.middle());
 }
 
 }  // namespace

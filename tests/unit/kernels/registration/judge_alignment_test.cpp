@@ -132,6 +132,13 @@ TEST(JudgeAlignment, HasTheMiddleDistanceForItsMedian) {
   }
 }
 
+// What lies beyond the last of its steps counts with that.
+TEST(JudgeAlignment, HasAMedianOfNoMoreThanTheReachOfItsSearches) {
+  Square scene;
+  scene.next(k_on_model, 1.2f);
+  EXPECT_NEAR(scene.judged().median_m, k_distance_steps * k_distance_step_m, 1e-4);
+}
+
 TEST(JudgeAlignment, TakesTheStepsOfItsPixelsInSlicesOfAnySize) {
   Square scene;
   scene.depth.assign(k_pixels, 0);  // the grid is empty: no search takes steps
@@ -141,6 +148,8 @@ TEST(JudgeAlignment, TakesTheStepsOfItsPixelsInSlicesOfAnySize) {
   const int expected = k_pixels * (k_scene_pixel_steps + k_outline_pixel_steps) +
                        k_slots * (k_grid_clear_steps + k_grid_sum_steps) +
                        k_on_model * k_judged_steps;
+  const SceneView twice[] = {one[0], one[0]};  // a second view that nothing is taken from later
+  EXPECT_EQ(judge_alignment(twice, {}, scene.settings, scene.scratch).rendered, 2 * k_on_model);
   JudgeRun run;
   for (const int budget : {1, 100, SliceSize::k_steps_max}) {
     for (const float depth : {0.0f, -1.0f}) {  // not measured: only judged

@@ -177,6 +177,7 @@ TEST(MatchPoints, ProjectivePairsAreOfThePixelInWhichAPointLies) {
   EXPECT_EQ(pixel_of({0, std::nextafter(-0.375f, -1.0f), z}), -1);
   EXPECT_EQ(pixel_of({0, std::nextafter(0.375f, 0.0f), z}), 23 * k_width + 16);
   EXPECT_EQ(pixel_of({0, 0.375f, z}), -1);
+  EXPECT_EQ(pixel_of({-0.5f, -0.375f, z}), 0);
   EXPECT_EQ(pixel_of({0, 0, 0.04f}), -1) << "nearer than anything is rendered";
 }
 

@@ -229,6 +229,37 @@ TEST(SplatCloud, IsThatOfPlainLoopsOverDiscsAndPixels) {
   }
 }
 
+// Pixels are 1/8 apart: six of them are a disc's radius, three that of what is seen of it.
+TEST(SplatCloud, DrawsAndSeesPixelsAtExactlyItsRadii) {
+  Splat splat({Vector3f(0.0625f, 0.0625f, 1)});
+  splat.camera.fx = splat.camera.fy = 8;
+  splat.spacing_m = 0.5f;
+  splat.raster = 1;
+  (void)splat.steps();
+  std::size_t seen = 0;
+  for (int i = 0; i < k_side * k_side; ++i) {
+    const int x = i % k_side - 8, y = i / k_side - 8;
+    EXPECT_EQ(splat.number[static_cast<std::size_t>(i)] >= 0, x * x + y * y <= 36) << i;
+    if (x * x + y * y > 9) continue;
+    EXPECT_EQ(splat.seen[seen++].pixel, i);
+  }
+  EXPECT_EQ(splat.run.count(), static_cast<int>(seen));
+}
+
+// A call goes on by something, however little is left of its budget.
+TEST(SplatCloud, ClearsWithoutABudget) {
+  Splat splat({Vector3f(0, 0, 1)});
+  ASSERT_EQ(splat.start(), Reason::none);
+  for (int i = 0; i < k_side * k_side / k_splat_cleared_a_step; ++i) {
+    EXPECT_EQ(splat.z.back(), -1);
+    StepBudget spent(0);
+    EXPECT_FALSE(splat.run.step(spent));
+    EXPECT_EQ(spent.left(), -2);
+  }
+  for (const float z : splat.z) EXPECT_EQ(z, 0);
+  EXPECT_EQ(splat.drawn(), 0);
+}
+
 TEST(SplatCloud, KeepsTheFirstOfDiscsInOnePlace) {
   Splat splat(std::vector<Vector3f>(3, Vector3f(0.02f, 0.01f, 1)));
   (void)splat.steps();
