@@ -348,6 +348,18 @@ TEST(ResampleStroke, EndsWithAPointWhereItIsFarEnoughFromTheLast) {
   EXPECT_EQ(count(0.0052, 0), 2u) << "the end alone, beside the first";
 }
 
+// Its beginning alone, which a near end does not replace.
+TEST(ResampleStroke, OfAStrokeThatGoesNowhereIsItsBeginning) {
+  for (const double way : {0.0, 0.0004, 0.0009}) {
+    std::vector<UncertainPose> line;
+    for (int i = 0; i <= 20; ++i) line.push_back(at(0.01 * i, Vector3(0.05 * way * i, 0, 0)));
+    const auto points = resampled(line, {.spacing_m = 0.002});
+    ASSERT_EQ(points.size(), 1u) << way;
+    EXPECT_EQ(points[0].time, line[0].time);
+    EXPECT_EQ(points[0].pose.translation, line[0].pose.translation);
+  }
+}
+
 TEST(ResampleStroke, AsksForNoMemory) {
   StrokeResampler resampler;
   const HeapCount heap;

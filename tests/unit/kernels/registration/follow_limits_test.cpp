@@ -207,6 +207,21 @@ TEST(FollowReference, TakesStepsForEachCallAndNoneWithoutAPicture) {
   }
 }
 
+// Until its steps are used up, or the picture is through.
+TEST(FollowReference, GoesOnUntilItsStepsAreUsedUp) {
+  World world;
+  world.draw(k_truth);
+  for (const int steps : {5'000, 100'000, 1 << 29}) {
+    ASSERT_TRUE(world.follower.look(world.view(), at(1 + 1e-9 * steps)));
+    int calls = 0;
+    for (; !world.follower.idle(); ++calls) {
+      const int taken = world.follower.step(steps);
+      ASSERT_TRUE(taken >= steps || world.follower.idle()) << taken;
+    }
+    EXPECT_EQ(calls == 1, steps == 1 << 29);
+  }
+}
+
 TEST(FollowOutcome, EachHasANameOfItsOwn) {
   EXPECT_STREQ(name_of(FollowOutcome::followed), "followed");
   EXPECT_STREQ(name_of(FollowOutcome::no_reference), "no_reference");
