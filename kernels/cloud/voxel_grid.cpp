@@ -39,7 +39,6 @@ Reason VoxelGrid::prepare(const VoxelGridSettings& settings, int voxels, Arena& 
   if (!voxels_.reserve(voxels, arena) || !slots_.reserve(1 << slots_bits_, arena)) {
     return Reason::not_prepared;
   }
-  settings_ = settings;
   inverse_ = 1 / settings.voxel_m;
   capacity_ = voxels;
   return Reason::none;

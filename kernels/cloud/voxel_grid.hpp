@@ -64,7 +64,6 @@ class VoxelGrid {
   };
   [[nodiscard]] int find_or_add(std::uint64_t key) noexcept;
 
-  VoxelGridSettings settings_;
   float inverse_ = 0;
   Column<Voxel> voxels_;
   Column<std::int32_t> slots_;  // 1 + a voxel's index, or 0

@@ -37,6 +37,24 @@ TEST(MapTotals, AreThoseOfTheKernelsByThemselves) {
   EXPECT_LT(totals.kept, totals.voxels);
 }
 
+// Every other pixel of every other row, and none beyond the limits.
+TEST(MapTotals, CountThePixelsThatItsSettingsTake) {
+  MapSettings settings = small_settings();
+  settings.depth.stride = 2;
+  settings.depth.depth_max_m = 1.02f;
+  TestMap test(settings);
+  const Picture picture = wall();
+  int expected = 0;
+  for (int i = 0; i < 40 * 30; ++i) {
+    if (i % 40 % 2 != 0 || i / 40 % 2 != 0) continue;
+    expected += picture.depth_m[static_cast<std::size_t>(i)] <= 1.02f ? 1 : 0;
+  }
+  ASSERT_TRUE(test.map.look(picture.view()));
+  test.run();
+  EXPECT_EQ(test.map.totals().measured, expected);
+  EXPECT_LT(expected, 300);
+}
+
 // Far away the filters' grids end: that of outliers before that of voxels.
 TEST(MapTotals, CountWhatIsBeyondEitherGridAndWhatHasNoVoxelLeft) {
   MapSettings settings = small_settings();

@@ -315,5 +315,14 @@ TEST(MovingLeastSquares, TakesEachSettingAtItsLimitAndRefusesItBeyond) {
   EXPECT_EQ(MovingLeastSquares().prepare({}, 10, less.arena()), Reason::not_prepared);
 }
 
+TEST(MovingLeastSquares, IsPreparedNoLongerOnceASettingIsRefused) {
+  TestSmoothing test(20);
+  EXPECT_EQ(test.run(std::vector<Point>(12, Point{0, 0, 0})).size(), 12u);
+  TestMemory memory(MovingLeastSquares::bytes({}, 20));
+  EXPECT_EQ(test.smoothing.prepare({0.03f, 0, {}}, 20, memory.arena()), Reason::out_of_range);
+  EXPECT_EQ(test.smoothing.reason(), Reason::not_prepared);
+  EXPECT_TRUE(test.run(std::vector<Point>(12, Point{0, 0, 0})).empty());
+}
+
 }  // namespace
 }  // namespace glint

@@ -163,6 +163,12 @@ TEST(NeighbourGrid, CountsDownThePointsLeftInEachPass) {
   EXPECT_EQ(grid.left_in_pass(), 0);
   grid.sort(1);
   EXPECT_TRUE(grid.sorted()) << "it is sorted once";
+  EXPECT_EQ(grid.count(), 2);
+  TestMemory again(NeighbourGrid::bytes(3));
+  ASSERT_EQ(grid.prepare(3, again.arena()), Reason::none);
+  EXPECT_EQ(grid.count(), 0) << "prepared anew";
+  EXPECT_EQ(grid.cells(), 0);
+  EXPECT_TRUE(grid.sorted());
 }
 
 // Also where it is left in the midst of a pass.

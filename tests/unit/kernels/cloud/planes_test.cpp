@@ -343,5 +343,28 @@ TEST(Planes, TakeEachSettingAtItsLimitAndRefuseItBeyond) {
   EXPECT_EQ(PlaneSearch().prepare({}, 10, less.arena()), Reason::not_prepared);
 }
 
+// Left in the midst of its search.
+TEST(Planes, PreparedAnewAreNoneUntilTheSearchBegins) {
+  const TestCloud cloud = cloud_of(room(1));
+  for (const bool refused : {false, true}) {
+    TestSearch used(11'000);
+    used.run(cloud.points);
+    EXPECT_EQ(used.search.count(), 2);
+    used.search.begin(cloud.points);
+    for (int i = 0; i < 60; ++i) EXPECT_FALSE(used.search.step(500));
+    PlaneSettings settings;
+    settings.tries = refused ? 0 : 1;
+    TestMemory memory(PlaneSearch::bytes(11'000));
+    EXPECT_EQ(used.search.prepare(settings, 11'000, memory.arena()),
+              refused ? Reason::out_of_range : Reason::none);
+    EXPECT_TRUE(used.search.step(500));
+    EXPECT_EQ(used.search.steps(), 0);
+    EXPECT_EQ(used.search.reason(), refused ? Reason::not_prepared : Reason::none);
+    if (refused) continue;
+    EXPECT_EQ(used.search.count(), 0);
+    EXPECT_EQ(used.search.plane_of(0), PlaneSearch::k_no_plane);
+  }
+}
+
 }  // namespace
 }  // namespace glint

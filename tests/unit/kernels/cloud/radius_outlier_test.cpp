@@ -240,5 +240,14 @@ TEST(RadiusOutlier, TakesEachSettingAtItsLimitAndRefusesItBeyond) {
   EXPECT_EQ(filter.reason(), Reason::not_prepared) << "it is prepared no longer";
 }
 
+TEST(RadiusOutlier, IsPreparedNoLongerOnceASettingIsRefused) {
+  TestFilter test(20);
+  EXPECT_EQ(test.run(std::vector<Point>(12, Point{0, 0, 0})).size(), 12u);
+  TestMemory memory(RadiusOutlier::bytes(20));
+  EXPECT_EQ(test.filter.prepare({0.05f, -1, 100}, 20, memory.arena()), Reason::out_of_range);
+  EXPECT_EQ(test.filter.reason(), Reason::not_prepared);
+  EXPECT_TRUE(test.run(std::vector<Point>(12, Point{0, 0, 0})).empty());
+}
+
 }  // namespace
 }  // namespace glint

@@ -160,7 +160,12 @@ TEST(VoxelGrid, CountsAnewWhenPreparedAgain) {
   ASSERT_EQ(test.grid.prepare({1.0f}, 4, memory.arena()), Reason::none);
   EXPECT_EQ(test.grid.dropped(), 0);
   EXPECT_EQ(test.grid.out_of_range(), 0);
+  EXPECT_EQ(test.grid.count(), 0);
   EXPECT_EQ(test.grid.reason(), Reason::none);
+  test.add(TestCloud(std::vector<Point>{{0, 0, 0}}));
+  EXPECT_EQ(test.grid.prepare({0.0f}, 4, memory.arena()), Reason::out_of_range);
+  EXPECT_EQ(test.grid.count(), 0) << "it is prepared no longer";
+  EXPECT_EQ(test.grid.reason(), Reason::not_prepared);
 }
 
 TEST(VoxelGrid, ForgetsAllWhenCleared) {
