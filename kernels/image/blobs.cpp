@@ -84,7 +84,6 @@ BlobWork find_blobs(const Frame& frame, std::span<const Runs* const> bands,
                     const BlobSettings& settings, const BlobSearch& search, BlobScratch& scratch,
                     Blobs& out, const Limits& limits) noexcept {
   out.count = 0;
-  out.dropped = 0;
   out.left_out = 0;
   out.reason = Reason::none;
   for (const Runs* band : bands) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <utility>
 #include <vector>
 
 #include "tests/unit/kernels/image/picture_of.hpp"
@@ -111,6 +113,111 @@ TEST(MarkerMisfit, NeverExceedsItsMaximumAndIgnoresUnknownSizes) {
   scene.settings.sizes = marker_sizes({});
   EXPECT_FALSE(scene.settings.sizes.known) << "no focal length";
   EXPECT_EQ(scene.misfit(), 2) << "shape and contrast";
+}
+
+// Sizes that are exact: at this depth 16 to 64 pixels, at all others 1 to 4096.
+MarkerSizes sizes_at(int bin) {
+  MarkerSizes sizes;
+  sizes.known = true;
+  sizes.depth_shift = 4;
+  sizes.invalid_from = 3000;
+  sizes.without_depth = {1, 4096};
+  sizes.by_depth.fill({1, 4096});
+  sizes.by_depth[static_cast<std::size_t>(bin)] = {16, 64};
+  return sizes;
+}
+
+TEST(MarkerMisfit, IsAStepForEachFactorOfTwoBeyondTheSizesUpToThree) {
+  Scene scene;
+  scene.settings.sizes = sizes_at(500 >> 4);
+  const std::pair<unsigned, int> expected[] = {{16, 0},  {15, 1},  {8, 1},   {7, 2},   {4, 2},
+                                               {3, 3},   {1, 3},   {64, 0},  {65, 1},  {128, 1},
+                                               {129, 2}, {256, 2}, {257, 3}, {4000, 3}};
+  for (const auto& [area, steps] : expected) {
+    scene.of(area, 1, 1);  // no shape to judge
+    EXPECT_EQ(scene.misfit(), steps) << area;
+  }
+}
+
+// Of the five pixels that may have a depth the first that has one counts: the middle, then left,
+// right, top and bottom.
+TEST(MarkerMisfit, TakesTheFirstDepthOfMiddleLeftRightTopAndBottom) {
+  const std::array<std::pair<int, int>, 5> places = {
+      {{22, 23}, {20, 23}, {25, 23}, {22, 20}, {22, 26}}};
+  Scene scene;
+  scene.settings.sizes = sizes_at(500 >> 4);
+  scene.of(8, 6, 7);  // too small at that depth, by a step, and too little of its box
+  const auto at = [](const std::pair<int, int>& place) {
+    return static_cast<std::size_t>(64 * place.second + place.first);
+  };
+  for (const std::uint16_t none : {0, 3000, 0xFFFF}) {
+    scene.depth.assign(scene.depth.size(), none);
+    EXPECT_EQ(scene.misfit(), 1) << "no depth at all";
+    for (std::size_t first = 0; first < places.size(); ++first) {
+      scene.depth.assign(scene.depth.size(), none);
+      scene.depth[at(places[first])] = 500;
+      EXPECT_EQ(scene.misfit(), 2) << first;
+      // What comes later, at another depth, does not count; what comes before does, however small.
+      for (std::size_t later = first + 1; later < places.size(); ++later)
+        scene.depth[at(places[later])] = 1;
+      EXPECT_EQ(scene.misfit(), 2) << first;
+      for (const std::uint16_t other : {1, 2999}) {
+        if (first == 0) continue;
+        scene.depth[at(places[first - 1])] = other;
+        EXPECT_EQ(scene.misfit(), 1) << first << " " << other;
+      }
+    }
+  }
+}
+
+TEST(MarkerMisfit, ComparesWithTheLastSizesBeyondTheirDepths) {
+  Scene scene;
+  scene.settings.sizes = sizes_at(k_depth_bins - 1);
+  scene.of(8, 1, 1);
+  for (const auto& [raw, steps] :
+       {std::pair{2031, 0}, {2032, 1}, {2047, 1}, {2048, 1}, {2999, 1}}) {
+    scene.depth.assign(scene.depth.size(), static_cast<std::uint16_t>(raw));
+    EXPECT_EQ(scene.misfit(), steps) << raw;
+  }
+}
+
+TEST(MarkerMisfit, IsThatWithoutDepthWhereTheFrameHasNone) {
+  Scene scene;
+  scene.settings.sizes = sizes_at(500 >> 4);
+  scene.settings.sizes.without_depth = {100, 200};
+  scene.of(24, 6, 6);
+  Frame frame;
+  frame.reflectivity_16 = {scene.level.data(), 64, 64};
+  EXPECT_EQ(marker_misfit(frame, scene.component, scene.settings), 3);
+  EXPECT_EQ(scene.misfit(), 0);
+}
+
+// A box of which half is filled, and not quite.
+TEST(MarkerMisfit, CountsABoxThatIsLessThanHalfFull) {
+  Scene scene;
+  scene.settings.sizes.known = false;
+  scene.of(18, 6, 6);
+  EXPECT_EQ(scene.misfit(), 0);
+  scene.of(17, 6, 6);
+  EXPECT_EQ(scene.misfit(), 1);
+}
+
+// The level of the middle pixel alone, of both kinds of frame.
+TEST(MarkerMisfit, ReadsTheContrastInTheMiddle) {
+  for (const bool dim : {false, true}) {
+    Scene scene;
+    scene.settings.sizes.known = false;
+    scene.settings.threshold = 100;
+    scene.of(40, 6, 7);  // its middle is column 22, row 23
+    const std::uint16_t middle = dim ? 199 : 200, around = dim ? 200 : 199;
+    scene.level.assign(scene.level.size(), around);
+    scene.level[static_cast<std::size_t>(64 * 23 + 22)] = middle;
+    EXPECT_EQ(scene.misfit(), dim ? 1 : 0);
+    const std::vector<std::uint8_t> narrow(scene.level.begin(), scene.level.end());
+    Frame frame;
+    frame.reflectivity_8 = {narrow.data(), 64, 64};
+    EXPECT_EQ(marker_misfit(frame, scene.component, scene.settings), dim ? 1 : 0);
+  }
 }
 
 TEST(MarkerSizes, HoldTheDiscAtEachDepth) {

@@ -205,5 +205,35 @@ TEST(NearestKept, LookAtNoMorePredictionsThanToolsHaveMarkers) {
   EXPECT_EQ(again.keep(predicted, 4), (std::vector<int>{0, 1, 2, 3}));
 }
 
+TEST(NearestKept, ShareOfThePredictionsIsHalfOrOneEachOrAll) {
+  const auto share = [](bool everywhere, int predictions, int kept) {
+    return kept_near_predictions({{}, everywhere, 0}, predictions, kept);
+  };
+  EXPECT_EQ(share(true, 0, 64), 0);
+  EXPECT_EQ(share(false, 0, 64), 0) << "nothing is predicted";
+  EXPECT_EQ(share(false, 1, 64), 64);
+  EXPECT_EQ(share(true, 1, 64), 32);
+  EXPECT_EQ(share(true, 31, 64), 32);
+  EXPECT_EQ(share(true, 33, 64), 33);
+  EXPECT_EQ(share(true, 70, 64), 64);
+  EXPECT_EQ(share(true, 1, 9), 4);
+}
+
+TEST(NearestKept, CountFourDistancesToEachPredictionAndTheFocus) {
+  for (const int count : {9, 12, 13}) {
+    const int fours = (count + 3) / 4;
+    const std::vector<Vector2> predicted(5, Vector2(20, 20));
+    for (const bool everywhere : {false, true}) {
+      Candidates candidates;
+      for (int i = 0; i < count; ++i) candidates.add(10 * i, 5);
+      candidates.keep({predicted, everywhere, 0}, 8);
+      const BlobSearch search{predicted, everywhere, 0};
+      EXPECT_EQ(keep_nearest(search, *candidates.scratch, count, 8), fours * (everywhere ? 6 : 5));
+      EXPECT_EQ(keep_nearest(search, *candidates.scratch, count, 5), fours * 5)
+          << "the predictions have the whole budget";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace glint::nearest_kept_test
