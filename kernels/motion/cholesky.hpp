@@ -1,7 +1,7 @@
 // Cholesky factorisation of a small symmetric positive definite matrix: solve, inverse, quadratic
 // form.
 //
-// What:     A = L L'; L^-1 b; A^-1; b' A^-1 b.
+// What:     A = L L'; L^-1 b; A^-1; b' A^-1 b. Of A the lower half is read.
 // Cost:     N^3 / 6 multiplications and N roots; 6x6: 0.1 us.
 // Worst:    a matrix that is not positive definite: `positive` is false, the factor is invalid.
 // Accuracy: backward stable, N units in the last place of the largest element.

@@ -33,6 +33,16 @@ TEST(Cholesky, OfAKnownMatrixIsItsFactor) {
   EXPECT_EQ(Cholesky<3>(matrix).lower, lower);
 }
 
+TEST(Cholesky, ReadsTheLowerHalfAlone) {
+  test::Random random(2);
+  const Matrix6 matrix = test::random_covariance<6>(random, 1);
+  Matrix6 spoiled = matrix;
+  spoiled.triangularView<Eigen::StrictlyUpper>().setConstant(
+      std::numeric_limits<double>::quiet_NaN());
+  EXPECT_TRUE(Cholesky<6>(spoiled).positive);
+  EXPECT_EQ(Cholesky<6>(spoiled).lower, Cholesky<6>(matrix).lower);
+}
+
 TEST(Cholesky, RefusesWhatIsNotPositive) {
   EXPECT_FALSE(Cholesky<3>(Matrix3::Zero()).positive);
   EXPECT_FALSE(Cholesky<3>(-Matrix3::Identity()).positive);

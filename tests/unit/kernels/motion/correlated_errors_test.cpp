@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace glint {
 namespace {
@@ -42,6 +43,39 @@ TEST(CorrelatedErrors, OfAMeanAreTheIntegralOfTheirAutocovariance) {
         2 * (autocovariance_sum(0, 0, half, 0.5) - autocovariance_sum(0, half, half, 0.5));
     EXPECT_NEAR(of_halves(errors(1, 0), k_times, window)(4, 4), halves, 4e-3) << window;
   }
+}
+
+// The integrals of e^(-|t|/T) solved: of a mean over x = t/T it is 2 (x - 1 + e^-x) / x^2, of two
+// neighbouring means' product ((1 - e^-x) / x)^2.
+TEST(CorrelatedErrors, AreTheirClosedFormsEachByItsOwnTime) {
+  const auto of_one = [](double x) { return 2 * (x - 1 + std::exp(-x)) / (x * x); };
+  const auto of_two = [](double x) { return std::pow((1 - std::exp(-x)) / x, 2); };
+  constexpr CorrelationTimes k_times{0.7, 9};
+  for (const double window : {0.1, 0.5, 2.0, 30.0, 200.0}) {
+    const double fast = window / 0.7, slow = window / 9;
+    EXPECT_NEAR(of_mean(errors(2, 3), k_times, window)(1, 1), 2 * of_one(fast) + 3 * of_one(slow),
+                2e-10)
+        << window;
+    const double halves = 2 * 2 * (of_one(fast / 2) - of_two(fast / 2)) +
+                          3 * 2 * (of_one(slow / 2) - of_two(slow / 2));
+    EXPECT_NEAR(of_halves(errors(2, 3), k_times, window)(5, 5), halves, 2e-10) << window;
+  }
+}
+
+// Beyond 600 correlation times a mean is as good as there; a time that is none averages nothing.
+TEST(CorrelatedErrors, EndAtALongWindowAndBeginAtNone) {
+  const double last = of_mean(errors(1, 0), {1, 1}, 600)(0, 0);
+  EXPECT_NEAR(last, 2.0 / 600 * (1 - 1.0 / 600), 1e-12);
+  EXPECT_EQ(of_mean(errors(1, 0), {1, 1}, 601)(0, 0), last);
+  EXPECT_EQ(of_mean(errors(1, 0), {1, 1}, std::numeric_limits<double>::infinity())(0, 0), last);
+  EXPECT_GT(of_mean(errors(1, 0), {1, 1}, 599)(0, 0), last);
+  for (const double none : {0.0, -1.0}) {
+    EXPECT_EQ(of_mean(errors(1, 0), {1, 1}, none)(0, 0), 1);
+    EXPECT_EQ(of_mean(errors(1, 0), {none, 1}, 1)(0, 0), 1);
+    EXPECT_EQ(of_halves(errors(1, 0), {1, 1}, none)(0, 0), 0);
+    EXPECT_EQ(of_halves(errors(0, 1), {1, none}, 1)(0, 0), 0);
+  }
+  EXPECT_EQ(CorrelatedErrors(errors(2, 3)).sum()(0, 0), 5);
 }
 
 TEST(CorrelatedErrors, AreWholeInNoTimeAndGoneAfterALongOne) {

@@ -135,6 +135,23 @@ TEST(StateVector, ComputesWhatSundialsOwnDoes) {
   EXPECT_EQ(N_VMin(ours[0]), N_VMin(theirs[0]));
   EXPECT_DOUBLE_EQ(N_VWrmsNorm(ours[0], ours[1]), N_VWrmsNorm(theirs[0], theirs[1]));
   EXPECT_EQ(N_VGetLength(ours[0]), k_count);
+  EXPECT_EQ(N_VGetVectorID(ours[0]), SUNDIALS_NVEC_CUSTOM);
+  sunindextype reals = 0, integers = 0;
+  N_VSpace(ours[0], &reals, &integers);
+  EXPECT_EQ(reals, k_count);
+  EXPECT_EQ(integers, 1);
+  N_Vector clone = N_VClone(ours[1]);
+  EXPECT_EQ(N_VGetLength(clone), k_count);
+  N_VConst(9, clone);
+  EXPECT_EQ(Vector::of(ours[1]), values[1]) << "a place of its own";
+  N_VDestroy(clone);
+  // Of one vector alone, and into the first of its own.
+  same("one of a combination",
+       [&](N_Vector* x, N_Vector z) { EXPECT_EQ(N_VLinearCombination(1, factors, x, z), 0); });
+  EXPECT_EQ(N_VLinearCombination(k_vectors, factors, ours, ours[0]), 0);
+  EXPECT_EQ(N_VLinearCombination(k_vectors, factors, theirs, theirs[0]), 0);
+  for (std::size_t i = 0; i < k_count; ++i)
+    EXPECT_DOUBLE_EQ(Vector::of(ours[0])[i], NV_DATA_S(theirs[0])[i]) << i;
   for (std::size_t v = 0; v <= k_vectors; ++v) {
     N_VDestroy(ours[v]);
     N_VDestroy(theirs[v]);

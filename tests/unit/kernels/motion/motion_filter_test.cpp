@@ -72,7 +72,8 @@ TEST(MotionFilter, CorrectsByAPoseAsTheTextbookDoes) {
   for (int trial = 0; trial < 100; ++trial) {
     const MotionState before = test::random_state(random);
     UncertainPose measured;
-    measured.pose = {before.pose.rotation, before.pose.translation + random.vector(0.01)};
+    measured.pose = {from_rotation_vector(random.vector(0.02)) * before.pose.rotation,
+                     before.pose.translation + random.vector(0.01)};
     measured.covariance = test::random_covariance<6>(random, 0.005);
     MotionState after = before;
     const Correction correction = correct_by_pose(after, measured);
@@ -91,6 +92,11 @@ TEST(MotionFilter, CorrectsByAPoseAsTheTextbookDoes) {
         product(MotionCovariance::Identity() - product(gain, h), before.covariance);
     EXPECT_LT((after.covariance - rest).norm(), 1e-10 * before.covariance.norm());
     EXPECT_NEAR(correction.chi_square, innovation.dot(product(inverse, innovation)), 1e-8);
+    EXPECT_NEAR(correction.linear_whitened.squaredNorm(), correction.linear_chi_square, 1e-12);
+    EXPECT_NEAR(
+        correction.angular_chi_square,
+        innovation.tail<3>().dot(s.bottomRightCorner<3, 3>().inverse() * innovation.tail<3>()),
+        1e-8);
     EXPECT_NEAR(correction.linear_chi_square,
                 innovation.head<3>().dot(s.topLeftCorner<3, 3>().inverse() * innovation.head<3>()),
                 1e-8);
@@ -147,8 +153,13 @@ TEST(MotionFilter, CorrectsByAPointAsItsFirstAndSecondDerivativesSay) {
     const Matrix3 s = product(h, seen) + measured.covariance_m2 + beyond;
     const Eigen::Matrix<double, 18, 3> gain = product(seen, s.inverse());
     MotionState after = before;
-    ASSERT_EQ(correct_by_point(after, measured).reason, Reason::none);
+    const Correction correction = correct_by_point(after, measured);
+    ASSERT_EQ(correction.reason, Reason::none);
     const Vector3 innovation = measured.measured_m - before.pose * measured.model_m - mean;
+    EXPECT_NEAR(correction.chi_square, innovation.dot(s.inverse() * innovation), 1e-6);
+    EXPECT_EQ(correction.linear_chi_square, correction.chi_square);
+    EXPECT_EQ(correction.angular_chi_square, 0);
+    EXPECT_EQ(correction.linear_whitened, Vector3(0, 0, 0));
     EXPECT_LT((test::error_between(after, before) - product(gain, innovation)).norm(), 1e-8);
     // The errors' axes have turned with the tool.
     const Matrix3 by = (after.pose.rotation * before.pose.rotation.conjugate()).toRotationMatrix();
@@ -159,6 +170,97 @@ TEST(MotionFilter, CorrectsByAPointAsItsFirstAndSecondDerivativesSay) {
     EXPECT_LT((after.covariance - product(product(axes, left), axes.transpose())).norm(),
               1e-7 * before.covariance.norm());
   }
+}
+
+// What a first pose says, and of all that it does not what a hand may be doing.
+TEST(MotionFilter, StartsWithThePosesCovarianceAndWhatAHandMayDo) {
+  test::Random random(6);
+  UncertainPose first{
+      Time{77}, {random.rotation(), random.vector(1)}, test::random_covariance<6>(random, 0.01)};
+  const MotionSettings settings{3, 2, 500, 40, 0.7, 4};
+  const MotionState state = start_motion(first, settings);
+  EXPECT_EQ(state.time, first.time);
+  EXPECT_EQ(state.pose.translation, first.pose.translation);
+  EXPECT_EQ(state.pose.rotation.coeffs(), first.pose.rotation.coeffs());
+  for (const Vector3& still : {state.velocity_m_s, state.acceleration_m_s2,
+                               state.angular_velocity_rad_s, state.angular_acceleration_rad_s2})
+    EXPECT_EQ(still, Vector3(0, 0, 0));
+  EXPECT_EQ(pose_of(state).covariance, first.covariance);
+  EXPECT_EQ(pose_of(state).time, first.time);
+  MotionCovariance rest = state.covariance;
+  rest.block<3, 3>(k_position, k_position).setZero();
+  rest.block<3, 3>(k_position, k_rotation).setZero();
+  rest.block<3, 3>(k_rotation, k_position).setZero();
+  rest.block<3, 3>(k_rotation, k_rotation).setZero();
+  Vector18 diagonal = Vector18::Zero();
+  diagonal.segment<3>(k_velocity).setConstant(0.7 * 0.7);
+  diagonal.segment<3>(k_acceleration).setConstant(3.0 / (2 * 2));
+  diagonal.segment<3>(k_angular_velocity).setConstant(4.0 * 4);
+  diagonal.segment<3>(k_angular_acceleration).setConstant(500.0 / (2 * 40));
+  EXPECT_LT((rest - MotionCovariance(diagonal.asDiagonal())).norm(), 1e-12);
+}
+
+// The acceleration's variance is the one at which damping takes as much as the noise adds.
+TEST(MotionFilter, KeepsTheVarianceOfTheAccelerationsThatItStartsWith) {
+  MotionState state = start_motion({Time{}, {}, 1e-6 * Matrix6::Identity()}, {});
+  const double linear = state.covariance(k_acceleration, k_acceleration);
+  const double angular = state.covariance(k_angular_acceleration, k_angular_acceleration);
+  propagate(state, Time{10'000'000}, {}, {});
+  EXPECT_NEAR(state.covariance(k_acceleration, k_acceleration) / linear, 1, 1e-6);
+  EXPECT_NEAR(state.covariance(k_angular_acceleration, k_angular_acceleration) / angular, 1, 1e-4);
+}
+
+// All that is given in a frame turns with it; what the tool itself does stays.
+TEST(MotionFilter, MovesAStateAsItsFrameMoves) {
+  test::Random random(7);
+  for (int trial = 0; trial < 20; ++trial) {
+    const MotionState state = test::random_state(random);
+    const Pose by{random.rotation(), random.vector(1)};
+    const MotionState there = moved_state(state, by);
+    EXPECT_EQ(there.time, state.time);
+    EXPECT_LT(pose_difference(there.pose, by * state.pose).norm(), 1e-13);
+    EXPECT_LT((there.velocity_m_s - by.rotation * state.velocity_m_s).norm(), 1e-14);
+    EXPECT_LT((there.acceleration_m_s2 - by.rotation * state.acceleration_m_s2).norm(), 1e-13);
+    EXPECT_LT((there.angular_velocity_rad_s - by.rotation * state.angular_velocity_rad_s).norm(),
+              1e-13);
+    EXPECT_LT((there.angular_acceleration_rad_s2 - by.rotation * state.angular_acceleration_rad_s2)
+                  .norm(),
+              1e-13);
+    // An error moved along is as likely as it was.
+    Vector18 error, moved;
+    for (int i = 0; i < k_motion_size; i += 3) {
+      error.segment<3>(i) = random.vector(1);
+      moved.segment<3>(i) = by.rotation * error.segment<3>(i);
+    }
+    const double before = error.dot(product(state.covariance, error));
+    EXPECT_NEAR(moved.dot(product(there.covariance, moved)) / before, 1, 1e-10);
+    const MotionState back = moved_state(there, by.inverse());
+    EXPECT_LT((back.covariance - state.covariance).norm(), 1e-12 * state.covariance.norm());
+  }
+}
+
+TEST(MotionFilter, HasThePosesShareOfItsCovariance) {
+  test::Random random(8);
+  MotionState state = test::random_state(random);
+  state.time = Time{123};
+  const UncertainPose pose = pose_of(state);
+  EXPECT_EQ(pose.time, Time{123});
+  EXPECT_EQ(pose.pose.translation, state.pose.translation);
+  EXPECT_EQ(pose.pose.rotation.coeffs(), state.pose.rotation.coeffs());
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j)
+      EXPECT_EQ(pose.covariance(i, j), state.covariance(i < 3 ? i : 6 + i, j < 3 ? j : 6 + j));
+}
+
+TEST(MotionFilter, LeavesTheStateWhereAPointsCovarianceIsNone) {
+  test::Random random(9);
+  const MotionState before = test::random_state(random);
+  MotionState state = before;
+  const Correction correction =
+      correct_by_point(state, {random.vector(0.05), random.vector(0.5), -10 * Matrix3::Identity()});
+  EXPECT_EQ(correction.reason, Reason::degenerate);
+  EXPECT_EQ(state.covariance, before.covariance);
+  EXPECT_EQ(state.pose.rotation.coeffs(), before.pose.rotation.coeffs());
 }
 
 TEST(MotionFilter, FollowsConstantVelocityAndTurnWithoutLag) {

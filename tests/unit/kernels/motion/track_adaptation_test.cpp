@@ -1,0 +1,216 @@
+// How a track's noise follows its innovations, step by step by the formulas, and what a track
+// takes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <span>
+
+#include "kernels/motion/motion_track.hpp"
+#include "kernels/motion/stroke_noise.hpp"
+#include "tests/unit/kernels/motion/motion_scene.hpp"
+
+namespace glint::track_adaptation_test {
+namespace {
+
+using test::Random;
+
+constexpr double k_frame_s = 0.022222222;
+
+struct Track {
+  MotionTrack at;
+  std::unique_ptr<RestSums> sums = std::make_unique<RestSums>();
+  ToolMotionSettings settings;
+
+  // Without rests: the filter alone answers.
+  static Track restless() {
+    Track track;
+    track.settings.rest.frames_min = 1000;
+    return track;
+  }
+  Reason update(const UncertainPose& measured) {
+    return at.update(measured, {}, settings, *sums).reason;
+  }
+  Reason update(Time time, std::span<const MeasuredPoint> points) {
+    return at.update(time, points, settings, *sums);
+  }
+  [[nodiscard]] MotionState estimate() const { return at.estimate(*sums); }
+};
+
+UncertainPose seen(const Pose& truth, Time time, Random& random) {
+  return test::measured_pose(truth, time, 0.0005, 0.005, random);
+}
+
+double clamped(double scale, const AdaptationSettings& settings) {
+  return std::min(std::max(scale, settings.floor), settings.ceiling);
+}
+
+// A tool that swings, rests and is seen at uneven times: each factor moves by its own chi-square,
+// by as many frames as have passed, four at most.
+TEST(TrackAdaptation, MovesEachFactorByItsChiSquareAndTheTimePassed) {
+  Random random(1);
+  Track track = Track::restless();
+  track.settings.linear = {9, 0.5, 3, 2};
+  track.settings.angular = {7, 0.3, 5, 4};
+  track.settings.briskest_frames = 50;
+  track.settings.partial_noise = 1.5;
+  double linear = 1, angular = 1, briskest_linear = 1, briskest_angular = 1;
+  Time time;
+  Pose truth{random.rotation(), random.vector(0.3)};
+  int at_floor = 0, at_ceiling = 0;
+  for (int frame = 0; frame < 400; ++frame) {
+    const Duration step = milliseconds(frame % 10 == 0 ? 150 : 15 + frame % 20);
+    time = time + step;
+    if (frame / 40 % 2 == 1) {
+      truth.translation += random.vector(0.02);
+      truth.rotation = (from_rotation_vector(random.vector(0.1)) * truth.rotation).normalized();
+    }
+    ASSERT_EQ(track.update(seen(truth, time, random)), Reason::none);
+    if (frame == 0) {
+      EXPECT_EQ(track.at.noise_scale().linear, 1);
+      EXPECT_EQ(track.at.partial_noise_scale(track.settings).angular, 1.5);
+      continue;
+    }
+    const Correction& correction = track.at.last_correction();
+    const double frames = std::min(step.seconds() / k_frame_s, 4.0);
+    const double by_linear = std::min(correction.linear_chi_square / 3, 2.0);
+    const double by_angular = std::min(correction.angular_chi_square / 3, 4.0);
+    linear = clamped(linear * (1 + (by_linear - 1) * frames / 9), track.settings.linear);
+    angular = clamped(angular * (1 + (by_angular - 1) * frames / 7), track.settings.angular);
+    briskest_linear = std::max(linear, briskest_linear * (1 - 1.0 / 50));
+    briskest_angular = std::max(angular, briskest_angular * (1 - 1.0 / 50));
+    EXPECT_NEAR(track.at.noise_scale().linear, linear, 1e-9) << frame;
+    EXPECT_NEAR(track.at.noise_scale().angular, angular, 1e-9) << frame;
+    const NoiseScale partial = track.at.partial_noise_scale(track.settings);
+    EXPECT_NEAR(partial.linear, 1.5 * briskest_linear, 1e-9) << frame;
+    EXPECT_NEAR(partial.angular, 1.5 * briskest_angular, 1e-9) << frame;
+    at_floor += linear == 0.5 ? 1 : 0;
+    at_ceiling += angular == 5 ? 1 : 0;
+    ASSERT_FALSE(HasFailure()) << frame;
+  }
+  EXPECT_GT(at_floor, 5);
+  EXPECT_GT(at_ceiling, 5);
+}
+
+// The filter's own mean and covariance, propagated with the factors before, are what it corrects.
+TEST(TrackAdaptation, PropagatesWithItsFactorsAndCorrects) {
+  Random random(2);
+  Track track = Track::restless();
+  Pose truth{random.rotation(), random.vector(0.3)};
+  for (int frame = 0; frame < 60; ++frame) {
+    const Time time = test::frame_time(frame);
+    truth.translation += random.vector(0.01);
+    MotionState expected = track.estimate();
+    const UncertainPose measured = seen(truth, time, random);
+    const NoiseScale before = track.at.noise_scale();
+    ASSERT_EQ(track.update(measured), Reason::none);
+    if (frame == 0) continue;
+    propagate(expected, time, track.settings.motion, before);
+    (void)correct_by_pose(expected, measured);
+    EXPECT_EQ(track.estimate().covariance, expected.covariance);
+    EXPECT_EQ(track.estimate().velocity_m_s, expected.velocity_m_s);
+    EXPECT_EQ(track.at.place(), expected.pose.translation);
+  }
+}
+
+// Loosened by a covariance of its own each frame: what of it counts follows the correlation of
+// successive innovations, and the linear factor moves by the rest of the innovation alone.
+TEST(TrackAdaptation, CountsALooseningByTheCorrelationOfInnovations) {
+  Random random(3);
+  Track track = Track::restless();
+  track.settings.loosening = {6, 0.05, 4, 0.6};
+  double factor = 1, linear = 1;
+  Vector3 last = Vector3::Zero();
+  Pose truth{random.rotation(), random.vector(0.3)};
+  int lowered = 0, raised = 0;
+  double least = 1, most = 1;
+  for (int frame = 0; frame < 300; ++frame) {
+    const Time time = test::frame_time(frame);
+    truth.translation += frame / 50 % 2 == 0 ? Vector3(0.004, 0, 0) : random.vector(0.01);
+    Matrix6 step = test::random_covariance<6>(random, 0.002);
+    if (frame > 0) {
+      const MotionCovariance before = track.estimate().covariance;
+      track.at.loosen(step);
+      const MotionCovariance added = track.estimate().covariance - before;
+      for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j)
+          EXPECT_NEAR(added(i < 3 ? i : 6 + i, j < 3 ? j : 6 + j), factor * step(i, j), 1e-12);
+      EXPECT_EQ(added(k_velocity, k_velocity), 0);
+      EXPECT_EQ(added(k_position, k_velocity), 0);
+    }
+    MotionState ahead = track.estimate();
+    const UncertainPose measured = seen(truth, time, random);
+    propagate(ahead, time, track.settings.motion, track.at.noise_scale());
+    ASSERT_EQ(track.update(measured), Reason::none);
+    if (frame == 0) continue;
+    const double frames = (test::frame_time(1) - Time{}).seconds() / k_frame_s;
+    const double expected = ahead.covariance.topLeftCorner<3, 3>().trace() +
+                            measured.covariance.topLeftCorner<3, 3>().trace();
+    const double share = factor * step.topLeftCorner<3, 3>().trace() / expected;
+    const Correction& correction = track.at.last_correction();
+    const double along = share * correction.linear_whitened.dot(last) / 3;
+    const double turned = std::min(std::max(along, -0.6), 0.6) * frames / 6;
+    const double before = factor;
+    factor = std::min(std::max(factor * (1 - turned), 0.05), 4.0);
+    last = correction.linear_whitened;
+    const double ratio =
+        std::min(correction.linear_chi_square / 3, track.settings.linear.innovation_max);
+    linear =
+        clamped(linear * (1 + (ratio - 1) * (1 - share) * frames / track.settings.linear.frames),
+                track.settings.linear);
+    EXPECT_NEAR(track.at.noise_scale().linear, linear, 1e-9) << frame;
+    lowered += factor < before ? 1 : 0;
+    raised += factor > before ? 1 : 0;
+    least = std::min(least, factor);
+    most = std::max(most, factor);
+    ASSERT_FALSE(HasFailure()) << frame;
+  }
+  EXPECT_GT(lowered, 50);
+  EXPECT_GT(raised, 50);
+  EXPECT_LT(least, 0.9);
+  EXPECT_GT(most, 1.1);
+}
+
+// One and two markers, after one pose or many: the motion goes on with the noise of the briskest,
+// and with what strokes add since the newest pose.
+TEST(TrackAdaptation, FollowsMarkersWithStrokesAndTheBriskestNoise) {
+  for (const int poses : {1, 40}) {
+    Random random(4);
+    Track track = Track::restless();
+    Pose truth{random.rotation(), random.vector(0.3)};
+    const auto move_on = [&] { truth.translation += Vector3(0.004, 0.001, 0); };
+    for (int frame = 100; frame < 100 + poses; ++frame, move_on())
+      ASSERT_EQ(track.update(seen(truth, test::frame_time(frame), random)), Reason::none);
+    const int last = 99 + poses;
+    for (int frame = last + 1; frame < last + 7; ++frame, move_on()) {
+      const Time time = test::frame_time(frame);
+      std::array<MeasuredPoint, 3> points;
+      for (MeasuredPoint& point : points) {
+        point.model_m = random.vector(0.05);
+        point.measured_m = truth * point.model_m + random.vector(0.0003);
+        point.covariance_m2 = 9e-8 * Matrix3::Identity();
+      }
+      MotionState expected = track.estimate();
+      const double seconds = (time - expected.time).seconds();
+      const double hidden_s = (time - test::frame_time(last)).seconds();
+      propagate(expected, time, track.settings.motion,
+                track.at.partial_noise_scale(track.settings));
+      add_strokes(expected.covariance, k_position, expected.velocity_m_s,
+                  linear_stroke_1_s(expected.velocity_m_s), hidden_s, seconds);
+      add_strokes(expected.covariance, k_rotation, expected.angular_velocity_rad_s,
+                  k_angular_stroke_1_s, hidden_s, seconds);
+      const std::size_t count = frame % 2 == 0 ? 1 : 3;  // a third one does not count
+      for (std::size_t i = 0; i < std::min<std::size_t>(count, 2); ++i)
+        (void)correct_by_point(expected, points[i]);
+      ASSERT_EQ(track.update(time, std::span(points).first(count)), Reason::none);
+      EXPECT_EQ(track.estimate().time, time);
+      EXPECT_EQ(track.estimate().covariance, expected.covariance) << frame;
+      EXPECT_EQ(track.estimate().pose.translation, expected.pose.translation) << frame;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace glint::track_adaptation_test
