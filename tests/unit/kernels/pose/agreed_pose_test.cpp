@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <span>
 
 #include "kernels/motion/interpolate.hpp"
 #include "kernels/pose/lever_arm.hpp"
@@ -186,6 +187,54 @@ TEST(AgreedPose, TurnsAFlatToolFaceOnAboutItsMean) {
   const Vector3 normal = facing.rotation * Vector3::UnitX();
   EXPECT_NEAR(std::abs(normal.dot((facing * mean).normalized())), 1, 1e-6);
   EXPECT_NEAR(facing.rotation.angularDistance(tilted.rotation), 0.4, 1e-6);
+}
+
+TEST(AgreedPose, StatesItsStepsAndTheChiSquareOfMarkersAndExpectation) {
+  Random random(7);
+  const Tool tool = test::five_marker_pen();
+  const Vector3 mean = test::mean_of_markers(tool), reference = mean + Vector3(0.01, 0, 0.02);
+  for (const int steps_max : {2, 12}) {
+    const Pose truth = test::tilted_pose(tool, 0.6, k_place, random);
+    const auto markers = test::weighted_view(tool, truth, k_usual, 1, random);
+    ExpectedPose expected{truth, known_to(0.002, 0.02), reference};
+    expected.T_camera_tool.translation += Vector3(0.004, -0.003, 0.005);
+    const AgreedPose agreed = agreed_pose(markers, expected, steps_max);
+    const PosePrior prior{expected.T_camera_tool, pose_factor(expected.covariance).value.inverse(),
+                          reference};
+    const WeightedFit fit = fit_weighted(markers, mean, expected.T_camera_tool, &prior, steps_max);
+    ASSERT_EQ(agreed.reason, Reason::none);
+    EXPECT_EQ(agreed.steps, fit.steps);
+    EXPECT_EQ(agreed.chi_square, fit.chi_square);
+    // From where both agree: the markers' own step, information and chi-square.
+    const NearPose near = near_pose(markers, fit.T_camera_tool, reference);
+    EXPECT_EQ(agreed.covariance, near.covariance);
+    EXPECT_EQ(agreed.T_camera_tool.translation, near.T_camera_tool.translation);
+    NormalEquations alone;
+    ASSERT_TRUE(add_markers(markers, fit.T_camera_tool, mean, alone));
+    EXPECT_EQ(near.chi_square, alone.chi_square);
+    const Vector3 lever = fit.T_camera_tool.rotation * (reference - mean);
+    const Matrix6 inverse = pose_factor(alone.matrix).value.inverse();
+    EXPECT_LT((near.covariance - moved_covariance(inverse, lever)).norm(), 1e-12);
+    const Vector6 step = -inverse * alone.slope;
+    const Vector3 turn = step.tail<3>();
+    const Vector3 moved = fit.T_camera_tool * reference + step.head<3>() + turn.cross(lever);
+    EXPECT_LT((near.T_camera_tool * reference - moved).norm(), 1e-9);
+    EXPECT_LT(test::angle_between(near.T_camera_tool.rotation,
+                                  from_rotation_vector(turn) * fit.T_camera_tool.rotation),
+              1e-8);
+  }
+}
+
+TEST(AgreedPose, NearAPoseBehindTheCameraIsNone) {
+  Random random(8);
+  const Tool tool = test::five_marker_pen();
+  const Pose truth = test::tilted_pose(tool, 0.6, k_place, random);
+  const auto markers = test::weighted_view(tool, truth, k_usual, 1, random);
+  const Vector3 mean = test::mean_of_markers(tool);
+  EXPECT_EQ(near_pose(markers, truth, mean).reason, Reason::none);
+  EXPECT_EQ(near_pose(markers, {truth.rotation, -truth.translation}, mean).reason,
+            Reason::degenerate);
+  EXPECT_EQ(near_pose(std::span(markers).first(1), truth, mean).reason, Reason::degenerate);
 }
 
 TEST(AgreedPose, SaysWhereThereIsNone) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <span>
 #include <vector>
 
 #include "kernels/motion/interpolate.hpp"
@@ -148,6 +149,117 @@ TEST(Assign, PrefersAsARivalTheOneThatWasForetold) {
   owners.fill(-1);
   int tests = 0;
   EXPECT_EQ(rival_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 2);
+}
+
+AssignWork work_of(const std::vector<Labelings>& per_tool) {
+  std::vector<int> chosen(per_tool.size());
+  std::vector<Reason> reasons(per_tool.size());
+  return assign_markers(per_tool, chosen, reasons);
+}
+
+// Each waiting tool is looked at once a round, a tool that was served no more.
+TEST(Assign, CountsEachLabelingThatItLooksAt) {
+  const auto own = [](std::int16_t first) {
+    const auto next = [first](int i) { return static_cast<std::int16_t>(first + i); };
+    return labelings_of({labeling_of({first, next(1), next(2)}, 0.001)});
+  };
+  EXPECT_EQ(work_of({}).tests, 0);
+  EXPECT_EQ(work_of({own(0)}).tests, 1);
+  EXPECT_EQ(work_of({own(0)}).rounds, 1);
+  EXPECT_EQ(work_of({own(0), own(10), own(20)}).tests, 3 + 2 + 1);
+  EXPECT_EQ(work_of({own(0), own(10), own(20)}).rounds, 3);
+  EXPECT_EQ(work_of({Labelings{}, own(0)}).tests, 1);
+  EXPECT_EQ(work_of({Labelings{}, own(0)}).rounds, 1);
+  EXPECT_EQ(work_of({own(0), own(0)}).tests, 2 + 1) << "the second one's is taken";
+  EXPECT_EQ(work_of({own(0), own(0)}).rounds, 1);
+}
+
+// All but the last labeling of each tool hold the marker that goes first.
+TEST(Assign, LooksAtNoMoreThanItsWorst) {
+  for (const int tools : {1, 2, 5, k_tools_max}) {
+    std::vector<Labelings> per_tool(static_cast<std::size_t>(tools));
+    for (std::size_t t = 0; t < per_tool.size(); ++t) {
+      per_tool[t].count = k_labelings_max;
+      const auto own = static_cast<std::int16_t>(10 + 3 * t);
+      for (Labeling& labeling : per_tool[t].items) labeling = labeling_of({0, 1, own}, 0.001);
+      per_tool[t].items[k_labelings_max - 1] = labeling_of(
+          {own, static_cast<std::int16_t>(own + 1), static_cast<std::int16_t>(own + 2)}, 0.001);
+    }
+    const int rivals = tools * (k_labelings_max - 1);
+    EXPECT_EQ(work_of(per_tool).tests, assign_tests_worst(tools) - rivals) << tools;
+    EXPECT_EQ(work_of(per_tool).rounds, tools);
+  }
+}
+
+TEST(Assign, TakesAsManyToolsAsTheShortestSpanHas) {
+  const auto own = labelings_of({labeling_of({0, 1, 2}, 0.001)});
+  const std::vector<Labelings> per_tool(k_tools_max + 2, own);
+  std::vector<int> chosen(k_tools_max + 2, 7);
+  std::vector<Reason> reasons(k_tools_max + 2, Reason::bad_fit);
+  assign_markers(per_tool, chosen, reasons);
+  EXPECT_EQ(chosen[0], 0);
+  EXPECT_EQ(chosen[k_tools_max - 1], -1);
+  EXPECT_EQ(reasons[k_tools_max - 1], Reason::taken_by_other);
+  EXPECT_EQ(chosen[k_tools_max], 7) << "more than there may be";
+  for (const std::size_t size : {0U, 1U, 3U}) {
+    std::fill(chosen.begin(), chosen.end(), 7);
+    assign_markers(per_tool, std::span(chosen).first(size), reasons);
+    EXPECT_EQ(std::count(chosen.begin(), chosen.end(), 7), k_tools_max + 2 - std::ptrdiff_t(size));
+    std::fill(chosen.begin(), chosen.end(), 7);
+    assign_markers(per_tool, chosen, std::span(reasons).first(size));
+    EXPECT_EQ(std::count(chosen.begin(), chosen.end(), 7), k_tools_max + 2 - std::ptrdiff_t(size));
+    std::fill(chosen.begin(), chosen.end(), 7);
+    assign_markers(std::span(per_tool).first(size), chosen, reasons);
+    EXPECT_EQ(std::count(chosen.begin(), chosen.end(), 7), k_tools_max + 2 - std::ptrdiff_t(size));
+  }
+}
+
+TEST(Assign, ReadsNoMoreLabelingsThanAreKept) {
+  Labelings labelings;
+  for (Labeling& labeling : labelings.items) labeling = labeling_of({0, 1, 2}, 0.001);
+  labelings.count = k_labelings_max + 5;
+  const auto first = labelings_of({labeling_of({0, 1, 2, 3}, 0.001)});
+  EXPECT_EQ(outcome_of({first, labelings}).chosen, (std::vector<int>{0, -1}));
+  EXPECT_EQ(work_of({first, labelings}).tests, 2 + k_labelings_max);
+}
+
+// The squares' sum is of all markers: fewer rms count more with more of them.
+TEST(Assign, ComparesTheSumOfSquaresLessAPredictionsWorth) {
+  Labeling worthless = labeling_of({0, 1, 2, 3}, 0.002), worth = labeling_of({0, 1, 2, 3}, 0.003);
+  // 4 x 4e-6 and 4 x 9e-6: 2e-5 more.
+  for (const double worth_m2 : {1.9e-5, 2.1e-5}) {
+    worth.predicted_worth_m2 = worth_m2;
+    const bool second = worth_m2 > 2e-5;
+    EXPECT_EQ(outcome_of({labelings_of({worthless}), labelings_of({worth})}).chosen,
+              second ? (std::vector<int>{-1, 0}) : (std::vector<int>{0, -1}));
+    EXPECT_EQ(outcome_of({labelings_of({worth}), labelings_of({worthless})}).chosen,
+              second ? (std::vector<int>{0, -1}) : (std::vector<int>{-1, 0}));
+  }
+}
+
+// Those of another number of markers, the chosen one and, behind a rival, those that nothing
+// foretold are passed over without a look.
+TEST(Assign, CountsTheRivalsThatItLooksAt) {
+  Labelings labelings = labelings_of(
+      {labeling_of({0, 1, 2}, 0.001), labeling_of({0, 1}, 0.001),
+       turned(labeling_of({1, 0, 2}, 0.002), 0.01), turned(labeling_of({1, 2, 0}, 0.002), 1),
+       turned(labeling_of({2, 1, 0}, 0.002), 1.5), turned(labeling_of({2, 0, 1}, 0.004), 2)});
+  MarkerOwners owners;
+  owners.fill(-1);
+  int tests = 100;
+  EXPECT_EQ(rival_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 3);
+  EXPECT_EQ(tests, 100 + 2);
+  labelings.items[5].predicted_worth_m2 = 1e-6;
+  tests = 0;
+  EXPECT_EQ(rival_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 5);
+  EXPECT_EQ(tests, 3);
+  labelings.items[3].predicted_worth_m2 = 1e-6;
+  tests = 0;
+  EXPECT_EQ(rival_of(labelings, 0, 0, owners, Vector3::Zero(), tests), 3) << "foretold, and first";
+  EXPECT_EQ(tests, 2);
+  EXPECT_EQ(rival_of(labelings, 5, 0, owners, Vector3::Zero(), tests), 3);
+  labelings.count = 3;
+  EXPECT_EQ(rival_of(labelings, 0, 0, owners, Vector3::Zero(), tests), -1);
 }
 
 }  // namespace

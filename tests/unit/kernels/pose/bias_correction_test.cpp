@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "kernels/motion/interpolate.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
@@ -69,6 +71,40 @@ TEST(BiasCorrection, LeavesAloneWhereThereIsNoneAndWhatIsNoPose) {
   Pose none = k_truth;
   none.translation.x() = std::numeric_limits<double>::quiet_NaN();
   expect_left_alone(correction(CorrectionFrame::tool), none, Reason::out_of_range);
+}
+
+TEST(BiasCorrection, HoldsAtBothEndsOfEachRangeAndNotBeyond) {
+  const SeenFrom seen = seen_from(k_truth);
+  const auto reason = [&](const BiasCorrection& known) {
+    return correct_bias(known, k_truth).reason;
+  };
+  const auto beyond = [](double x, double to) { return std::nextafter(x, to); };
+  const std::pair<ValidRange BiasCorrection::*, double> ranges[] = {
+      {&BiasCorrection::range_m, seen.range_m},
+      {&BiasCorrection::off_axis_cosine, seen.off_axis_cosine},
+      {&BiasCorrection::tilt_cosine, seen.tilt_cosine}};
+  for (const auto& [range, value] : ranges) {
+    BiasCorrection known = correction(CorrectionFrame::tool);
+    known.*range = {value, value};
+    EXPECT_EQ(reason(known), Reason::none);
+    known.*range = {beyond(value, 9), 9};
+    EXPECT_EQ(reason(known), Reason::out_of_range);
+    known.*range = {-9, beyond(value, -9)};
+    EXPECT_EQ(reason(known), Reason::out_of_range);
+  }
+}
+
+// Of a tool beside the axis, turned: the three figures by their angles.
+TEST(BiasCorrection, SeesTheRangeTheAngleOffTheAxisAndTheTilt) {
+  const SeenFrom seen = seen_from(
+      {from_rotation_vector({0.7, 0, 0}), Vector3(0, -std::sin(0.3), std::cos(0.3)) * 0.8});
+  EXPECT_NEAR(seen.range_m, 0.8, 1e-15);
+  EXPECT_NEAR(seen.off_axis_cosine, std::cos(0.3), 1e-15);
+  EXPECT_NEAR(seen.tilt_cosine, std::cos(0.7 - 0.3), 1e-15) << "z turns to -y, as the sight does";
+  const SeenFrom nowhere = seen_from({});
+  EXPECT_EQ(nowhere.range_m, 0);
+  EXPECT_EQ(nowhere.off_axis_cosine, 1);
+  EXPECT_EQ(nowhere.tilt_cosine, 1);
 }
 
 TEST(BiasCorrection, GivesTheSameBitsEverywhere) {

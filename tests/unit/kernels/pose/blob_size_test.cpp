@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <vector>
 
 #include "tests/unit/kernels/pose/weighted_scene.hpp"
@@ -157,6 +160,43 @@ TEST(BlobSize, BlamesNoMarkerForWhatAllHave) {
   for (const double strip : {-1.5, 0.1, 2.0}) mixed.add(strip);
   EXPECT_EQ(mixed.beyond(-1.5), -1.5);
   EXPECT_EQ(mixed.beyond(2.0), 2.0);
+}
+
+// The area beyond that of the marker's disc, spread along half its rim.
+TEST(BlobSize, IsTheAreaBeyondTheDiscsAlongHalfItsRim) {
+  constexpr double k_pi = std::numbers::pi;
+  for (const double radius_px : {1.5, 3.0, 6.0}) {
+    for (const std::uint32_t area_px : {5U, 30U, 130U, 400U}) {
+      const double strip =
+          (area_px - k_pi * (radius_px + 0.3) * (radius_px + 0.3)) / (k_pi * radius_px);
+      EXPECT_NEAR(strip_of(area_px, tool_of_radius(radius_px)), strip, 1e-9);
+      EXPECT_NEAR(strip_of(area_px, tool_of_radius(radius_px, MarkerShape::disc)),
+                  std::max(strip, 0.0), 1e-9);
+    }
+  }
+}
+
+TEST(BlobSize, WidensFromTheNoiseOnByWhatAStripMovesTheMiddle) {
+  const auto widened = [](double strip_px) {
+    MarkerVariance variance{0.01, 0.003, 0.02, 1e-6};
+    widen(variance, strip_px);
+    return variance;
+  };
+  for (const double strip : {0.0, 0.7, -0.7}) {
+    EXPECT_EQ(widened(strip).xx_px2, 0.01) << strip;
+    EXPECT_EQ(widened(strip).range_m2, 1e-6) << strip;
+    EXPECT_FALSE(is_merged(strip) || is_partly_hidden(strip));
+  }
+  EXPECT_TRUE(is_merged(0.7001) && !is_partly_hidden(0.7001));
+  EXPECT_TRUE(is_partly_hidden(-0.7001) && !is_merged(-0.7001));
+  const MarkerVariance merged = widened(2), hidden = widened(-2);
+  const double by_merging = 0.5 * std::pow(2 * std::numbers::pi / 4, 2);
+  EXPECT_NEAR(merged.xx_px2, 0.01 + by_merging, 1e-12);
+  EXPECT_NEAR(merged.yy_px2, 0.02 + by_merging, 1e-12);
+  EXPECT_NEAR(merged.range_m2, 1e-6 * 64 / 3, 1e-18) << "evenly within eight sigmas";
+  EXPECT_NEAR(hidden.xx_px2, 0.01 + 0.5 * 1.6 * 1.6, 1e-12);
+  EXPECT_NEAR(hidden.yy_px2, 0.02 + 0.5 * 1.6 * 1.6, 1e-12);
+  EXPECT_EQ(merged.xy_px2, 0.003);
 }
 
 TEST(BlobSize, TellsNothingOfWhatIsNotSeenWhole) {

@@ -59,6 +59,94 @@ TEST(CameraModel, ProjectsAsOpenCvDoes) {
   }
 }
 
+// No two of its figures are alike, and none of the distortion's is small.
+CameraModel skewed_lens(Lens kind) {
+  CameraModel camera;
+  camera.lens = kind;
+  camera.width = 640;
+  camera.height = 400;
+  camera.fx = 310;
+  camera.fy = 270;
+  camera.cx = 330;
+  camera.cy = 190;
+  camera.distortion = {0.11, -0.07, 0.013, -0.021, 0.03, 0.17, 0.05, -0.02};
+  return camera;
+}
+
+TEST(CameraModel, ProjectsThroughEveryTermOfTheDistortionAsOpenCvDoes) {
+  for (const Lens kind : {Lens::pinhole, Lens::brown, Lens::rational}) {
+    const CameraModel camera = skewed_lens(kind);
+    std::mt19937 random(4);
+    std::vector<cv::Point3d> points;
+    for (int i = 0; i < 500; ++i) {
+      const Vector3 p = random_point(camera, random);
+      points.emplace_back(p.x(), p.y(), p.z());
+    }
+    std::vector<cv::Point2d> expected;
+    cv::projectPoints(points, cv::Vec3d::zeros(), cv::Vec3d::zeros(), opencv_matrix(camera),
+                      opencv_distortion(camera), expected);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vector3 point{points[i].x, points[i].y, points[i].z};
+      const Result<Vector2> pixel = project(camera, point);
+      ASSERT_TRUE(pixel);
+      EXPECT_NEAR(pixel.value.x(), expected[i].x + 0.5, 1e-6);
+      EXPECT_NEAR(pixel.value.y(), expected[i].y + 0.5, 1e-6);
+      const Result<Vector3> ray = unproject(camera, pixel.value);
+      ASSERT_TRUE(ray);
+      EXPECT_LT((ray.value - point.normalized()).norm(), 1e-9);
+      // How the ray turns from there, by differences.
+      int steps = 0;
+      const TurningRay turning =
+          unproject_turning(camera, pixel.value, k_ray_steps_max, steps).value;
+      const auto beside = [&](double dx, double dy) {
+        return unproject(camera, pixel.value + Vector2{dx, dy}).value;
+      };
+      EXPECT_LT((turning.along_x - (beside(0.01, 0) - beside(-0.01, 0)) / 0.02).norm(), 1e-8);
+      EXPECT_LT((turning.along_y - (beside(0, 0.01) - beside(0, -0.01)) / 0.02).norm(), 1e-8);
+    }
+  }
+}
+
+// The widest angle that the lens maps, and what lies beyond it.
+TEST(CameraModel, EndsAtItsField) {
+  for (const Lens kind : {Lens::brown, Lens::rational}) {
+    CameraModel camera = skewed_lens(kind);
+    camera.distortion = {0.01, 0, 0, 0, 0, 0, 0, 0};
+    camera.field_tangent_max = 0.5;
+    for (const Vector2& side : {Vector2(1, 0), Vector2(0, -1), Vector2(0.6, -0.8)}) {
+      const Vector2 inside = 0.4999 * side, outside = 0.5001 * side;
+      const Result<Vector2> pixel = project(camera, {inside.x(), inside.y(), 1});
+      EXPECT_TRUE(pixel);
+      EXPECT_TRUE(unproject(camera, pixel.value));
+      EXPECT_EQ(project(camera, {outside.x(), outside.y(), 1}).reason, Reason::out_of_range);
+      CameraModel wider = camera;
+      wider.field_tangent_max = 0;
+      const Vector2 beyond = project(wider, {outside.x(), outside.y(), 1}).value;
+      EXPECT_EQ(unproject(camera, beyond).reason, Reason::out_of_range);
+      int steps = 0;
+      EXPECT_FALSE(unproject_turning(camera, beyond, k_ray_steps_max, steps));
+    }
+  }
+}
+
+// A step more than none, and none without: what is taken is added.
+TEST(CameraModel, CountsTheStepsOfASearchForARay) {
+  const CameraModel camera = skewed_lens(Lens::rational);
+  int needed = 100;
+  ASSERT_TRUE(unproject_turning(camera, {500, 300}, k_ray_steps_max, needed));
+  needed -= 100;
+  EXPECT_GE(needed, 2);
+  int taken = 0;
+  EXPECT_TRUE(unproject_turning(camera, {500, 300}, needed, taken));
+  EXPECT_EQ(taken, needed);
+  EXPECT_FALSE(unproject_turning(camera, {500, 300}, needed - 1, taken));
+  EXPECT_EQ(taken, 2 * needed - 1);
+  EXPECT_FALSE(unproject_turning(camera, {500, 300}, 0, taken));
+  EXPECT_EQ(taken, 2 * needed - 1);
+  EXPECT_TRUE(unproject_turning(skewed_lens(Lens::pinhole), {500, 300}, 0, taken));
+  EXPECT_EQ(taken, 2 * needed - 1) << "a pinhole takes none";
+}
+
 // Within 45 degrees: further out OpenCV's fixed-point search no longer settles to 1e-6 px.
 TEST(CameraModel, UnprojectsAsOpenCvDoes) {
   for (const CameraModel& camera : polynomial_lenses()) {

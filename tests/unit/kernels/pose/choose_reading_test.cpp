@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "kernels/motion/interpolate.hpp"
@@ -82,6 +83,70 @@ TEST(ChooseReading, WithoutAnotherReadingIsSurerFrameByFrame) {
   EXPECT_DOUBLE_EQ(chosen_of({reading_of(0, 3, 4)}, 5).odds, 5 + k_no_rival_worth);
   EXPECT_DOUBLE_EQ(chosen_of({reading_of(0, 3, 4), reading_of(0.01, 4, 4)}, 5).odds,
                    5 + k_no_rival_worth);
+}
+
+TEST(AreApart, BeginsAtACentimetreOfTheTipOrAnEighthOfARadian) {
+  const Pose here{from_rotation_vector({0.3, -0.2, 0.5}), {0.1, 0.2, 0.6}};
+  const auto shifted = [&](double metres) {
+    return are_apart(here, {here.rotation, here.translation + Vector3(0, metres, 0)}, k_tip);
+  };
+  EXPECT_FALSE(are_apart(here, here, k_tip));
+  EXPECT_FALSE(shifted(0.0099));
+  EXPECT_TRUE(shifted(0.0101));
+  // About the tip, so that it stays where it is.
+  const auto turned = [&](double radians, double sign) {
+    Pose there;
+    const Quaternion by = from_rotation_vector({0, radians, 0});
+    there.rotation = by * here.rotation;
+    there.rotation.coeffs() *= sign;
+    there.translation = here * k_tip - there.rotation * k_tip;
+    return are_apart(here, there, k_tip);
+  };
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_FALSE(turned(0.1295, sign));
+    EXPECT_TRUE(turned(0.1305, sign));
+  }
+  // A turn about the origin moves a tip that is far from it.
+  EXPECT_FALSE(are_apart({}, {from_rotation_vector({0.09, 0, 0}), Vector3::Zero()}, k_tip));
+  EXPECT_TRUE(are_apart({}, {from_rotation_vector({0.11, 0, 0}), Vector3::Zero()}, k_tip));
+}
+
+// The followed reading is the one with the least surprise, up to the largest that it may have.
+TEST(ChooseReading, FollowsTheLeastSurpriseUpToItsLimit) {
+  EXPECT_TRUE(
+      chosen_of({reading_of(0.7, 3, 100), reading_of(0, 90, k_followed_surprise_most)}, 20).turned);
+  EXPECT_TRUE(
+      chosen_of({reading_of(0.7, 3, 100), reading_of(0, 90, k_followed_surprise_most + 1)}, 20)
+          .unexpected);
+  // Of two that may be followed only the nearer one's chi-square is bounded.
+  PoseReading near = reading_of(0, 90, 4), far = reading_of(0.7, 90, 30);
+  near.explained_most = far.explained_most = 20;
+  for (const bool swapped : {false, true}) {
+    const ChosenReading chosen = swapped ? chosen_of({far, near}) : chosen_of({near, far});
+    EXPECT_EQ(chosen.index, swapped ? 1 : 0);
+    EXPECT_DOUBLE_EQ(chosen.odds, std::min(k_odds_most, (90 + 30) - (20 + 4.0)));
+    EXPECT_FALSE(chosen.turned);
+  }
+  near.chi_square = 12;
+  far.chi_square = 12;
+  EXPECT_DOUBLE_EQ(chosen_of({near, far}).odds, 30 - 4) << "less than the noise explains";
+}
+
+// Among equals the first; a surprise at its bound is none that was outweighed.
+TEST(ChooseReading, TakesTheFirstAmongEquals) {
+  EXPECT_EQ(chosen_of({reading_of(0, 5, 5), reading_of(0.7, 5, 5), reading_of(1, 4, 6)}).index, 0);
+  EXPECT_DOUBLE_EQ(chosen_of({reading_of(0, 5, 5), reading_of(0.7, 5, 5)}).odds, 0);
+  const ChosenReading at_bound = chosen_of({reading_of(0, 90, 10), reading_of(0.7, 3, 30)}, 20);
+  EXPECT_EQ(at_bound.index, 1);
+  EXPECT_FALSE(at_bound.turned);
+  EXPECT_TRUE(chosen_of({reading_of(0, 90, 10), reading_of(0.7, 3, 30.5)}, 20).turned);
+}
+
+TEST(ChooseReading, WithoutAnExpectationComparesChiSquareAlone) {
+  const ChosenReading chosen = chosen_of({reading_of(0.7, 9, 0), reading_of(0, 3, 0)}, 7);
+  EXPECT_EQ(chosen.index, 1);
+  EXPECT_DOUBLE_EQ(chosen.odds, 6);
+  EXPECT_FALSE(chosen.turned || chosen.unexpected);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "tests/unit/kernels/pose/correspond_view.hpp"
@@ -56,6 +58,51 @@ TEST(CorrespondPrediction, SaysWhatAPredictionIsWorthOnlyWhereItIsMet) {
   EXPECT_NEAR(worth(&k_truth) - worth(&near), 4 * sigma * sigma, 1.5 * sigma * sigma);
   EXPECT_EQ(worth(&far), 0);
   EXPECT_EQ(worth(nullptr), 0);
+}
+
+// Twice the logarithm of the densities' ratio, one at least, by the larger of both sigmas; about
+// the tool's middle.
+TEST(CorrespondPrediction, IsWorthTheLogarithmOfItsSureness) {
+  const Tool pen = test::five_marker_pen();
+  const Markers markers = view_of(pen, pen.marker_count);
+  CorrespondSettings settings = ahat();
+  settings.prior_gate_m = 0.2;
+  const auto worth = [&](const Pose& prior) {
+    return labelings_of(markers, pen, settings, &prior).items[0].predicted_worth_m2 /
+           (settings.range_sigma_m * settings.range_sigma_m);
+  };
+  for (const auto& [prior_m, range_m] : {std::pair{0.006, 0.0015}, {0.004, 0.007}, {0.02, 0.003}}) {
+    settings.prior_sigma_m = prior_m;
+    settings.range_sigma_m = range_m;
+    const double sigma = std::max(prior_m, range_m), surest = 6 * std::log(1 / sigma);
+    EXPECT_NEAR(worth(k_truth), surest, 1e-6);
+    EXPECT_NEAR(worth(beside_truth(2 * sigma)), surest - 4, 1e-6);
+    EXPECT_NEAR(worth(beside_truth(0.15)), std::max(1.0, surest - std::pow(0.15 / sigma, 2)), 1e-6);
+    const Quaternion turn = from_rotation_vector({0, 0.3, 0});
+    const Vector3 middle = pen.middle_m();
+    EXPECT_NEAR(worth({turn, k_truth * middle - turn * middle}), surest, 1e-6)
+        << "turned about its middle";
+  }
+}
+
+// One marker that lies beyond the gate is enough.
+TEST(CorrespondPrediction, IsMetOnlyWhereEachMarkerLiesWithinTheGate) {
+  const Tool pen = test::five_marker_pen();
+  CorrespondSettings settings = ahat();
+  settings.prior_gate_m = 0.03;
+  const Vector3 middle = pen.middle_m();
+  double farthest = 0;
+  for (const Vector3& marker :
+       {pen.markers_m[0], pen.markers_m[1], pen.markers_m[2], pen.markers_m[3], pen.markers_m[4]})
+    farthest = std::max(farthest, (marker - middle).cross(Vector3::UnitY()).norm());
+  for (const double part : {0.98, 1.02}) {
+    const double radians = 2 * std::asin(0.5 * part * 0.03 / farthest);
+    const Quaternion turn = from_rotation_vector({0, radians, 0});
+    const Pose prior{turn, k_truth * middle - turn * middle};
+    const Labelings found = labelings_of(view_of(pen, 5), pen, settings, &prior);
+    ASSERT_EQ(found.items[0].count, 5);
+    EXPECT_EQ(found.items[0].predicted_worth_m2 > 0, part < 1);
+  }
 }
 
 TEST(CorrespondPrediction, LooksOnlyNearAPredictionThatIsSure) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <set>
@@ -150,6 +151,97 @@ TEST_F(DepthSamplesOf, ABlobAtTheBorderStayInTheFrame) {
     blob_.centroid_px = corner;
     EXPECT_EQ(pixels_of(inner(5, 64)), pixels_between(0, 0.7 * 5));
     EXPECT_EQ(pixels_of(ring(4.3, 64, 1000)), pixels_between(0.7 * 4.3, 4.8));
+  }
+}
+
+// Both kinds of frame, with the same levels.
+TEST_F(DepthSamplesOf, AreTheSameOfEightBits) {
+  for (std::size_t i = 0; i < bright_.size(); ++i)
+    bright_[i] = static_cast<std::uint16_t>(40 + (7 * i) % 200);
+  blob_.peak = 240;
+  settings_.saturated_from = 230;
+  const std::vector<std::uint8_t> narrow(bright_.begin(), bright_.end());
+  const auto of_eight = [&](auto take) {
+    Frame frame;
+    frame.reflectivity_8 = {narrow.data(), k_side, k_side};
+    frame.depth = {depth_.data(), k_side, k_side};
+    int steps = 0;
+    const LocalRays rays = local_rays(camera_, blob_.centroid_px, k_ray_steps_max, steps).value;
+    DepthSamples out;
+    take(DepthView{frame, blob_, settings_, rays}, out);
+    return out;
+  };
+  const DepthSamples disc =
+      of_eight([](const DepthView& view, DepthSamples& out) { inner_samples(view, 5, 64, out); });
+  const DepthSamples around = of_eight(
+      [](const DepthView& view, DepthSamples& out) { ring_samples(view, 4.3, 64, 1000, out); });
+  const DepthSamples wide_disc = inner(5, 64), wide_ring = ring(4.3, 64, 1000);
+  EXPECT_EQ(pixels_of(disc), pixels_of(wide_disc));
+  EXPECT_EQ(pixels_of(around), pixels_of(wide_ring));
+  EXPECT_LT(disc.usable, disc.tried) << "some are saturated";
+  EXPECT_EQ(around.tried, wide_ring.tried);
+}
+
+// Of depth pixels that no reflectivity has, and the other way round, none is looked at.
+TEST_F(DepthSamplesOf, StayInTheSmallerOfTheTwoPictures) {
+  blob_.centroid_px = {29.7, 28.4};
+  for (const bool small_depth : {false, true}) {
+    const std::vector<std::uint16_t> depth(31 * 30, 7), bright(31 * 30, 20000);
+    Frame frame;
+    frame.reflectivity_16 = {bright_.data(), k_side, k_side};
+    frame.depth = {depth_.data(), k_side, k_side};
+    (small_depth ? frame.depth : frame.reflectivity_16) = {
+        small_depth ? depth.data() : bright.data(), 31, 30};
+    int steps = 0;
+    const LocalRays rays = local_rays(camera_, blob_.centroid_px, k_ray_steps_max, steps).value;
+    DepthSamples out;
+    inner_samples({frame, blob_, settings_, rays}, 5, 64, out);
+    int held = 0;
+    for (int y = 0; y < 30; ++y)
+      for (int x = 0; x < 31; ++x)
+        held += (Vector2(x + 0.5, y + 0.5) - blob_.centroid_px).norm() < 3.5 ? 1 : 0;
+    EXPECT_EQ(out.count, held) << small_depth;
+    EXPECT_EQ(out.tried, held) << small_depth;
+  }
+}
+
+// The square around the circle, in the smallest step that keeps it within what may be looked at.
+TEST_F(DepthSamplesOf, TheRingTakeTheSmallestStepThatFits) {
+  const auto pixels = [](int step) {
+    const int side = (42 + step - 1) / step;  // columns and rows 11 to 52
+    return side * side;
+  };
+  blob_.centroid_px = {32.0, 32.0};
+  for (const int most : {2000, 1023, 441, 440, 196, 195, 121, 120, 4, 1, 0, -5}) {
+    int step = 1;
+    while (pixels(step) > std::max(std::min(most, k_square_max_px), 1)) ++step;
+    EXPECT_EQ(ring(19.9, 64, most).pixels, pixels(step)) << most;
+  }
+}
+
+// No further than the largest radius, whatever the blob's.
+TEST_F(DepthSamplesOf, TheRingOfAHugeBlobEndAtTheLargestRadius) {
+  for (const double radius : {38.5, 45.0, 55.0}) {
+    const DepthSamples found = ring(radius, 64, 1024);
+    EXPECT_GT(found.tried, 0);
+    for (const std::size_t pixel : pixels_of(found)) {
+      EXPECT_LT(from_middle(pixel).norm(), k_scan_radius_max_px - 1);
+      EXPECT_GE(from_middle(pixel).norm(), 0.7 * radius);
+    }
+  }
+  EXPECT_EQ(ring(60, 64, 1024).tried, 0) << "its ring lies further out";
+}
+
+// Raw values from 1 to just below where none begins; one that begins at 0 or 1 leaves none.
+TEST_F(DepthSamplesOf, CountEachDepthBetweenNoneAndInvalid) {
+  for (const std::uint16_t invalid_from : {0, 1, 2, 500, 0xFFFF}) {
+    settings_.invalid_from = invalid_from;
+    for (const std::uint16_t raw : {0, 1, 499, 500, 0xFFFE, 0xFFFF}) {
+      std::fill(depth_.begin(), depth_.end(), raw);
+      const DepthSamples found = inner(5, 64);
+      EXPECT_EQ(found.usable, raw >= 1 && raw < invalid_from ? found.tried : 0)
+          << raw << " of " << invalid_from;
+    }
   }
 }
 

@@ -55,6 +55,30 @@ TEST(ExpectedPose, SurprisesByChiSquareOfSixWhereAllIsAsDeclared) {
   EXPECT_LE(beyond, 4);                 // 0.3 on average
 }
 
+// Both poses' covariances with full couplings, the found one's about another point.
+TEST(ExpectedPose, SurpriseIsTheDistanceInBothCovariancesAboutItsReference) {
+  Random random(4);
+  const auto covariance = [&random] {
+    Matrix6 root;
+    for (int i = 0; i < 36; ++i) root(i) = 0.01 * random.normal();
+    return Matrix6(root * root.transpose());
+  };
+  for (int trial = 0; trial < 50; ++trial) {
+    ExpectedPose expected{
+        {random.rotation(), random.vector(0.3)}, covariance(), random.vector(0.1)};
+    const Vector3 turn = random.vector(0.1), reference_m = random.vector(0.1);
+    const Pose found{from_rotation_vector(turn) * expected.T_camera_tool.rotation,
+                     expected.T_camera_tool.translation + random.vector(0.02)};
+    const Matrix6 own = covariance();
+    const Matrix6 j = pose_by_pose(found.rotation * (expected.reference_m - reference_m));
+    Vector6 apart;
+    apart << found * expected.reference_m - expected.T_camera_tool * expected.reference_m, turn;
+    const Matrix6 both = expected.covariance + j * own * j.transpose();
+    const double distance = apart.dot(both.inverse() * apart);
+    EXPECT_NEAR(surprise_of(expected, found, own, reference_m) / distance, 1, 1e-7);
+  }
+}
+
 TEST(ExpectedPose, WithoutACovarianceNothingIsExpected) {
   const ExpectedPose certain;
   EXPECT_EQ(surprise_of(certain, Pose{}, Matrix6::Zero(), Vector3::Zero()), k_no_surprise_known);

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
+#include <span>
 
+#include "kernels/pose/blob_size.hpp"
 #include "kernels/pose/lever_arm.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
 
@@ -172,6 +175,140 @@ TEST_F(FewMarkersTest, TestsEachMarkerAgainstEachGateOfAPredictedTool) {
   (void)name();
   EXPECT_EQ(work_.gates, 4);
   EXPECT_EQ(work_.tests, 50) << "and its range once";
+}
+
+TEST_F(FewMarkersTest, CountsTheGatesOfPredictedToolsAndTheMarkersLookedAt) {
+  for (int m = 0; m < 10; ++m) show(Vector3(0.1 * m, 0, 1));
+  expected_[1].predicted = true;
+  (void)name();
+  EXPECT_EQ(work_.gates, 8) << "also of a tool that is not wanted";
+  EXPECT_EQ(work_.tests, 100);
+  const auto work_of = [&](std::span<const ExpectedTool> tools, int markers_max,
+                           std::span<FewMarkers> named) {
+    return name_few(tools, *markers_, markers_max, taken_, noise_, *scratch_, named);
+  };
+  EXPECT_EQ(work_of(expected_, 3, named_).tests, 2 * 3 * 5);
+  EXPECT_EQ(work_of(expected_, 0, named_).tests, 0);
+  EXPECT_EQ(work_of(expected_, 0, named_).gates, 8);
+  EXPECT_EQ(work_of(expected_, 10, std::span(named_).first(1)).gates, 4);
+  EXPECT_EQ(work_of(std::span(expected_).first(1), 10, named_).gates, 4);
+  EXPECT_EQ(work_of({}, 10, named_).gates, 0);
+  markers_->count = -3;
+  EXPECT_EQ(work_of(expected_, 10, named_).tests, 0);
+}
+
+TEST_F(FewMarkersTest, NamesNoneOfAToolThatIsNotPredictedOrNotWanted) {
+  show(place(0, 2));
+  for (const bool predicted : {false, true}) {
+    for (const bool wanted : {false, true}) {
+      expected_[0].predicted = predicted;
+      expected_[0].wanted = wanted;
+      EXPECT_EQ(name().count, predicted && wanted ? 1 : 0);
+    }
+  }
+}
+
+TEST_F(FewMarkersTest, SaysNothingOfAFrameBefore) {
+  show(place(0, 2));
+  EXPECT_EQ(name().count, 1);
+  EXPECT_EQ(name().count, 1) << "no claim is left";
+  markers_->count = 0;
+  EXPECT_EQ(name().count, 0);
+}
+
+TEST_F(FewMarkersTest, NamesNoneWithoutDepth) {
+  show(place(0, 2), k_marker_no_depth);
+  EXPECT_EQ(name().count, 0);
+  show(place(0, 0), k_marker_ring_depth | k_marker_saturated | k_marker_has_neighbour);
+  EXPECT_EQ(name().count, 1);
+  EXPECT_EQ(named_[0].items[0].of_tool, 0);
+}
+
+// Beyond the markers looked at, nothing is named, nothing claimed.
+TEST_F(FewMarkersTest, LooksAtTheFirstMarkersAlone) {
+  show(Vector3(0.3, 0.3, 0.9));
+  show(place(0, 2));
+  EXPECT_EQ(name().count, 1);
+  name_few(expected_, *markers_, 1, taken_, noise_, *scratch_, named_);
+  EXPECT_EQ(named_[0].count, 0);
+}
+
+// At the edge of its gate along the line of sight: there the range's noise counts, too.
+TEST_F(FewMarkersTest, HoldsAMarkerWithinThePredictionsAndTheMeasurementsNoise) {
+  expect_within(0, k_sigma_m, 0);
+  const Vector3 ahead = place(0, 2).normalized(), side = ahead.unitOrthogonal();
+  const double across = 0.1 / 250 * place(0, 2).norm();
+  const auto named_at = [&](const Vector3& off) {
+    markers_->count = 0;
+    show(place(0, 2) + off);
+    return name().count;
+  };
+  const double limit = std::sqrt(21.1075);  // of three degrees of freedom
+  const double along_m = limit * std::hypot(k_sigma_m, 0.0015);
+  const double across_m = limit * std::hypot(k_sigma_m, across);
+  EXPECT_EQ(named_at(0.99 * along_m * ahead), 1);
+  EXPECT_EQ(named_at(-0.99 * along_m * ahead), 1);
+  EXPECT_EQ(named_at(1.01 * along_m * ahead), 0);
+  EXPECT_EQ(named_at(0.99 * across_m * side), 1);
+  EXPECT_EQ(named_at(1.01 * across_m * side), 0);
+  EXPECT_EQ(named_at(0.99 * across_m * ahead.cross(side)), 1);
+  EXPECT_EQ(named_at(1.01 * across_m * ahead.cross(side)), 0);
+}
+
+// Turned about the middle of its markers, not about the tool's origin.
+TEST_F(FewMarkersTest, WidensAGateByTheTurnAboutTheMiddle) {
+  expect_within(0, 1e-5, 0.05);
+  noise_ = {1e-4, 0.01, 250};
+  const Vector3 lever = tools_[0].markers_m[2] - tools_[0].middle_m();
+  const Vector3 across = Vector3::UnitZ().cross(lever).normalized();
+  const double reach = std::sqrt(21.1075) * 0.05 * lever.norm();
+  for (const double part : {0.97, 1.03}) {
+    markers_->count = 0;
+    show(place(0, 2) + part * reach * across);
+    EXPECT_EQ(name().count, part < 1 ? 1 : 0);
+  }
+}
+
+// Where a tool would lie at the camera's own place no gate holds anything, and the others of the
+// tool meet it.
+TEST_F(FewMarkersTest, NamesNoneOfAToolWithAMarkerAtTheCamera) {
+  show(place(0, 2));
+  EXPECT_EQ(name().count, 1);
+  expected_[0].T_camera_tool.translation = -tools_[0].markers_m[0];
+  markers_->count = 0;
+  show(place(0, 2) + Vector3(0, 0, 1e-9));
+  EXPECT_EQ(name().count, 0);
+  // So it is of a covariance that is none.
+  expected_[0].T_camera_tool.translation = Vector3(0, 0, 0.5);
+  expected_[0].covariance(1, 1) = -1;
+  markers_->count = 0;
+  show(place(0, 2));
+  EXPECT_EQ(name().count, 0);
+}
+
+// An image shows the marker larger than it is: another one's light may be in it.
+TEST_F(FewMarkersTest, WidensWhatAnImageShowsTooLarge) {
+  show(place(0, 2));
+  Marker& marker = markers_->items[0];
+  const Vector3 side = marker.ray.unitOrthogonal();
+  marker.along_x = side / 250;
+  marker.along_y = marker.ray.cross(side) / 250;
+  const double range = place(0, 2).norm(), radius_px = 250 * 0.005 / range;
+  const double pi = 3.14159265358979323846;
+  const auto covariance_of = [&](double area_px) {
+    marker.area_px = static_cast<std::uint32_t>(area_px);
+    EXPECT_EQ(name().count, 1);
+    return named_[0].items[0].covariance_m2;
+  };
+  const Matrix3 whole = covariance_of(pi * (radius_px + 0.3) * (radius_px + 0.3));
+  EXPECT_NEAR(std::sqrt(side.dot(whole * side)), 0.1 / 250 * range, 1e-9);
+  const Matrix3 large = covariance_of(3 * pi * radius_px * radius_px);
+  MarkerVariance variance{0.01, 0, 0.01, 0.0015 * 0.0015};
+  LocalRays rays{marker.centroid_px, marker.ray, marker.along_x, marker.along_y};
+  widen(variance, strip_px(marker, rays, tools_[0], range));
+  ASSERT_GT(variance.xx_px2, 0.1);
+  EXPECT_NEAR(side.dot(large * side) / (variance.xx_px2 * std::pow(range / 250, 2)), 1, 1e-9);
+  EXPECT_NEAR(marker.ray.dot(large * marker.ray) / variance.range_m2, 1, 1e-9);
 }
 
 }  // namespace

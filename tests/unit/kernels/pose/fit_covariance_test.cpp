@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "kernels/pose/rigid_fit.hpp"
@@ -98,6 +100,54 @@ TEST(FitCovariance, GrowsWithTheDistanceOfTheReference) {
   const auto far = fit_covariance(c.points, c.covariances, mean + Vector3(0.5, 0, 0));
   EXPECT_GT(far.value(1, 1), 4 * near.value(1, 1));
   EXPECT_NEAR(far.value(4, 4), near.value(4, 4), 1e-12);
+}
+
+// One sigma along the ray, another across it.
+TEST(FitCovariance, OfAMarkerHasItsVarianceAlongAndAcrossTheRay) {
+  const Vector3 ray = Vector3(0.3, -0.4, 1).normalized();
+  const Vector3 side = ray.unitOrthogonal(), other = ray.cross(side);
+  const Matrix3 covariance = marker_covariance(ray, 0.003, 0.0005);
+  EXPECT_NEAR(ray.dot(covariance * ray), 9e-6, 1e-18);
+  EXPECT_NEAR(side.dot(covariance * side), 0.25e-6, 1e-18);
+  EXPECT_NEAR(other.dot(covariance * other), 0.25e-6, 1e-18);
+  EXPECT_NEAR(side.dot(covariance * ray), 0, 1e-18);
+  EXPECT_NEAR(side.dot(covariance * other), 0, 1e-18);
+}
+
+// By the whole matrices, about any reference.
+TEST(FitCovariance, IsTheNoiseCarriedThroughTheUnweightedFit) {
+  test::Random random(3);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Case c = case_of(random, {0.0015, 0.0002});
+    const Vector3 reference = c.points[0] + random.vector(0.2);
+    Matrix6 normal = Matrix6::Zero(), spread = Matrix6::Zero();
+    for (std::size_t i = 0; i < c.points.size(); ++i) {
+      Eigen::Matrix<double, 3, 6> j;
+      j << Matrix3::Identity(), -cross_matrix(c.points[i] - reference);
+      normal += j.transpose() * j;
+      spread += j.transpose() * c.covariances[i] * j;
+    }
+    const Matrix6 expected = normal.inverse() * spread * normal.inverse();
+    const auto found = fit_covariance(c.points, c.covariances, reference);
+    ASSERT_TRUE(found);
+    EXPECT_LT((found.value - expected).norm(), 1e-8 * expected.norm());
+    EXPECT_EQ(found.value, Matrix6(found.value.transpose()));
+  }
+}
+
+TEST(FitCovariance, RefusesWhatIsNotFinite) {
+  test::Random random(4);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const Case c = case_of(random, {0.0015, 0.0002});
+  const Vector3& tip = c.T_camera_tool.translation;
+  std::vector<Matrix3> broken = c.covariances;
+  broken[2](1, 1) = none;
+  EXPECT_EQ(fit_covariance(c.points, broken, tip).reason, Reason::out_of_range);
+  EXPECT_EQ(fit_covariance(c.points, c.covariances, {none, 0, 0}).reason, Reason::out_of_range);
+  std::vector<Vector3> points = c.points;
+  points[0].x() = none;
+  EXPECT_EQ(fit_covariance(points, c.covariances, tip).reason, Reason::out_of_range);
+  EXPECT_TRUE(fit_covariance(points, c.covariances, tip).value.isZero());
 }
 
 TEST(FitCovariance, RefusesALineAndUnequalSpans) {

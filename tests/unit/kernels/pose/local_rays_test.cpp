@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "platform/sensors/camera.hpp"
 
 namespace glint {
@@ -27,6 +29,88 @@ int rays_lost(const CameraModel& camera, int steps_max) {
     }
   }
   return lost;
+}
+
+// A lens's table of 9 x 7 rays, of which those beyond a column are missing.
+struct RimTable {
+  std::vector<float> rays;
+  CameraModel camera;
+
+  explicit RimTable(int columns) {
+    camera.width = 9;
+    camera.height = 7;
+    camera.fx = 40;
+    camera.fy = 30;
+    camera.cx = 4;
+    camera.cy = 3;
+    for (int y = 0; y < 7; ++y) {
+      for (int x = 0; x < 9; ++x) {
+        const Vector3 ray = unproject(camera, {x + 0.5, y + 0.5}).value;
+        for (int i = 0; i < 3; ++i) rays.push_back(x < columns ? static_cast<float>(ray(i)) : 0);
+      }
+    }
+    camera.lens = Lens::lut;
+    camera.table = {9, 7, rays.data()};
+  }
+};
+
+// To the next pixel to the right and below, at the rim to the one before; at right angles.
+TEST(LocalRays, OfATableAreThoseOfItsNeighbours) {
+  const RimTable whole(9), cut(5);
+  CameraModel pinhole = whole.camera;
+  pinhole.lens = Lens::pinhole;
+  for (const CameraModel& camera : {whole.camera, cut.camera}) {
+    for (const double x : {0.5, 2.5, 4.5}) {
+      for (const double y : {0.5, 3.5, 6.5}) {
+        const Vector2 pixel{x, y};
+        int steps = 7, none = 0;
+        const Result<LocalRays> local = local_rays(camera, pixel, 0, steps);
+        ASSERT_TRUE(local);
+        const LocalRays& rays = local.value;
+        const TurningRay truth = unproject_turning(pinhole, pixel, 0, none).value;
+        EXPECT_EQ(rays.pixel, pixel);
+        EXPECT_LT((rays.ray - truth.ray).norm(), 1e-6);
+        EXPECT_LT((rays.along_x - truth.along_x).norm(), 0.1 * truth.along_x.norm());
+        EXPECT_LT((rays.along_y - truth.along_y).norm(), 0.1 * truth.along_y.norm());
+        EXPECT_NEAR(rays.along_x.dot(rays.ray), 0, 1e-12);
+        EXPECT_NEAR(rays.along_y.dot(rays.ray), 0, 1e-12);
+        // By the focal length the ray moves as by its distance from the axis.
+        EXPECT_TRUE(rays.outward.isApprox(rays.along_x * (x - 4) + rays.along_y * (y - 3)));
+        EXPECT_EQ(steps, 7 + 3 * k_lens_steps_a_ray_looked_up);
+        EXPECT_NEAR(rays.steradian_per_pixel(), rays.along_x.cross(rays.along_y).norm(), 1e-15);
+        EXPECT_TRUE(
+            rays.sideways(pixel + Vector2(2, -3)).isApprox(2 * rays.along_x - 3 * rays.along_y));
+      }
+    }
+  }
+}
+
+TEST(LocalRays, OfATableAreNoneWhereItHasNoRayAndStandWhereNoNeighbourHasOne) {
+  int steps = 0;
+  EXPECT_EQ(local_rays(RimTable(5).camera, {6.5, 3.5}, 0, steps).reason, Reason::out_of_range);
+  EXPECT_EQ(steps, 0);
+  const RimTable column(1);
+  const Result<LocalRays> alone = local_rays(column.camera, {0.5, 3.5}, 0, steps);
+  ASSERT_TRUE(alone);
+  EXPECT_TRUE(alone.value.along_x.isZero());
+  EXPECT_GT(alone.value.along_y.norm(), 0.01);
+  EXPECT_EQ(steps, 2 * k_lens_steps_a_ray_looked_up);
+}
+
+TEST(LocalRays, OfAPolynomialAreItsTurningRays) {
+  const CameraModel camera = wide_lens();
+  const Vector2 pixel{300.25, 200.5};
+  int a = 0, b = 0;
+  const LocalRays rays = local_rays(camera, pixel, k_ray_steps_max, a).value;
+  const TurningRay turning = unproject_turning(camera, pixel, k_ray_steps_max, b).value;
+  EXPECT_EQ(rays.pixel, pixel);
+  EXPECT_EQ(rays.ray, turning.ray);
+  EXPECT_EQ(rays.along_x, turning.along_x);
+  EXPECT_EQ(rays.along_y, turning.along_y);
+  EXPECT_TRUE(rays.outward.isApprox(turning.along_x * (300.25 - camera.cx) +
+                                    turning.along_y * (200.5 - camera.cy)));
+  EXPECT_EQ(a, b);
+  EXPECT_EQ(local_rays(camera, pixel, 1, a).reason, Reason::out_of_range);
 }
 
 TEST(RayStepsNeeded, IsOneMoreThanTheLensTakes) {

@@ -5,4 +5,6 @@ glint_test(glint_pose_test ../elementary_test.cpp best_rotation_test.cpp rigid_f
   refine_pose_test.cpp weighted_fit_test.cpp marker_sight_test.cpp
   noise_estimate_test.cpp systematic_covariance_test.cpp decide_labeling_test.cpp
   few_markers_test.cpp expected_pose_test.cpp agreed_pose_test.cpp blob_size_test.cpp
+  candidates_test.cpp pair_matches_test.cpp correspond_search_test.cpp refine_work_test.cpp
+  fit_steps_test.cpp fit_parts_test.cpp noise_residuals_test.cpp calibration_sums_test.cpp
   LIBS glint_kernels LABELS unit SHARDS 2 COMPUTES)

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "platform/sensors/camera.hpp"
@@ -111,6 +112,85 @@ TEST(RayTable, RefusesWhatItDoesNotHold) {
   empty.table = {};
   EXPECT_FALSE(unproject(empty, {256, 256}));
   EXPECT_FALSE(project(empty, {0, 0, 1}));
+}
+
+// A plane of rays, of which some are missing: bilinear between the four around.
+struct SmallTable {
+  static constexpr int k_width = 6, k_height = 4;
+  std::vector<float> rays;
+  RayTable table{k_width, k_height, nullptr};
+
+  SmallTable() {
+    for (int y = 0; y < k_height; ++y)
+      for (int x = 0; x < k_width; ++x)
+        for (const double part : {0.1 * x + 0.01 * x * y, 0.07 * y, 1.0 + 0.02 * x * y})
+          rays.push_back(static_cast<float>(part));
+    table.rays = rays.data();
+  }
+  [[nodiscard]] Vector3 at(double x, double y) const {
+    return Vector3(0.1 * x + 0.01 * x * y, 0.07 * y, 1 + 0.02 * x * y).normalized();
+  }
+  void remove(int x, int y) {
+    for (int i = 0; i < 3; ++i) rays[static_cast<std::size_t>(3 * (y * k_width + x) + i)] = 0;
+  }
+};
+
+// The rays above are bilinear, so that the table has them everywhere; beyond the outermost centres
+// the nearest cell goes on.
+TEST(RayTable, IsBilinearBetweenItsRaysAndGoesOnToItsBorder) {
+  const SmallTable small;
+  for (double y = 0; y <= 4; y += 0.25) {
+    for (double x = 0; x <= 6; x += 0.25) {
+      const Result<Vector3> ray = unproject(small.table, {x, y});
+      ASSERT_TRUE(ray) << x << " " << y;
+      EXPECT_LT((ray.value - small.at(x - 0.5, y - 0.5)).norm(), 1e-6) << x << " " << y;
+    }
+  }
+  for (const Vector2& outside : {Vector2(-0.01, 2), {6.01, 2}, {3, -0.01}, {3, 4.01}})
+    EXPECT_FALSE(unproject(small.table, outside)) << outside.transpose();
+  for (const auto& [width, height] : {std::pair{1, 4}, {6, 1}, {0, 0}})
+    EXPECT_FALSE(unproject(RayTable{width, height, small.rays.data()}, {0.5, 0.5}));
+  EXPECT_TRUE(unproject(RayTable{2, 2, small.rays.data()}, {0.5, 0.5}));
+}
+
+// A place that needs a missing ray has none; a pixel's own centre needs no neighbour.
+TEST(RayTable, NeedsEachOfTheFourRaysThatWeigh) {
+  for (const auto& [mx, my] : {std::pair{2, 1}, {3, 1}, {2, 2}, {3, 2}}) {
+    SmallTable small;
+    small.remove(mx, my);
+    EXPECT_FALSE(unproject(small.table, {3, 2}));
+    for (const auto& [x, y] : {std::pair{2, 1}, {3, 1}, {2, 2}, {3, 2}}) {
+      const bool missing = x == mx && y == my;
+      EXPECT_EQ(static_cast<bool>(unproject(small.table, {x + 0.5, y + 0.5})), !missing);
+    }
+    // On the line between two centres the two others do not weigh.
+    EXPECT_EQ(static_cast<bool>(unproject(small.table, {3, 1.5})), my == 2);
+    EXPECT_EQ(static_cast<bool>(unproject(small.table, {2.5, 2})), mx == 3);
+  }
+}
+
+TEST(RayTable, CountsALookUpForEachStepOfItsSearch) {
+  const SmallTable small;
+  const Vector2 middle{3, 2};
+  int steps = 5;
+  const auto found_from = [&](const Vector2& start, const Vector2& pixel) {
+    const int before = steps;
+    const Result<Vector2> found = project(
+        small.table, 0.3 * small.at(pixel.x() - 0.5, pixel.y() - 0.5), start, middle, steps);
+    EXPECT_TRUE(found);
+    EXPECT_LT((found.value - pixel).norm(), 1e-5);
+    return steps - before;
+  };
+  EXPECT_LE(found_from({1.5, 1.5}, {1.5, 1.5}), 2) << "a step, and one that confirms it";
+  EXPECT_GT(found_from({5.5, 3.5}, {0.7, 0.6}), 2);
+  EXPECT_GT(found_from({99, -99}, {0.7, 0.6}), 2) << "from outside";
+  EXPECT_GT(found_from({NAN, 1}, {0.7, 0.6}), 1) << "from the middle";
+  const int before = steps;
+  EXPECT_FALSE(project(small.table, {9, 9, 1}, middle, middle, steps));
+  EXPECT_EQ(steps - before, k_lut_search_iterations_max) << "no pixel has this ray";
+  EXPECT_FALSE(project(small.table, {0, 0, -1}, middle, middle, steps));
+  EXPECT_FALSE(project(small.table, {0.1, 0.1, 1}, middle, {7, 2}, steps)) << "no middle";
+  EXPECT_EQ(steps - before, k_lut_search_iterations_max);
 }
 
 TEST(RayTable, OfARealDeviceIsFoundAgainAndNearThePreset) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -174,6 +175,97 @@ TEST(Tool, WhoseHashIsZeroStillHasAnIdentity) {
   tool.tip_m = Vector3(0, 0, 0x1.d51607cdp-8);
   ASSERT_EQ(prepare_tool(tool), Reason::none);
   EXPECT_EQ(tool.identity, 1u);
+}
+
+Tool small_tool() {
+  Tool tool = test::tool_of<4>({{0, 0, 0}, {30, 0, 0}, {0, 40, 0}, {10, 20, 30}});
+  tool.tip_m = Vector3(0.01, 0.02, -0.1);
+  tool.depth_bias = {0.001, 0.002, 0.003, 0.2, 0.9};
+  return tool;
+}
+
+// Each part of the body alone; its name, its sigmas and what stands behind its markers do not
+// count.
+TEST(Tool, HasAnotherIdentityWhereAnyPartOfItsBodyDiffers) {
+  const auto identity = [](auto&& change) {
+    Tool tool = small_tool();
+    change(tool);
+    EXPECT_EQ(prepare_tool(tool), Reason::none);
+    return tool.identity;
+  };
+  const std::uint32_t own = identity([](Tool&) {});
+  EXPECT_NE(own, 0U);
+  EXPECT_EQ(own, identity([](Tool& t) { t.name[0] = 'x'; }));
+  EXPECT_EQ(own, identity([](Tool& t) { t.marker_sigma_m = t.tip_sigma_m = 0.001; }));
+  EXPECT_EQ(own, identity([](Tool& t) { t.markers_m[4] = Vector3(1, 2, 3); }));
+  std::vector<std::uint32_t> others{own};
+  for (std::size_t marker = 0; marker < 4; ++marker)
+    for (int axis = 0; axis < 3; ++axis)
+      others.push_back(identity([&](Tool& t) { t.markers_m[marker](axis) += 1e-9; }));
+  for (int axis = 0; axis < 3; ++axis)
+    others.push_back(identity([&](Tool& t) { t.tip_m(axis) += 1e-9; }));
+  others.push_back(identity([](Tool& t) { t.marker_count = 3; }));
+  others.push_back(identity([](Tool& t) { t.marker_radius_m += 1e-9; }));
+  others.push_back(identity([](Tool& t) { t.shape = MarkerShape::disc; }));
+  for (double DepthBias::*const part :
+       {&DepthBias::offset_m, &DepthBias::per_metre, &DepthBias::dim_m, &DepthBias::range_min_m,
+        &DepthBias::range_max_m})
+    others.push_back(identity([&](Tool& t) { t.depth_bias.*part += 1e-9; }));
+  others.push_back(identity([](Tool& t) { t.depth_bias.range_max_m = 0; }));
+  std::sort(others.begin(), others.end());
+  EXPECT_EQ(std::unique(others.begin(), others.end()), others.end());
+  const auto unmeasured = [&](double offset_m) {
+    return identity([&](Tool& t) { t.depth_bias = {offset_m, 0, 0, 0, 0}; });
+  };
+  EXPECT_EQ(unmeasured(0), unmeasured(0.5)) << "a bias that was not measured is none";
+}
+
+TEST(Tool, IsPreparedWithThreeToEightMarkersAMillimetreApart) {
+  test::Random random(6);
+  for (int count = -1; count <= k_markers_per_tool_max + 1; ++count) {
+    Tool tool = test::random_tool(random, k_markers_per_tool_max);
+    tool.marker_count = count;
+    const Reason expected = count > k_markers_per_tool_max ? Reason::out_of_range
+                            : count < 3                    ? Reason::too_few_markers
+                                                           : Reason::none;
+    EXPECT_EQ(prepare_tool(tool), expected) << count;
+    EXPECT_EQ(tool.identity == 0, expected != Reason::none) << "refused ones have none";
+    for (std::size_t i = 0; i < k_markers_per_tool_max; ++i) {
+      for (std::size_t j = 0; j < k_markers_per_tool_max; ++j) {
+        const bool both = expected == Reason::none && std::max(i, j) < std::size_t(count);
+        const double apart = (tool.markers_m[i] - tool.markers_m[j]).norm();
+        EXPECT_DOUBLE_EQ(tool.distance_m[i][j], both ? apart : 0);
+      }
+    }
+    EXPECT_EQ(tool.present(), count > 0);
+  }
+  Tool tool = small_tool();
+  tool.markers_m[1] = Vector3(k_marker_distance_min_m, 0, 0);
+  EXPECT_EQ(prepare_tool(tool), Reason::none);
+  tool.markers_m[1] = Vector3(0.999 * k_marker_distance_min_m, 0, 0);
+  EXPECT_EQ(prepare_tool(tool), Reason::degenerate);
+}
+
+TEST(Tool, HasItsMarkersMeanAsItsMiddleAndASpheresRadiusBehindItsSurface) {
+  Tool tool = small_tool();
+  EXPECT_LT((tool.middle_m() - Vector3(0.01, 0.015, 0.0075)).norm(), 1e-15);
+  EXPECT_EQ(tool.centre_offset_m(), tool.marker_radius_m);
+  tool.shape = MarkerShape::disc;
+  EXPECT_EQ(tool.centre_offset_m(), 0);
+  tool.marker_count = 1;
+  EXPECT_EQ(tool.middle_m(), tool.markers_m[0]);
+  tool.marker_count = 0;
+  EXPECT_EQ(tool.middle_m(), Vector3(0, 0, 0));
+  EXPECT_FALSE(tool.present());
+}
+
+// All points within a micrometre of their mean, and a little further.
+TEST(RigidFit, CallsPointsWithinAMicrometreOnePlace) {
+  const auto square = [](double side) {
+    return std::vector<Vector3>{{side, 0, 0}, {0, side, 0}, {-side, 0, 0}, {0, -side, 0}};
+  };
+  EXPECT_EQ(rotation_is_fixed_by(square(0.99e-6)), Reason::degenerate);
+  EXPECT_EQ(rotation_is_fixed_by(square(1.01e-6)), Reason::none);
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ RobustMean plain(const std::vector<double>& values, double gate_least) {
     ++inliers;
   }
   out.mean = inliers > 0 ? sum / inliers : out.median;
+  out.near = inliers;
   return out;
 }
 
@@ -47,6 +48,7 @@ void expect_same(const std::vector<double>& values, double gate_least) {
   EXPECT_EQ(found.median, expected.median) << values.size();
   EXPECT_EQ(found.gate, expected.gate) << values.size();
   EXPECT_NEAR(found.mean, expected.mean, 1e-14) << values.size();
+  EXPECT_EQ(found.near, expected.near) << values.size();
 }
 
 TEST(RobustMean, IsWhatThePlainVersionFinds) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -109,6 +110,48 @@ TEST(SphereShift, IsANumberWhateverTheCamera) {
     }
   }
   EXPECT_EQ(shift_px({}, {100, 100}, 0.02), Vector2(0, 0));
+}
+
+// f tan(t) / cos^2(t): a gain of 1 / cos^2(t) a unit of distance, at each of the table's places.
+TEST(SphereShift, GainOfAPinholeIsTheSquareOfTheSecant) {
+  CameraModel camera = pinhole();
+  camera.width = 700;
+  camera.height = 500;
+  camera.cx = 200;
+  camera.cy = 350;
+  const SphereShift shift = sphere_shift(camera);
+  EXPECT_EQ(shift.axis_px, Vector2(200, 350));
+  const double square = 500.0 * 500 + 350.0 * 350;  // of the farthest corner
+  EXPECT_DOUBLE_EQ(shift.entries_per_square_px, (k_sphere_shift_entries - 1) / square);
+  for (int i = 0; i < k_sphere_shift_entries; ++i) {
+    const double h = std::max(std::sqrt(i * square / (k_sphere_shift_entries - 1)), 24.0);
+    const double secant_square = 1 + h * h / (253 * 253);
+    EXPECT_NEAR(shift.gain[static_cast<std::size_t>(i)] / secant_square, 1, 0.01) << i;
+  }
+}
+
+// Of a table of its own: even steps of the squared distance, as at the last one beyond.
+TEST(SphereShift, InterpolatesItsTableByTheSquaredDistance) {
+  SphereShift shift;
+  shift.axis_px = {30, 40};
+  shift.entries_per_square_px = 0.01;
+  for (std::size_t i = 0; i < k_sphere_shift_entries; ++i)
+    shift.gain[i] = 1 + static_cast<double>(i * i);
+  const auto gain_at = [&](double x, double y) {
+    const Vector2 moved = shift_px(shift, {30 + x, 40 + y}, 0.1);
+    EXPECT_NEAR(moved.x() * y, moved.y() * x, 1e-6) << "along the line from the axis";
+    return moved.dot(Vector2(x, y)) / (0.01 * (x * x + y * y));
+  };
+  EXPECT_NEAR(gain_at(10, 0), 2, 1e-12);
+  EXPECT_NEAR(gain_at(0, -20), 17, 1e-12);
+  EXPECT_NEAR(gain_at(-6, 8), 2, 1e-12);
+  EXPECT_NEAR(gain_at(5, 0), 1.25, 1e-12) << "a quarter of the first step";
+  EXPECT_NEAR(gain_at(15, 5), 0.5 * (5 + 10), 1e-12) << "between two and three";
+  const double last = k_sphere_shift_entries - 1;
+  EXPECT_NEAR(gain_at(std::sqrt(100 * last), 0), 1 + last * last, 1e-9);
+  EXPECT_NEAR(gain_at(std::sqrt(100 * (last - 0.5)), 0),
+              0.5 * (2 + last * last + (last - 1) * (last - 1)), 1e-9);
+  EXPECT_NEAR(gain_at(500, 900), 1 + last * last, 1e-9);
 }
 
 // As g++ -O3 and clang++ -O1 on x86-64 and g++ on arm64 have them.
