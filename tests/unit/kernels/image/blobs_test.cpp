@@ -280,9 +280,9 @@ TEST(Blobs, ComeByRowsThenFromLeftInTheLargestFrame) {
   find.bands = 2;
   Picture wide(k_width_max, k_height_max);
   const std::vector<std::pair<int, int>> places = {// row, column
-                                                   {0, 0},      {0, 511},  {0, 513},
-                                                   {0, 1023},   {511, 3},  {513, 1},
-                                                   {513, 1020}, {1023, 0}, {1023, 1023}};
+                                                   {0, 0},     {0, 511},  {0, 513},    {0, 1023},
+                                                   {1, 100},   {511, 3},  {513, 1},    {513, 1020},
+                                                   {514, 100}, {1023, 0}, {1023, 1023}};
   for (const auto& [y, x] : places) wide(x, y) = 1000;
   const Blobs& blobs = find(wide);
   ASSERT_EQ(blobs.count, static_cast<int>(places.size()));

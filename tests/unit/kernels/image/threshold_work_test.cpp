@@ -221,6 +221,17 @@ TEST(ThresholdLimits, TakeAsManyRoisAsTools) {
   EXPECT_EQ(pixels(3, -1), 0);
 }
 
+// Too many ROIs are one, also in what they cost.
+TEST(ThresholdWork, OfTooManyRoisIsThatOfTheFrame) {
+  const Picture picture(70, 6);
+  Limits limits;
+  limits.tools = 1;
+  const ThresholdWork work =
+      work_of(picture, rois_of({{0, 0, 1, 1}, {3, 3, 4, 4}}), {1, 2}, limits);
+  EXPECT_EQ(work.stretches, 3);
+  EXPECT_EQ(work.blocks, 3 * blocks_of(70, 32));
+}
+
 // ROIs that hold no pixel of the frame take no work either.
 TEST(ThresholdWork, SkipsRoisWithoutAPixelOfTheBand) {
   const Picture picture(64, 8, 500);

@@ -147,6 +147,17 @@ TEST(CameraModel, CountsTheStepsOfASearchForARay) {
   EXPECT_EQ(taken, 2 * needed - 1) << "a pinhole takes none";
 }
 
+// The search begins where a pixel's step moves no ray: it ends at once, whatever steps are left.
+TEST(CameraModel, EndsItsSearchWhereTheLensFolds) {
+  CameraModel camera = skewed_lens(Lens::brown);
+  // 1 - 16 r^2 + 15 r^4 is 0 at r = 1, which is four times the distorted place.
+  camera.distortion = {-16, 15, 0, 0, 0, 0, 0, 0};
+  int steps = 0;
+  const Vector2 pixel{camera.cx + 0.25 * camera.fx, camera.cy};
+  EXPECT_EQ(unproject_turning(camera, pixel, k_ray_steps_max, steps).reason, Reason::out_of_range);
+  EXPECT_EQ(steps, 1);
+}
+
 // Within 45 degrees: further out OpenCV's fixed-point search no longer settles to 1e-6 px.
 TEST(CameraModel, UnprojectsAsOpenCvDoes) {
   for (const CameraModel& camera : polynomial_lenses()) {
