@@ -62,6 +62,7 @@ TEST(SizeGate, IsWideOpenForEachFigureThatIsNone) {
   };
   EXPECT_FALSE(is_open(0.006, 0.2, 1, 253));
   EXPECT_FALSE(is_open(0.006, 0.2, 0.2, 253)) << "one range";
+  EXPECT_FALSE(is_open(0.006, 0.2, 0.3, 0.5)) << "however short a lens";
   for (const double none : {0.0, -1.0, k_none}) {
     EXPECT_TRUE(is_open(none, 0.2, 1, 253)) << none;
     EXPECT_TRUE(is_open(0.006, none, 1, 253)) << none;
@@ -75,6 +76,9 @@ MarkerOptics optics() { return {0.004, 0.007, 0.7, 253, 0.2, 1.5, 0.0005, 4090};
 TEST(MarkerSizes, AreUnknownForEachFigureThatIsNone) {
   constexpr double k_none = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(marker_sizes(optics()).known);
+  MarkerOptics little = optics();
+  little.focal_px = little.range_max_m = 0.5;
+  EXPECT_TRUE(marker_sizes(little).known) << "however short a lens";
   for (double MarkerOptics::*const figure :
        {&MarkerOptics::radius_min_m, &MarkerOptics::radius_max_m, &MarkerOptics::range_min_m,
         &MarkerOptics::range_max_m, &MarkerOptics::focal_px, &MarkerOptics::depth_unit_m}) {

@@ -212,22 +212,31 @@ TEST(BackProjectFrame, LooksAtNoMoreBlobsThanTheLimitAndHasNothingOfAFrameBefore
   EXPECT_EQ(scene.markers->incomplete, Reason::none);
 }
 
-// A large blob first: it takes what the others leave, never their share.
+// Large blobs: one alone takes what the others leave, of four each has its share, of samples as of
+// pixels.
 TEST(BackProjectFrame, LeavesEachBlobItsShare) {
   for (const int count : {1, 4}) {
-    Scene scene;
-    scene.limits.blobs = 4;
-    scene.limits.range_samples_a_blob = 12;
-    scene.limits.range_pixels_a_blob = 90;
-    scene.add({64, 64}, 2000);
-    for (int i = 1; i < count; ++i) scene.add({20.0 + 20 * i, 20}, 2000);
-    const BackProjectWork work = scene.project();
-    const int most = 12 * 4;
-    EXPECT_LE(work.samples, most);
-    EXPECT_EQ(work.samples, count == 1 ? pixels_within({64, 64}, 3.7) : most);
-    EXPECT_LE(work.pixels, 90 * 4);
-    for (int i = 0; i < count; ++i)
-      EXPECT_EQ(scene.markers->items[static_cast<std::size_t>(i)].flags & k_marker_no_depth, 0);
+    for (const bool blind : {false, true}) {
+      Scene scene;
+      scene.limits.blobs = 4;
+      scene.limits.range_samples_a_blob = 12;
+      scene.limits.range_pixels_a_blob = 90;
+      for (int i = 0; i < count; ++i) {
+        const Vector2 middle{i == 0 ? 64.0 : 20.0 + 25 * i, i == 0 ? 64.0 : 20.0};
+        scene.add(middle, 2000);
+        if (blind) scene.blind(middle, 5);  // so that the ring is looked for
+      }
+      const BackProjectWork work = scene.project();
+      EXPECT_LE(work.pixels, 90 * 4);
+      EXPECT_LE(work.samples, 12 * 4);
+      if (blind) continue;
+      EXPECT_EQ(work.samples, count == 1 ? pixels_within({64, 64}, 3.7) : 12 * 4);
+      for (int i = 0; i < count; ++i) {
+        const Marker& marker = scene.markers->items[static_cast<std::size_t>(i)];
+        EXPECT_EQ(marker.flags & k_marker_no_depth, 0);
+        EXPECT_EQ(marker.range_sigma_m, scene.markers->items[0].range_sigma_m) << "as many samples";
+      }
+    }
   }
 }
 

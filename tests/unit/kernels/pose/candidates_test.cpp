@@ -114,6 +114,8 @@ TEST(Candidates, TakeEachAreaFromTheLeastToTheLargestAndNoneBeyond) {
     EXPECT_TRUE(takes(0, 0)) << "of a point without an image";
     s.settings.focal_px = 0;
     EXPECT_TRUE(takes(most + 1, 0)) << "no area is expected";
+    s.settings.focal_px = 0.5;
+    EXPECT_FALSE(takes(most + 1, 0)) << "hardly any is expected";
     s.settings.focal_px = 253;
     s.tool.marker_radius_m = 0;
     EXPECT_TRUE(takes(most + 1, 0)) << "no area is expected";
@@ -130,6 +132,9 @@ TEST(Candidates, StateTheNoiseAcrossTheRayByTheFocalLengthOrTheRanges) {
   s.settings.focal_px = 250;
   s.select();
   EXPECT_DOUBLE_EQ(s.candidates->across_variance_m2[0], std::pow(0.8 * 0.2 / 250, 2));
+  s.settings.focal_px = 0.5;  // however short
+  s.select();
+  EXPECT_DOUBLE_EQ(s.candidates->across_variance_m2[0], std::pow(0.8 * 0.2 / 0.5, 2));
 }
 
 // At just the gate's distance from where the first marker is predicted, and no further.

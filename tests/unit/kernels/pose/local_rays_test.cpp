@@ -122,6 +122,28 @@ TEST(RayStepsNeeded, IsOneMoreThanTheLensTakes) {
   EXPECT_GT(ray_steps_needed(wide_lens()), 12);
 }
 
+// The axis in a corner: the rays that take the most steps lie in the opposite one, whichever it is.
+TEST(RayStepsNeeded, LooksAtTheWholeFrame) {
+  CameraModel camera = wide_lens();
+  camera.width = 400;
+  camera.height = 240;
+  camera.cx = 200;
+  camera.cy = 120;
+  const int middle = ray_steps_needed(camera);
+  int needed = 0;
+  for (const double x : {0.0, 400.0}) {
+    for (const double y : {0.0, 240.0}) {
+      camera.cx = x;
+      camera.cy = y;
+      const int steps = ray_steps_needed(camera);
+      EXPECT_GT(steps, middle);
+      if (needed == 0) needed = steps;
+      EXPECT_EQ(steps, needed) << x << " " << y;
+      EXPECT_EQ(rays_lost(camera, steps), 0);
+    }
+  }
+}
+
 TEST(RayStepsNeeded, LosesNoRayThatTheLensHas) {
   for (const CameraModel& camera :
        {hololens2_ahat().model, hololens1_short_throw().model, wide_lens()}) {

@@ -90,6 +90,23 @@ TEST(MarkerSight, GivesAPointWithoutAnImageItsNoiseByTheFocalLength) {
   }
 }
 
+TEST(MarkerSight, TakesAnyFocalLengthThatIsPositive) {
+  Marker marker;
+  marker.ray = Vector3::UnitZ();
+  marker.centroid_px = {31, 42};
+  const MarkerSight sight = sight_of(marker, 0.8, {0.002, 0.1, 0.5});
+  EXPECT_NEAR(sight.rays.along_x.norm(), 1 / 0.5, 1e-12);
+  EXPECT_NEAR(sight.rays.along_y.norm(), 1 / 0.5, 1e-12);
+  EXPECT_NEAR(sight.rays.along_x.dot(sight.rays.along_y), 0, 1e-12);
+  EXPECT_EQ(sight.rays.pixel, marker.centroid_px);
+  EXPECT_NEAR(sight.variance.xx_px2, 0.01, 1e-15);
+  // Without one metres at the marker's range stand in for pixels.
+  const MarkerSight metres = sight_of(marker, 0.8, {0.002, 0.1, 0});
+  EXPECT_NEAR(metres.rays.along_x.norm(), 1 / 0.8, 1e-12);
+  EXPECT_EQ(metres.variance.xx_px2, metres.variance.range_m2);
+  EXPECT_EQ(metres.variance.yy_px2, metres.variance.range_m2);
+}
+
 TEST(MarkerSight, GivesAPointWithoutAFocalLengthTheSameNoiseInEveryDirection) {
   Random random(2);
   const MarkerNoise alike{0.001, 0.1, 0};
