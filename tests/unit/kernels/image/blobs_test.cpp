@@ -274,6 +274,18 @@ TEST(Blobs, ComeByRowsThenFromLeft) {
   EXPECT_EQ(find(Picture(8, 8)).count, 0);
 }
 
+// The second component begins further right in its first row, but its box further left.
+TEST(Blobs, ComeByTheirBoxesCornersNotByTheirFirstRuns) {
+  Finder find;
+  const Blobs& blobs = find(picture_of({"..#..#", ".....#", "#####.", "......", "#....."}));
+  ASSERT_EQ(blobs.count, 3);
+  EXPECT_EQ(blobs.items[0].area_px, 7u);
+  EXPECT_EQ(blobs.items[0].x0, 0);
+  EXPECT_EQ(blobs.items[1].area_px, 1u);
+  EXPECT_EQ(blobs.items[1].x0, 2);
+  EXPECT_EQ(blobs.items[2].y0, 4);
+}
+
 // Of the largest frame: each corner, and what lies beside and beneath the middle.
 TEST(Blobs, ComeByRowsThenFromLeftInTheLargestFrame) {
   Finder find;

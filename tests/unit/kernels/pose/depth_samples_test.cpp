@@ -154,6 +154,21 @@ TEST_F(DepthSamplesOf, ABlobAtTheBorderStayInTheFrame) {
   }
 }
 
+// A pixel at just the inner radius is the ring's; one at the outer radius is not, nor the disc's.
+TEST_F(DepthSamplesOf, ARadiusBeginsARingAndEndsADisc) {
+  const auto at = [&](double distance) {
+    return pixels_between(distance, std::nextafter(distance, 99.0)).size();
+  };
+  blob_.centroid_px = {32, 31.5};
+  ASSERT_EQ(at(3.5), 2u);
+  EXPECT_EQ(pixels_of(inner(5, 64)), pixels_between(0, 3.5));
+  blob_.centroid_px = {32.5, 31.5};
+  ASSERT_EQ(at(7), 4u);
+  ASSERT_EQ(at(5), 12u);
+  EXPECT_EQ(ring(10, 64, 1000).tried, static_cast<int>(pixels_between(7, 10.5).size()));
+  EXPECT_EQ(pixels_of(ring(4.5, 64, 1000)), pixels_between(0.7 * 4.5, 5));
+}
+
 // Both kinds of frame, with the same levels.
 TEST_F(DepthSamplesOf, AreTheSameOfEightBits) {
   for (std::size_t i = 0; i < bright_.size(); ++i)
