@@ -138,6 +138,28 @@ TEST(CorrespondPrediction, APredictionDecidesBetweenReadingsThatTheNoiseCannotTe
   }
 }
 
+// A rectangle turned by a quarter: each corner is off by half the sides' difference both ways. Of
+// four markers three sigmas of the likelihood ratio are an rms of one and a half.
+TEST(CorrespondPrediction, OverrulesAResidualOfThreeSigmasAndNoMore) {
+  CorrespondSettings settings;
+  const double limit_m = 1.5 * settings.range_sigma_m * std::sqrt(2.0);  // of the sides' difference
+  const Quaternion quarter = from_rotation_vector(Vector3(0, 0, 1.5707963267948966));
+  for (const double part : {0.97, 1.03}) {
+    const double longer = 80, shorter = 80 - 1e3 * part * limit_m;
+    const Tool plate =
+        test::tool_of<4>({{0, 0, 0}, {longer, 0, 0}, {longer, shorter, 0}, {0, shorter, 0}});
+    std::vector<Vector3> points;
+    for (std::size_t i = 0; i < 4; ++i) points.push_back(k_truth * plate.markers_m[i]);
+    const Vector3 middle = plate.middle_m();
+    const Pose turned{quarter, k_truth * middle - quarter * middle};
+    const Labelings found = labelings_of(centres(plate, points), plate, settings, &turned);
+    ASSERT_EQ(found.items[0].count, 4);
+    const double off = test::angle_between(found.items[0].T_camera_tool.rotation, quarter);
+    EXPECT_EQ(off < 0.1, part < 1) << off;
+    EXPECT_NEAR(found.items[0].rms_m, part < 1 ? part * 1.5 * settings.range_sigma_m : 0, 1e-9);
+  }
+}
+
 TEST(CorrespondPrediction, APredictionDoesNotOverruleAClearResidual) {
   const Tool pen = test::five_marker_pen();
   Random random(7);
