@@ -64,7 +64,7 @@ template <class Wires, class Token, class... Other>
 }
 
 template <class Wires, class Listed, class Parameter>
-[[nodiscard]] consteval bool check_parameter() {
+consteval void check_parameter() {
   using Node = typename Unit<Listed>::Node;
   using Token = TokenOf<Listed, Parameter>;
   constexpr PortKind kind = Port<Parameter>::kind;
@@ -83,58 +83,56 @@ template <class Wires, class Listed, class Parameter>
     constexpr bool remembers_input = kind == PortKind::previous && handed_in;
     (void)sizeof(PreviousOfInput<Token, !remembers_input>);
   }
-  return true;
 }
 
 template <class Wires, class Listed, class... Parameter>
-[[nodiscard]] consteval bool check_node(TypeList<Parameter...> /*parameters*/) {
+consteval void check_node(TypeList<Parameter...> /*parameters*/) {
   (void)sizeof(NotANode<typename Unit<Listed>::Node, callable<Listed>>);
-  return (check_parameter<Wires, Listed, Parameter>() && ... && true);
+  (check_parameter<Wires, Listed, Parameter>(), ...);
 }
 
 template <class Wires, class Token>
-[[nodiscard]] consteval bool check_token() {
+consteval void check_token() {
   constexpr int writers = Wires::template count_of<Token>(PortKind::write);
   (void)sizeof(TwoWriters<Token, writers + (Wires::template is_input<Token> ? 1 : 0) <= 1>);
-  return true;
 }
 
 template <class Wires, class... Token>
-[[nodiscard]] consteval bool check_tokens(TypeList<Token...> /*tokens*/) {
-  return (check_token<Wires, Token>() && ... && true);
+consteval void check_tokens(TypeList<Token...> /*tokens*/) {
+  (check_token<Wires, Token>(), ...);
 }
 
 template <class Wires, class... Token>
-[[nodiscard]] consteval bool check_outputs(TypeList<Token...> /*outputs*/) {
+consteval void check_outputs(TypeList<Token...> /*outputs*/) {
   ((void)sizeof(OutputNeverWritten<Token, Wires::template count_of<Token>(PortKind::write) != 0>),
    ...);
-  return true;
 }
 
 template <class Wires>
-[[nodiscard]] consteval bool check_order() {
+consteval void check_order() {
   if constexpr (Wires::order.placed < Wires::unit_count) {
     (void)sizeof(
         Cycle<At<Wires::order.cycle_token, typename Wires::Tokens>,
               typename Unit<At<Wires::order.cycle_unit, typename Wires::Listed>>::Node, false>);
   }
-  return true;
 }
 
 template <class Node, class... Listed>
-[[nodiscard]] consteval bool check_once() {
+consteval void check_once() {
   constexpr int times = (static_cast<int>(std::is_same_v<Node, typename Unit<Listed>::Node>) + ...);
   (void)sizeof(ListedTwice<Node, times == 1>);
-  return true;
 }
 
+// True; a rule that does not hold is a compile error.
 template <class Wires, class... Listed>
 [[nodiscard]] consteval bool check_graph() {
   static_assert(sizeof...(Listed) > 0, "a graph has at least one node");
-  return (check_once<typename Unit<Listed>::Node, Listed...>() && ...) &&
-         (check_node<Wires, Listed>(Parameters<Listed>{}) && ...) &&
-         check_tokens<Wires>(typename Wires::Tokens{}) &&
-         check_outputs<Wires>(typename Wires::OutputTokens{}) && check_order<Wires>();
+  (check_once<typename Unit<Listed>::Node, Listed...>(), ...);
+  (check_node<Wires, Listed>(Parameters<Listed>{}), ...);
+  check_tokens<Wires>(typename Wires::Tokens{});
+  check_outputs<Wires>(typename Wires::OutputTokens{});
+  check_order<Wires>();
+  return true;
 }
 
 }  // namespace detail

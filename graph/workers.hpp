@@ -83,11 +83,8 @@ class Workers {
   void meet(int worker) noexcept {
     Own& own = own_[static_cast<std::size_t>(worker)];
     const std::uint64_t all = ++own.meetings * W;
-    if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == all) {
-      rest_->report_progress();
-      return;
-    }
-    (void)wait_for(
+    if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == all) rest_->report_progress();
+    (void)wait_for(  // the last one finds all there at its first look
         *rest_, own.overruns, [&] { return arrived_.load(std::memory_order_acquire) >= all; },
         [] { return true; });
   }

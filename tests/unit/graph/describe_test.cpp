@@ -64,5 +64,49 @@ TEST(Describe, ChangesTheSignatureWithTheWiring) {
   EXPECT_NE(Description<OtherOutput>::signature, Words::signature);
 }
 
+// A token of several parts is written by the first copy; what no node writes comes from outside.
+struct Twice {
+  void operator()(const Previous<Parts<Sum, 2>>&, const Latest<Scale>&, Slice,
+                  Sum&) const noexcept {}
+};
+
+TEST(Describe, MarksFeedbackOfPartsAndOutputsOfPartsByTheirFirstCopy) {
+  using Fed = Graph<Inputs<Latest<Scale>>, Outputs<Parts<Sum, 2>>, Split<Twice, 2>>;
+  constexpr auto& edges = Description<Fed>::edges;
+  ASSERT_EQ(edges.size(), 3U);
+  EXPECT_EQ(edges[0].kind, EdgeKind::previous);
+  EXPECT_EQ(edges[0].from, 0);
+  EXPECT_EQ(edges[0].to, 0);
+  EXPECT_EQ(edges[0].token, "Sum");
+  EXPECT_EQ(edges[1].kind, EdgeKind::latest);
+  EXPECT_EQ(edges[1].from, -1);
+  EXPECT_EQ(edges[2].kind, EdgeKind::parts);
+  EXPECT_EQ(edges[2].from, 0);
+  EXPECT_EQ(edges[2].to, -1);
+}
+
+// A long chain beside a short one: levels are paths, not places in the list.
+template <class In, class Out>
+struct Pass {
+  void operator()(const In&, Out&) const noexcept {}
+};
+struct Meet {
+  void operator()(const Total&, const Scale&, Sum&) const noexcept {}
+};
+
+TEST(Describe, GivesEachNodeTheLongestPathToItAsItsLevel) {
+  using Deep = Graph<Inputs<Row>, Outputs<Sum>, Meet, Pass<Row, Scale>, Pass<Scaled, Total>,
+                     Pass<Row, Scaled>>;
+  static_assert(Deep::level_count == 3);
+  constexpr auto& nodes = Description<Deep>::nodes;
+  // In the order of execution: those listed first of all that are ready.
+  EXPECT_EQ(nodes[0].level, 0);
+  EXPECT_EQ(nodes[1].level, 0);
+  EXPECT_EQ(nodes[2].level, 1);
+  EXPECT_EQ(nodes[3].level, 2);
+  EXPECT_EQ(nodes[3].name, "Meet");
+  static_assert(!Deep::has_split && SmallGraph::has_split);
+}
+
 }  // namespace
 }  // namespace glint::test::describe_test

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "graph/loops.hpp"
 #include "small_graph.hpp"
 
 namespace glint::test {
@@ -107,6 +108,56 @@ TEST(Graph, ShowsATraceEveryCopyOfEveryNodeInOrder) {
   Seen trace{&numbers};
   graph.activate(trace);
   EXPECT_EQ(numbers, (std::vector<int>{0, 0, 1, -1, 2, -2, 3, -3}));
+}
+
+// Ends after a node, and notes what it was asked.
+struct EndAfter {
+  int node;
+  std::vector<int> asked;
+  bool go_on(int at) {
+    asked.push_back(at);
+    return at < node;
+  }
+};
+
+TEST(Graph, EndsAnActivationAtTheNodeThatItsBoundaryNames) {
+  for (int last = 0; last < SmallGraph::node_count; ++last) {
+    static SmallGraph graph;
+    graph.latest<Scale>().set({1}, 1, 0);
+    graph.input<Row>().numbers = {1, 1, 1, 1, 1, 1, 1, 1};
+    graph.activate();
+    const Total before = graph.output<Total>();
+    std::vector<int> numbers;
+    Seen trace{&numbers};
+    EndAfter boundary{last, {}};
+    EXPECT_EQ(graph.activate_until(trace, boundary), last);
+    std::vector<int> begun, asked;
+    for (int node = 0; node <= last; ++node) {
+      begun.insert(begun.end(), {node, -node});
+      asked.push_back(node);
+    }
+    EXPECT_EQ(numbers, begun);
+    EXPECT_EQ(boundary.asked, asked);
+    // The feedback of an activation that was ended early is that of the one before.
+    const bool whole = last == SmallGraph::node_count - 1;
+    EXPECT_EQ(graph.output<Total>().activations, before.activations + (whole ? 1 : 0));
+    graph.activate();
+    EXPECT_EQ(graph.output<Total>().activations, before.activations + (whole ? 2 : 1));
+    EXPECT_EQ(graph.output<Total>().value, 8 * graph.output<Total>().activations);
+  }
+}
+
+TEST(Loops, AreWithinTheirWorstUpToEachOfThem) {
+  LoopCounts worst;
+  for (std::size_t loop = 0; loop < k_loops_max; ++loop) worst[loop] = 10;
+  EXPECT_TRUE(within(worst, worst));
+  EXPECT_TRUE(within({}, worst));
+  for (std::size_t loop = 0; loop < k_loops_max; ++loop) {
+    LoopCounts counts = worst;
+    ++counts[loop];
+    EXPECT_FALSE(within(counts, worst)) << loop;
+    EXPECT_NE(counts, worst);
+  }
 }
 
 struct Big {

@@ -81,5 +81,60 @@ TEST(RateGroup, SaysWhenARecordedVersionWasNotPublished) {
   EXPECT_TRUE(f.group.release_as(recorded));
 }
 
+struct Offset {
+  int value = 0;
+};
+struct AddBoth {
+  void operator()(const Row&, const Latest<Scale>& scale, const Latest<Offset>& offset,
+                  Sum& sum) const noexcept {
+    sum.value = scale.value().factor + offset.value().value;
+  }
+};
+using TwoRates = Graph<Inputs<Latest<Scale>, Row, Latest<Offset>>, Outputs<Sum>, AddBoth>;
+
+// Of two inputs each has a version of its own, in the order of Inputs<>.
+TEST(RateGroup, NotesAndReplaysTheVersionOfEachOfItsInputs) {
+  TripleBuffer<Scale> scales;
+  TripleBuffer<Offset> offsets;
+  TwoRates graph;
+  graph.latest<Scale>().bind(scales);
+  graph.latest<Offset>().bind(offsets);
+  RateGroup<TwoRates> group(graph, 5);
+  const auto publish = [](auto& buffer, std::uint64_t version) { buffer.publish(version, 0); };
+  publish(scales, 11);
+  publish(offsets, 21);
+  const Choice first = group.release(1'000);
+  EXPECT_EQ(first.version_count, 2);
+  EXPECT_EQ(first.versions[0], 11U);
+  EXPECT_EQ(first.versions[1], 21U);
+  EXPECT_EQ(group.choice(), first);
+  publish(offsets, 22);
+  const Choice second = group.release(2'000);
+  EXPECT_EQ(second.activation, 2U);
+  EXPECT_EQ(second.nominal_ns, 2'000);
+  EXPECT_EQ(second.versions[0], 11U) << "nothing newer";
+  EXPECT_EQ(second.versions[1], 22U);
+  // Newer ones of both: a replay moves only the input whose recorded version it does not hold.
+  Choice recorded = second;
+  recorded.activation = 9;
+  recorded.nominal_ns = 9'000;
+  recorded.versions[1] = 23;
+  publish(scales, 12);
+  publish(offsets, 23);
+  EXPECT_TRUE(group.release_as(recorded));
+  EXPECT_EQ(group.choice(), recorded);
+  EXPECT_EQ(group.release(10'000).activation, 10U) << "counts on from what was replayed";
+}
+
+TEST(RateGroup, ReplaysNoChoiceOfAnotherGroupOrOfFewerInputs) {
+  for (const bool fewer : {false, true}) {
+    Fixture f;
+    Choice recorded = f.group.release(0);
+    if (fewer) recorded.version_count = 0;
+    if (!fewer) ++recorded.group;
+    EXPECT_FALSE(f.group.release_as(recorded)) << fewer;
+  }
+}
+
 }  // namespace
 }  // namespace glint::test::rate_group_test

@@ -18,6 +18,7 @@ TEST(Ring, GivesItemsInTheOrderTheyCame) {
     }
   }
   EXPECT_EQ(ring.dropped(), 0u);
+  EXPECT_EQ(ring.capacity(), 4);
 }
 
 TEST(Ring, DropsAndCountsWhatFindsNoRoomAndKeepsWhatItHas) {

@@ -53,6 +53,38 @@ TEST(DeadlineWatch, NoticesOnlyAPassedDeadlineWithoutABound) {
   EXPECT_FALSE(watch.go_on(1));
 }
 
+// One nanosecond decides, with and without time that the remaining nodes need.
+TEST(DeadlineWatch, EndsOneNanosecondBeyondWhatFits) {
+  struct Case {
+    int node;
+    std::int64_t last_ns;  // at which what remains still fits
+  };
+  for (const Case& c : {Case{0, 40}, Case{1, 70}, Case{2, 100}, Case{3, 100}}) {
+    HandClock clock{c.last_ns};
+    auto watch = watch_on(clock, OverrunPolicy::predict);
+    EXPECT_TRUE(watch.go_on(c.node));
+    EXPECT_FALSE(watch.decision().happened());
+    ++clock.now_ns;
+    EXPECT_FALSE(watch.go_on(c.node));
+    EXPECT_TRUE(watch.decision().happened());
+    const OverrunKind kind = c.last_ns < 100 ? OverrunKind::will_miss : OverrunKind::missed;
+    EXPECT_EQ(watch.decision(),
+              (OverrunDecision{kind, OverrunPolicy::predict, static_cast<std::uint8_t>(c.node)}));
+  }
+}
+
+TEST(NoBoundary, NeverEndsAnActivation) {
+  EXPECT_TRUE(NoBoundary::go_on(0));
+  EXPECT_TRUE(NoBoundary::go_on(255));
+}
+
+TEST(OverrunPolicies, HaveTheNamesOfTheCellFile) {
+  EXPECT_EQ(name_of(OverrunPolicy::skip_output), "skip_output");
+  EXPECT_EQ(name_of(OverrunPolicy::hold_last), "hold_last");
+  EXPECT_EQ(name_of(OverrunPolicy::predict), "predict");
+  EXPECT_EQ(name_of(OverrunPolicy::stop_safe), "stop_safe");
+}
+
 TEST(RecordedBoundary, EndsWhereTheRecordingSaysAndNowhereWithoutADecision) {
   RecordedBoundary recorded({OverrunKind::will_miss, OverrunPolicy::predict, 4});
   EXPECT_TRUE(recorded.go_on(3));

@@ -1,0 +1,134 @@
+// How one worker waits: spins, looks, sleeps, and when a wait counts as an overrun.
+#include "graph/rest.hpp"
+
+#include <gtest/gtest.h>
+
+namespace glint::graph::rest_test {
+namespace {
+
+// Counts what is asked of it. Of its sleeps the first ones end by a report, the others whole.
+struct ScriptedRest {
+  std::uint32_t spins_allowed = 0;
+  std::uint64_t reported_sleeps = 0;
+  std::uint32_t reports = 100;
+  int spins = 0;
+  std::uint64_t sleeps = 0;
+  std::uint32_t slept_with = 0;
+
+  void spin() noexcept { ++spins; }
+  [[nodiscard]] std::uint32_t spins_max() const noexcept { return spins_allowed; }
+  [[nodiscard]] std::uint32_t progress() const noexcept { return reports; }
+  [[nodiscard]] bool sleep(std::uint32_t seen) noexcept {
+    slept_with = seen;
+    return sleeps++ < reported_sleeps;
+  }
+  void report_progress() noexcept { ++reports; }
+};
+static_assert(Rest<ScriptedRest>);
+
+struct Waited {
+  bool there = false;
+  int looks = 0;
+  int asked = 0;
+  std::uint64_t overruns = 0;
+};
+
+// Waits for what is there at look number `there_at`, and goes on for `patience` questions.
+Waited waited(ScriptedRest& rest, int there_at, int patience) {
+  Waited result;
+  std::atomic<std::uint64_t> overruns{0};
+  result.there = wait_for(
+      rest, overruns, [&] { return ++result.looks >= there_at; },
+      [&] { return ++result.asked <= patience; });
+  result.overruns = overruns.load();
+  return result;
+}
+
+constexpr int k_never = 1 << 30, k_always = 1 << 30;
+
+TEST(WaitFor, DoesNotRestWhereNothingIsLeftToWaitFor) {
+  for (const std::uint32_t spins : {0U, 50U}) {
+    ScriptedRest rest{.spins_allowed = spins};
+    const Waited found = waited(rest, 1, 0);
+    EXPECT_TRUE(found.there) << "even where the wait may not go on";
+    EXPECT_EQ(found.looks, 1);
+    EXPECT_EQ(rest.spins + static_cast<int>(rest.sleeps), 0);
+  }
+}
+
+TEST(WaitFor, LooksOnceASpin) {
+  ScriptedRest rest{.spins_allowed = 50};
+  const Waited found = waited(rest, 15, k_always);
+  EXPECT_TRUE(found.there);
+  EXPECT_EQ(found.looks, 15);
+  EXPECT_EQ(rest.spins, 14);
+  EXPECT_EQ(rest.sleeps, 0U);
+  EXPECT_EQ(found.asked, 0);
+}
+
+TEST(WaitFor, AsksEverySixteenthSpinWhetherToGoOn) {
+  ScriptedRest rest{.spins_allowed = 1'000};
+  const Waited found = waited(rest, k_never, 2);
+  EXPECT_FALSE(found.there);
+  EXPECT_EQ(found.asked, 3);
+  EXPECT_EQ(found.looks, 48);
+  EXPECT_EQ(rest.spins, 47);
+  EXPECT_EQ(rest.sleeps, 0U);
+}
+
+TEST(WaitFor, SleepsOnlyAfterAllItsSpins) {
+  ScriptedRest rest{.spins_allowed = 5};
+  const Waited found = waited(rest, 5 + 3, k_always);
+  EXPECT_TRUE(found.there);
+  EXPECT_EQ(rest.spins, 5);
+  EXPECT_EQ(rest.sleeps, 2U);
+  EXPECT_EQ(found.asked, 2) << "before each sleep";
+}
+
+TEST(WaitFor, EndsBetweenTwoSleepsWhereItMayNotGoOn) {
+  ScriptedRest rest{.spins_allowed = 5};
+  const Waited found = waited(rest, k_never, 4);
+  EXPECT_FALSE(found.there);
+  EXPECT_EQ(rest.sleeps, 4U);
+}
+
+// A report between the look and the sleep must end the sleep: it is given what was read before.
+TEST(WaitFor, SleepsByTheReportsThatItReadBeforeItLooked) {
+  ScriptedRest rest;
+  std::atomic<std::uint64_t> overruns{0};
+  int looks = 0;
+  const bool there = wait_for(
+      rest, overruns,
+      [&] {
+        rest.report_progress();
+        return ++looks > 1;
+      },
+      [] { return true; });
+  EXPECT_TRUE(there);
+  EXPECT_EQ(rest.sleeps, 1U);
+  EXPECT_EQ(rest.slept_with, 100U);
+}
+
+TEST(WaitFor, CountsOneOverrunAfterTheSleepsThatAWaitMayLast) {
+  const int whole = static_cast<int>(k_sleeps_max);
+  for (const int sleeps : {whole - 1, whole, whole + 1, 5 * whole}) {
+    ScriptedRest rest;
+    const Waited found = waited(rest, sleeps + 1, k_always);
+    EXPECT_TRUE(found.there);
+    EXPECT_EQ(rest.sleeps, static_cast<std::uint64_t>(sleeps));
+    EXPECT_EQ(found.overruns, sleeps < whole ? 0U : 1U) << sleeps;
+  }
+}
+
+TEST(WaitFor, CountsNoSleepThatAReportEnded) {
+  const int whole = static_cast<int>(k_sleeps_max);
+  for (const int more : {whole - 1, whole}) {
+    ScriptedRest rest{.reported_sleeps = 7};
+    const Waited found = waited(rest, 7 + more + 1, k_always);
+    EXPECT_EQ(rest.sleeps, static_cast<std::uint64_t>(7 + more));
+    EXPECT_EQ(found.overruns, more < whole ? 0U : 1U);
+  }
+}
+
+}  // namespace
+}  // namespace glint::graph::rest_test
