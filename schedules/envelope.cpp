@@ -39,9 +39,10 @@ class DualSimplexTable {
 
   EnvelopeFault solve(int& pivots) {
     int stalls = 0;
-    for (pivots = 0; pivots < k_pivots_max; ++pivots) {
+    for (pivots = 0; pivots < problem_.pivots_max; ++pivots) {
       find_multipliers();
-      const std::int64_t entering = stalls > k_stalls_max ? first_improving() : most_improving();
+      const bool stalled = stalls > problem_.stalls_max;
+      const std::int64_t entering = stalled ? first_improving() : most_improving();
       if (entering < 0) return EnvelopeFault::none;
       const Row direction = times_inverse(column(entering));
       const int leaving = row_that_blocks(direction);

@@ -47,6 +47,8 @@ struct EnvelopeProblem {
   LoopWeights weight{};  // w: counts whose bound is minimised
   int loops = 1;         // at most k_loops_max
   double margin = 0.05;  // 0.05: every cost is increased by 5 %
+  int pivots_max = k_pivots_max;
+  int stalls_max = k_stalls_max;
 };
 
 enum class EnvelopeFault : std::uint8_t { none, no_calls, cost_without_counts, pivots_exhausted };

@@ -106,6 +106,55 @@ TEST(BusLoad, CountsBothPhasesOfAnFdFrame) {
   EXPECT_EQ(step, 32 + 8 + 4 + 1);
 }
 
+// Each length and kind of identifier; the fields as ISO 11898-1 counts them.
+TEST(BusLoad, CountsEveryFieldOfFramesOfAnyLengthAndIdentifier) {
+  for (const bool extended : {false, true}) {
+    const int classic = extended ? 54 : 34, arbitration = extended ? 36 : 17;
+    for (const int length : {0, 1, 2, 7, 8}) {
+      const int bits = classic + 8 * length;
+      EXPECT_EQ(worst_case_bits({length, extended}).nominal,
+                bits + stuffing_of(hardest(bits)) + 13);
+    }
+    for (const int length : {0, 8, 16, 20, 64}) {
+      const int crc = 4 + (length <= 16 ? 17 : 21), fixed = length <= 16 ? 6 : 7;
+      const CanFrameBits bits = worst_case_bits({length, extended, true, true});
+      const int stuffed = arbitration + 5 + 8 * length;
+      EXPECT_EQ(bits.nominal, arbitration + stuffing_of(hardest(arbitration)) + 15) << length;
+      EXPECT_EQ(bits.nominal + bits.data,
+                stuffed + stuffing_of(hardest(stuffed)) + crc + fixed + 15)
+          << length;
+    }
+  }
+}
+
+TEST(BusLoad, TakesALengthThatNoFrameHasForTheNearest) {
+  for (const bool fd : {false, true}) {
+    const int most = fd ? 64 : 8;
+    for (const int over : {1, 100}) {
+      EXPECT_EQ(worst_case_bits({most + over, false, fd}).nominal,
+                worst_case_bits({most, false, fd}).nominal);
+      EXPECT_EQ(worst_case_bits({-over, false, fd}).nominal,
+                worst_case_bits({0, false, fd}).nominal);
+    }
+    EXPECT_LT(worst_case_bits({most - 1, false, fd}).nominal,
+              worst_case_bits({most, false, fd}).nominal);
+  }
+}
+
+// Poses at the tick rate, ten heartbeats of one byte and two time frames of eight a second.
+TEST(BusLoad, AddsUpEveryFrameOfASecond) {
+  for (const CanFormat format : {CanFormat::classic, CanFormat::fd}) {
+    const bool fd = format == CanFormat::fd;
+    const CanBitRates rates{400e3, 1.6e6};
+    const double pose_s = fd ? worst_case_seconds({64, false, true, true}, rates)
+                             : 5 * worst_case_seconds({8}, rates);
+    const CanLoad load = bus_load({3, 50, format}, rates);
+    EXPECT_DOUBLE_EQ(load.pose_seconds, pose_s);
+    EXPECT_DOUBLE_EQ(load.frames_per_second, (fd ? 1 : 5) * 3 * 50 + 10 + 2);
+    EXPECT_NEAR(load.fraction, 3 * 50 * pose_s + (10 * 65 + 2 * 135) / 400e3, 1e-12);
+  }
+}
+
 TEST(BusLoad, NoFdFrameIsLongerThanItsBound) {
   std::mt19937 random(2);
   for (int i = 0; i < 2000; ++i) {
@@ -146,7 +195,22 @@ TEST(BusLoad, RefusesSixteenToolsInClassicFrames) {
   EXPECT_TRUE(check_bus_load({1, 1000, CanFormat::classic}, {500e3, 4e6}));
 }
 
+TEST(BusLoad, StatesWhatIsNeededAndWhatWouldHelp) {
+  EXPECT_EQ(check_bus_load({16, 250, CanFormat::classic}, {1e6, 4e6}).value_or(""),
+            "CAN: 16 tools at 250 Hz in classic frames need 270 % of the bus (10.8 ms of each "
+            "tick's 4.0 ms); expected at most 100 %: fewer tools, a lower tick_hz, a higher bit "
+            "rate or FD frames");
+  // 36 bits at 25 kbit/s and 678 at 1 Mbit/s make 2.118 ms; the node's own frames 37 ms a second.
+  EXPECT_EQ(check_bus_load({1, 500, CanFormat::fd}, {25e3, 1e6}).value_or(""),
+            "CAN: 1 tool at 500 Hz in FD frames need 110 % of the bus (2.2 ms of each tick's 2.0 "
+            "ms); expected at most 100 %: fewer tools, a lower tick_hz, a higher bit rate");
+}
+
 TEST(BusLoad, RefusesABitRateOfZero) {
+  EXPECT_TRUE(check_bus_load({1, 250, CanFormat::classic}, {-1, 4e6}));
+  EXPECT_TRUE(check_bus_load({1, 250, CanFormat::fd}, {1e6, -1}));
+  EXPECT_EQ(check_bus_load({1, 250, CanFormat::fd}, {0, 4e6}).value_or(""),
+            "CAN: a bit rate of 0 or less; expected bits a second, e.g. 1000000");
   EXPECT_TRUE(check_bus_load({1, 250, CanFormat::classic}, {0, 4e6}));
   EXPECT_TRUE(check_bus_load({1, 250, CanFormat::fd}, {1e6, 0}));
   EXPECT_FALSE(check_bus_load({1, 250, CanFormat::classic}, {1e6, 0}));

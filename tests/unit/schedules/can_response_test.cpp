@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <random>
+#include <string>
+
 namespace glint::can_response_test {
 namespace {
 
@@ -100,6 +104,144 @@ TEST(CanResponse, HasNoBoundOnAnOverloadedBus) {
   EXPECT_GT(load_of(messages, {.nominal = 125e3}), 1);
   for (const CanResponse& found : can_responses(messages, {.nominal = 125e3})) {
     EXPECT_FALSE(found.response_ns);
+  }
+}
+
+// At 125 kbit/s each frame takes 1 ms, a bit 8 us. All of a queue count at the level of B, its
+// least urgent; C blocks, D goes ahead of both whenever it comes.
+TEST(CanResponse, OfAQueueCountsWhatIsMoreUrgentThanItsLeastUrgentFrame) {
+  std::vector<CanMessage> messages = davis_2007();
+  messages.push_back(messages[0]);
+  const std::uint32_t identifier[] = {1, 5, 9, 3};
+  for (std::size_t m = 0; m < 4; ++m) {
+    messages[m].identifier = identifier[m];
+    messages[m].period_ns = messages[m].deadline_ns = 20 * k_ms;
+    messages[m].fifo = m < 2;
+    messages[m].node = m < 2 ? 7 : static_cast<int>(m);
+  }
+  const auto found = [&](std::int64_t gap_of_d, std::int64_t jitter_of_a) {
+    messages[3].period_ns = gap_of_d;
+    messages[0].jitter_ns = jitter_of_a;
+    return can_responses(messages, {.nominal = 125e3});
+  };
+  for (const std::size_t m : {0U, 1U}) {
+    // C, D, the other, its own; and where D comes every 3 ms, D again.
+    EXPECT_EQ(found(4 * k_ms, 0)[m].response_ns, 4 * k_ms) << m;
+    EXPECT_EQ(found(3 * k_ms, 0)[m].response_ns, 5 * k_ms) << m;
+    EXPECT_EQ(found(3 * k_ms, 0)[m].queued_ns, 4 * k_ms) << m;
+    EXPECT_EQ(found(4 * k_ms, 2 * k_ms)[m].response_ns, (m == 0 ? 6 : 4) * k_ms) << "its own";
+  }
+  // D waits for one frame that began, and for A once, early by what it may wait behind B.
+  EXPECT_EQ(found(20 * k_ms, 0)[3].response_ns, 3 * k_ms);
+  EXPECT_EQ(found(20 * k_ms, 0)[3].queued_ns, 0);
+}
+
+TEST(CanResponse, AQueuesWaitBringsItsFramesCloserTogether) {
+  std::vector<CanMessage> messages = davis_2007();
+  for (CanMessage& message : messages) message.period_ns = message.deadline_ns = 20 * k_ms;
+  messages[0].period_ns = 5 * k_ms;
+  messages[0].node = messages[1].node = 7;
+  messages[0].fifo = messages[1].fifo = true;
+  // Either queued frame waits for one of C and the other of the queue: 2 ms. C begins after 2 ms;
+  // A comes again after 5 - 2 ms at the earliest, and after 2 ms where its period is 4 ms.
+  auto found = can_responses(messages, {.nominal = 125e3});
+  EXPECT_EQ(found[0].queued_ns, 2 * k_ms);
+  EXPECT_EQ(found[2].response_ns, 3 * k_ms);
+  messages[0].period_ns = 4 * k_ms;
+  found = can_responses(messages, {.nominal = 125e3});
+  EXPECT_EQ(found[0].queued_ns, 2 * k_ms);
+  EXPECT_EQ(found[2].response_ns, 4 * k_ms) << "a second A within the bit after which C begins";
+}
+
+// Which of two that share an identifier wins is left open: each may go ahead of the other.
+TEST(CanResponse, AnIdentifierThatTwoNodesUseDelaysEither) {
+  std::vector<CanMessage> messages = davis_2007();
+  for (CanMessage& message : messages) {
+    message.period_ns = message.deadline_ns = 20 * k_ms;
+    message.identifier = 4;
+  }
+  for (const CanResponse& found : can_responses(messages, {.nominal = 125e3})) {
+    EXPECT_EQ(found.response_ns, 3 * k_ms);
+  }
+}
+
+TEST(CanResponse, AddsAFramesJitterToItsOwnResponseAndItsReleasesToOthers) {
+  std::vector<CanMessage> messages = davis_2007();
+  for (CanMessage& message : messages) message.period_ns = message.deadline_ns = 20 * k_ms;
+  messages[0].jitter_ns = 19 * k_ms;
+  const auto found = can_responses(messages, {.nominal = 125e3});
+  EXPECT_EQ(found[0].response_ns, 19 * k_ms + 2 * k_ms);
+  EXPECT_EQ(found[1].response_ns, 4 * k_ms) << "A twice, one of C, its own";
+}
+
+TEST(CanResponse, TakesAStatedLengthInPlaceOfTheShapes) {
+  std::vector<CanMessage> messages = davis_2007();
+  for (CanMessage& message : messages) message.period_ns = message.deadline_ns = 20 * k_ms;
+  messages[1].frame_ns = 300'000;
+  const auto found = can_responses(messages, {.nominal = 125e3});
+  EXPECT_EQ(found[1].frame_ns, 300'000);
+  EXPECT_EQ(found[1].response_ns, 2'300'000);
+  EXPECT_EQ(found[2].response_ns, 2'300'000);
+  EXPECT_DOUBLE_EQ(load_of(messages, {.nominal = 125e3}), (1 + 0.3 + 1) / 20);
+}
+
+TEST(CanResponse, HasABoundAtFullLoad) {
+  std::vector<CanMessage> messages = davis_2007();
+  messages.pop_back();
+  for (CanMessage& message : messages) message.period_ns = message.deadline_ns = 2 * k_ms;
+  EXPECT_EQ(load_of(messages, {.nominal = 125e3}), 1);
+  const auto found = can_responses(messages, {.nominal = 125e3});
+  EXPECT_EQ(found[0].response_ns, 2 * k_ms);
+  EXPECT_EQ(found[1].response_ns, 2 * k_ms);
+  messages[1].period_ns -= 1'000;
+  const auto none = can_responses(messages, {.nominal = 125e3});
+  EXPECT_FALSE(none[0].response_ns || none[1].response_ns);
+  EXPECT_EQ(none[1].frame_ns, 1 * k_ms) << "its length is stated all the same";
+}
+
+// A frame that holds the bus for longer than any busy period that is looked at.
+TEST(CanResponse, OfNoFrameIsBoundedWhereOneHasNoBound) {
+  for (const bool fifo : {false, true}) {
+    std::vector<CanMessage> messages = davis_2007();
+    for (CanMessage& message : messages) message.period_ns = 1'000'000 * k_ms;
+    messages[0].frame_ns = 101'000 * k_ms;
+    messages[0].fifo = fifo;
+    const auto found = can_responses(messages, {.nominal = 125e3});
+    ASSERT_EQ(found.size(), 3U);
+    for (const CanResponse& each : found) EXPECT_FALSE(each.response_ns);
+    EXPECT_EQ(found[0].frame_ns, 101'000 * k_ms);
+    EXPECT_EQ(found[2].frame_ns, 1 * k_ms);
+  }
+  EXPECT_TRUE(can_responses({}, {}).empty());
+}
+
+// The bits that two frames put on the bus, SOF and stuffing apart: the first that differs decides,
+// and 0 wins.
+TEST(CanResponse, OrdersIdentifiersAsArbitrationDoes) {
+  std::mt19937 random(11898);
+  const auto on_the_bus = [](const CanMessage& message) {
+    const bool extended = message.shape.extended;
+    std::string bits;
+    const auto append = [&](std::uint32_t value, int width) {
+      for (int i = width; i-- > 0;) bits += (value >> i & 1U) != 0 ? '1' : '0';
+    };
+    append(extended ? message.identifier >> 18 : message.identifier, 11);
+    append(extended ? 3 : 0, 2);  // SRR and IDE; RTR and IDE
+    if (extended) append(message.identifier & 0x3FFFF, 18);
+    return bits;
+  };
+  for (int i = 0; i < 2'000; ++i) {
+    std::array<CanMessage, 2> pair;
+    const std::uint32_t base = random() % 4;
+    for (CanMessage& message : pair) {
+      message.shape.extended = random() % 2 == 0;
+      const std::uint32_t high = 0x7F0 + base + random() % 2;
+      message.identifier =
+          message.shape.extended ? high << 18 | random() % 4 << 16 | random() % 3 : high;
+    }
+    const std::string a = on_the_bus(pair[0]), b = on_the_bus(pair[1]);
+    EXPECT_EQ(urgency_of(pair[0]) > urgency_of(pair[1]), a < b) << a << ' ' << b;
+    EXPECT_EQ(urgency_of(pair[0]) == urgency_of(pair[1]), a == b) << a << ' ' << b;
   }
 }
 

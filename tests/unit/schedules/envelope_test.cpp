@@ -136,6 +136,13 @@ TEST(Envelope, SaysThatACallCostsSomethingAlthoughNoLoopRan) {
   EXPECT_EQ(fit_envelope({calls, {1, 100}, 2, 0}).fault, EnvelopeFault::cost_without_counts);
 }
 
+TEST(Envelope, NamesEachFault) {
+  EXPECT_EQ(name_of(EnvelopeFault::none), "none");
+  EXPECT_EQ(name_of(EnvelopeFault::no_calls), "no calls");
+  EXPECT_EQ(name_of(EnvelopeFault::cost_without_counts), "a call costs something, but no loop ran");
+  EXPECT_EQ(name_of(EnvelopeFault::pivots_exhausted), "no optimum within the declared pivots");
+}
+
 TEST(Envelope, IsJudgedOnCallsThatItHasNotSeen) {
   Envelope envelope;
   envelope.cost = {100, 1};

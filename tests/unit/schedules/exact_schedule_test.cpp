@@ -75,6 +75,7 @@ TEST(ExactSchedule, ProvesTheOptimumForAGraphLikeTheTracker) {
   for (const int cores : {1, 2, 4}) {
     for (const std::int64_t handover : {0, 400, 3000, 30'000}) {
       const ExactSchedule found = exact_schedule(group, cores, handover);
+      EXPECT_LT(found.searched, k_search_nodes_max / 20) << "long before its limit";
       EXPECT_TRUE(found.optimal) << cores << " cores, hand-over " << handover;
       EXPECT_EQ(found.makespan_ns, found.least_possible_ns);
       std::printf("%d cores, hand-over %lld: %lld ns, %lld sequences\n", cores,
@@ -96,6 +97,41 @@ TEST(ExactSchedule, SaysHowFarFromTheOptimumItMayBeWhereTheSearchIsCut) {
   EXPECT_TRUE(cut.optimal || cut.least_possible_ns < cut.makespan_ns);
 }
 
+// Copies one, two: the second beside the first or behind it. Behind it, and with a third copy, no
+// sequence is better than the list's; of cores that are untouched the first alone is tried.
+TEST(ExactSchedule, TriesEqualNodesInOneOrderAndOneOfTheUntouchedCores) {
+  const auto searched = [](int copies, int cores) {
+    return exact_schedule(staged_group({{"Copy", copies, 10}}), cores, 0).searched;
+  };
+  EXPECT_EQ(searched(3, 2), 4);
+  EXPECT_EQ(searched(4, 3), 7);
+  EXPECT_EQ(searched(4, 2), 0) << "the list's makespan is the least possible";
+  EXPECT_EQ(searched(3, 1), 0);
+}
+
+TEST(ExactSchedule, TakesNodesThatReadTheSameInAnyOrderForCopies) {
+  const auto searched = [](std::vector<int> after) {
+    TaskGroup group = staged_group({{"A", 2, 10}, {"B", 3, 10}});
+    group.nodes[3].after = std::move(after);
+    return exact_schedule(group, 2, 0).searched;
+  };
+  EXPECT_EQ(searched({1, 0}), searched({0, 1}));
+  EXPECT_GT(searched({0}), searched({0, 1}));
+}
+
+// Four sequences as above, then the search was exhausted, if a fifth was allowed.
+TEST(ExactSchedule, ProvesTheOptimumByAnExhaustedSearchAlone) {
+  const TaskGroup group = staged_group({{"Copy", 3, 10}});
+  for (const std::int64_t allowed : {1, 3, 4, 5, 100}) {
+    const ExactSchedule found = exact_schedule(group, 2, 0, allowed);
+    EXPECT_EQ(found.searched, std::min<std::int64_t>(allowed, 4));
+    EXPECT_EQ(found.makespan_ns, 20);
+    EXPECT_EQ(found.optimal, allowed > 4) << allowed;
+    EXPECT_EQ(found.least_possible_ns, allowed > 4 ? 20 : 15) << allowed;
+    EXPECT_EQ(found.orders.size(), 2U);
+  }
+}
+
 TEST(ExactSchedule, KeepsToOneCoreWhereHandingOverCostsMoreThanItGains) {
   const TaskGroup group = staged_group({{"A", 1, 10}, {"B", 2, 10}, {"C", 1, 10}});
   const ExactSchedule found = exact_schedule(group, 2, 100);
@@ -110,8 +146,12 @@ TEST(MakespanBound, NoOptimumIsBelowIt) {
   EXPECT_EQ(least_between(30, 2, 0), 15);
   EXPECT_EQ(least_between(30, 2, 5), 20);
   EXPECT_EQ(least_between(30, 2, 50), 30);
-  EXPECT_LE(least_makespan(group, 2, 0), 40);
-  EXPECT_GE(least_makespan(group, 2, 0), 35);
+  EXPECT_EQ(least_makespan(group, 2, 0), 35);
+  EXPECT_EQ(least_makespan(group, 2, 5), 40);
+  EXPECT_EQ(least_makespan(group, 1, 5), 50);
+  // Without a path between them the work alone counts, rounded up.
+  EXPECT_EQ(least_makespan(staged_group({{"Copy", 5, 7}}), 2, 5), 18);
+  EXPECT_EQ(least_makespan(staged_group({{"Copy", 2, 7}}), 4, 5), 7);
 }
 
 }  // namespace

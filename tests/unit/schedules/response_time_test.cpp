@@ -43,5 +43,64 @@ TEST(ResponseTime, HasNoBoundAboveFullLoad) {
   EXPECT_FALSE(response_time({5, 10, 0, 0}, undeclared));
 }
 
+// Lehoczky's fifth activation: 518 after the begin of the busy period, of which five own ones are
+// 310 and eight of the urgent task's 208.
+TEST(ResponseTime, StatesWhatPreemptionTookOfTheWorstActivation) {
+  constexpr std::array<Interference, 1> k_urgent = {{{26, 70, 0}}};
+  EXPECT_EQ(response_time({62, 100, 0, 0}, k_urgent)->preempted_ns, 8 * 26);
+  EXPECT_EQ(response_time({4, 50, 5, 3}, {})->preempted_ns, 0) << "blocking is no preemption";
+}
+
+TEST(ResponseTime, LooksAtOneActivationWhereTheNextComesAfterIt) {
+  EXPECT_EQ(response_time({10, 10, 0, 0}, {})->activations, 1);
+  EXPECT_EQ(response_time({10, 11, 1, 0}, {})->activations, 1);
+  EXPECT_EQ(response_time({10, 0, 0, 0}, {})->activations, 1) << "no gap is declared";
+  EXPECT_EQ(response_time({10, 12, 5, 0}, {})->activations, 3);
+  EXPECT_EQ(response_time({10, 12, 5, 0}, {})->response_ns, 15) << "the first is the latest";
+  WorkUnderAnalysis late{10, 10, 1, 0};
+  EXPECT_FALSE(response_time(late, {})) << "the busy period never ends";
+}
+
+TEST(BusyWindow, EndsAtItsLimitAndNotBefore) {
+  for (const std::int64_t limit : {20, 19}) {
+    int steps = 100;
+    EXPECT_EQ(busy_window(5, k_two, limit, 0, steps).has_value(), limit == 20);
+  }
+}
+
+// From 5: 11, 14, 17, 20, and 20 again.
+TEST(BusyWindow, TakesAStepForEachLookAndEndsWithTheLast) {
+  for (const int allowed : {5, 4}) {
+    int steps = allowed;
+    const auto window = busy_window(5, k_two, 1'000, 0, steps);
+    EXPECT_EQ(window.has_value(), allowed == 5);
+    EXPECT_LE(steps, 0);
+  }
+  int steps = 7;
+  EXPECT_EQ(busy_window(5, k_two, 1'000, 20, steps), 20);
+  EXPECT_EQ(steps, 6) << "from a lower bound that holds all";
+  EXPECT_EQ(busy_window(5, k_two, 1'000, 18, steps), 20);
+  EXPECT_EQ(steps, 4);
+}
+
+TEST(BusyWindow, CountsAnUrgentReleaseOnceItsJitterBringsItIn) {
+  const auto window = [](std::int64_t jitter) {
+    const std::array<Interference, 1> urgent = {{{2, 10, jitter}}};
+    int steps = 100;
+    return *busy_window(6, urgent, 1'000, 0, steps);
+  };
+  EXPECT_EQ(window(0), 8);
+  EXPECT_EQ(window(2), 8);
+  EXPECT_EQ(window(3), 10) << "8 and 3 are more than its gap";
+}
+
+TEST(BusyWindow, CountsWorkThatTakesNoTimeForNothing) {
+  const std::array<Interference, 2> idle = {{{0, 0, 0}, {0, 1, 5}}};
+  int steps = 100;
+  EXPECT_EQ(busy_window(6, idle, 1'000, 0, steps), 6);
+  const std::array<Interference, 1> one = {{{1, 10, 0}}};
+  EXPECT_EQ(busy_window(6, one, 1'000, 0, steps), 7);
+}
+
 }  // namespace
 }  // namespace glint::response_time_test

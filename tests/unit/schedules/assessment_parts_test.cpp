@@ -1,0 +1,174 @@
+// Deadlines, rows and frames of an assessment, each by itself.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "small_question.hpp"
+
+namespace glint::assessment_parts_test {
+namespace {
+
+using test::k_ms;
+using test::k_us;
+using test::small_question;
+
+// Each deadline at its bound, then 1 us below it: one line names what is late.
+TEST(Assessment, HoldsUpToEachDeadlineAndNamesWhatIsLateBeyond) {
+  const Question question = small_question();
+  const Assessment within = assess(question);
+  ASSERT_TRUE(within.holds());
+  struct Case {
+    const char* name;
+    std::int64_t bound_ns;
+    std::int64_t& (*deadline)(Question&);
+  };
+  const Case cases[] = {
+      {"group frame", *within.groups[0].response_ns,
+       [](Question& q) -> std::int64_t& { return q.model.groups[0].deadline_ns; }},
+      {"group tick", *within.groups[1].response_ns,
+       [](Question& q) -> std::int64_t& { return q.model.groups[1].deadline_ns; }},
+      {"CAN frame pose", *within.can[0].response_ns,
+       [](Question& q) -> std::int64_t& { return q.frames[0].deadline_ns; }},
+      {"CAN frame drive", *within.can[1].response_ns,
+       [](Question& q) -> std::int64_t& { return q.frames[1].deadline_ns; }},
+      {"chain frame_to_can", within.chains[0].total_ns,
+       [](Question& q) -> std::int64_t& { return q.frame_to_can_deadline_ns; }},
+      {"chain mid_exposure_to_bus", within.chains[1].total_ns,
+       [](Question& q) -> std::int64_t& { return q.age_deadline_ns; }},
+  };
+  for (const Case& c : cases) {
+    Question tight = question;
+    c.deadline(tight) = c.bound_ns;
+    EXPECT_TRUE(assess(tight).holds()) << c.name;
+    c.deadline(tight) -= 1'000;
+    const Assessment late = assess(tight);
+    ASSERT_EQ(late.fails.size(), 1U) << c.name;
+    const auto in_us = [](std::int64_t ns) {
+      const std::int64_t tenths = ns / 100;
+      return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " us";
+    };
+    EXPECT_EQ(late.fails[0], c.name + (": bound " + in_us(c.bound_ns)) + ", deadline " +
+                                 in_us(c.bound_ns - 1'000));
+  }
+}
+
+// Of each group the rows are the whole response but for its jitter; two cores wake up twice.
+TEST(Assessment, SplitsEachResponseIntoItsRowsOnTwoCores) {
+  Question question = small_question();
+  question.model.cores = 2;
+  question.model.system.core_handover_ns = 3 * k_us;
+  question.model.groups[0] = staged_group({{"Find", 2, 60 * k_us}, {"Fit", 2, 40 * k_us}});
+  question.model.groups[0].min_gap_ns = question.model.groups[0].deadline_ns = 20 * k_ms;
+  question.model.groups[0].jitter_ns = 400 * k_us;
+  question.plan = synthesize(question.model);
+  const Assessment found = assess(question);
+  ASSERT_TRUE(found.holds()) << found.fails.front();
+  ASSERT_EQ(found.groups[0].times.cores_used, 2);
+  ASSERT_EQ(found.groups[1].times.cores_used, 1);
+  const Chain& chain = found.chains.at(1);
+  const auto row = [&](const std::string& name) {
+    std::int64_t ns = 0;
+    for (const ChainStage& stage : chain.stages) ns += stage.name == name ? stage.ns : 0;
+    return ns;
+  };
+  EXPECT_EQ(row("frame: wake-up"), 40 * k_us);
+  EXPECT_EQ(row("tick: wake-up"), 20 * k_us);
+  EXPECT_EQ(row("CAN write"), 10 * k_us) << "both frames";
+  EXPECT_EQ(row("frame: wake-up") + row("frame: nodes and preemption") +
+                row("frame: interrupts, hand-over, writes"),
+            *found.groups[0].response_ns - 400 * k_us);
+  EXPECT_EQ(row("tick: wake-up") + row("tick: nodes and preemption") + row("tick: interrupts") +
+                row("CAN write"),
+            *found.groups[1].response_ns);
+}
+
+TEST(Assessment, TakesTheFirstWriteAloneForFrameToCanAndNoneWhereNoneIsWritten) {
+  Question question = small_question();
+  for (const int writes : {0, 1, 5}) {
+    question.model.groups[1].can_writes = writes;
+    const Assessment found = assess(question);
+    ASSERT_TRUE(found.holds()) << found.fails.front();
+    EXPECT_EQ(found.chains[0].stages.back().name, "CAN write");
+    EXPECT_EQ(found.chains[0].stages.back().ns, (writes > 0 ? 5 : 0) * k_us) << writes;
+  }
+}
+
+// Own frames at the tick's rate carry poses; of these the slowest counts.
+TEST(Assessment, EndsTheChainWithTheSlowestFrameThatCarriesAPose) {
+  Question question = small_question();
+  const Assessment alone = assess(question);
+  const auto bus_ns = [](const Assessment& found) { return found.chains.at(1).stages.back().ns; };
+  CanMessage rare = question.frames[0];
+  rare.name = "heartbeat";
+  rare.identifier = 0x720;
+  rare.period_ns = rare.deadline_ns = 100 * k_ms;
+  rare.fifo = false;
+  CanMessage foreign = question.frames[1];
+  foreign.name = "slow";
+  foreign.identifier = 0x7FF;
+  foreign.period_ns = foreign.deadline_ns = 4 * k_ms;
+  question.frames = {rare, question.frames[0], foreign, question.frames[1]};
+  const Assessment more = assess(question);
+  ASSERT_TRUE(more.holds()) << more.fails.front();
+  const std::int64_t tick_ns = *more.groups[1].response_ns;
+  EXPECT_EQ(bus_ns(more), *more.can[1].response_ns - tick_ns);
+  EXPECT_LT(bus_ns(more), *more.can[0].response_ns - tick_ns) << "the heartbeat is slower";
+  EXPECT_GT(bus_ns(more), bus_ns(alone)) << "one frame more goes ahead";
+  // A second pose frame, shorter and less urgent: it waits for the first one, too.
+  CanMessage second = rare;
+  second.name = "buttons";
+  second.identifier = 0x1A4;
+  second.shape.data_bytes = 1;
+  second.period_ns = second.deadline_ns = 4 * k_ms;
+  for (const bool listed_first : {false, true}) {
+    Question two = question;
+    two.frames.insert(listed_first ? two.frames.begin() : two.frames.end(), second);
+    const Assessment both = assess(two);
+    ASSERT_TRUE(both.holds()) << both.fails.front();
+    const CanResponse& slowest = listed_first ? both.can.front() : both.can.back();
+    EXPECT_EQ(slowest.frame_ns, 65 * k_us);
+    EXPECT_EQ(bus_ns(both), *slowest.response_ns - *both.groups[1].response_ns);
+    EXPECT_GT(bus_ns(both), bus_ns(more));
+    EXPECT_EQ(both.chains[1].jitter_ns, both.chains[1].total_ns - 9 * k_ms - 52 * k_us);
+  }
+}
+
+TEST(Assessment, HasNoChainWhereAGroupHasNoBound) {
+  Question question = small_question();
+  question.model.groups[1].nodes[0].bound_ns = 5 * k_ms;  // a tick comes every 4 ms
+  const Assessment found = assess(question);
+  EXPECT_EQ(found.fails, (std::vector<std::string>{"group frame: bound none, deadline 20000.0 us",
+                                                   "group tick: bound none, deadline 4000.0 us"}));
+  EXPECT_TRUE(found.chains.empty());
+  ASSERT_EQ(found.can.size(), 2U);
+  EXPECT_FALSE(found.can[0].response_ns || found.can[1].response_ns);
+}
+
+TEST(Assessment, HasNoChainToABusThatIsFull) {
+  Question question = small_question();
+  question.frames[1].period_ns = 100 * k_us;
+  const Assessment found = assess(question);
+  ASSERT_EQ(found.fails.size(), 2U);
+  EXPECT_EQ(found.fails[0], "CAN frame pose: bound none, deadline 4000.0 us");
+  EXPECT_EQ(found.fails[1], "CAN frame drive: bound none, deadline 10000.0 us");
+  ASSERT_EQ(found.chains.size(), 1U);
+  EXPECT_EQ(found.chains[0].name, "frame_to_can");
+}
+
+// What the tick sends comes as late as the tick; what others send does not.
+TEST(Assessment, AddsTheTicksResponseToTheJitterOfItsOwnFramesAlone) {
+  Question question = small_question();
+  question.frames[0].jitter_ns = 7 * k_us;
+  const Assessment found = assess(question);
+  std::vector<CanMessage> frames = question.frames;
+  frames[0].jitter_ns += *found.groups[1].response_ns;
+  const std::vector<CanResponse> expected = can_responses(frames, question.rates);
+  for (std::size_t f = 0; f < 2; ++f) {
+    EXPECT_EQ(found.can[f].response_ns, expected[f].response_ns) << f;
+    EXPECT_EQ(found.can[f].frame_ns, expected[f].frame_ns) << f;
+  }
+}
+
+}  // namespace
+}  // namespace glint::assessment_parts_test
