@@ -17,8 +17,7 @@ void CheckFrame::operator()(const FrameStamp& stamp, FrameVerdict& verdict) noex
 
   bool resynchronised = false;
   if (reason == Reason::frame_late) {
-    refused_in_row_ =
-        stamp.mid_exposure > refused_newest_ || refused_in_row_ == 0 ? refused_in_row_ + 1 : 1;
+    refused_in_row_ = stamp.mid_exposure > refused_newest_ ? refused_in_row_ + 1 : 1;
     refused_newest_ = stamp.mid_exposure;
     if (refused_in_row_ >= k_resync_frames) {
       reason = Reason::none;

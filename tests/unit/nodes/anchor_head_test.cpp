@@ -29,10 +29,12 @@ class AnchorHeadByABody : public testing::Test {
     FrameVerdict verdict;
     verdict.stamp.mid_exposure = head.time;
     verdict.resynchronised = restarted;
+    verdict.reason = refused_ ? Reason::frame_late : Reason::none;
     last_ = out_;
     node_(verdict, head, tools, *fitted_, graph::Previous<Anchor>(last_), out_);
   }
 
+  bool refused_ = false;
   ToolSet set_;
   std::unique_ptr<graph::Parts<FittedTools, k_tool_slices>> fitted_ =
       std::make_unique<graph::Parts<FittedTools, k_tool_slices>>();
@@ -64,6 +66,59 @@ TEST_F(AnchorHeadByABody, TakesNoAmbiguousPoseForTheBodys) {
   for (int i = 1; i < 9; ++i) frame(i);
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1}}));
   EXPECT_FALSE(out_.state.known());
+}
+
+// Of a tool whose own frame lies beside the middle of its markers, and of a head that is turned.
+TEST_F(AnchorHeadByABody, PlacesTheReferencesOwnFrameInTheWorld) {
+  set_.items[0].markers_m = {Vector3(0.1, 0, 0), Vector3(0, 0.2, 0), Vector3(0, 0, 0.3)};
+  body().T_camera_tool = {Quaternion(0.8, 0, 0.6, 0), Vector3(0.1, -0.2, 0.5)};
+  frame(1);
+  EXPECT_EQ(out_.body, 5U);
+  EXPECT_EQ(out_.now.head.time, Time{} + milliseconds(22));
+  EXPECT_LT((out_.T_world_reference.translation - Vector3(0.1, -0.2, 0.5)).norm(), 1e-9);
+  EXPECT_LT((out_.T_world_reference.rotation.coeffs() - Quaternion(0.8, 0, 0.6, 0).coeffs()).norm(),
+            1e-9);
+}
+
+TEST_F(AnchorHeadByABody, HasNoBodyWhereTheSetHasNoSuchTool) {
+  frame(1);
+  ASSERT_TRUE(out_.state.known());
+  for (const int reference : {-1, 1, 16}) {
+    node_.reference = reference;
+    frame(2);
+    EXPECT_EQ(out_.body, 0U) << reference;
+    EXPECT_FALSE(out_.state.known());
+    EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1}}));
+  }
+  node_.reference = 0;
+  node_.limits.tools = 0;
+  frame(3);
+  EXPECT_EQ(out_.body, 0U) << "beyond the cell's tools";
+}
+
+TEST_F(AnchorHeadByABody, FindsTheBodyInItsSlice) {
+  set_.count = 6;
+  set_.items[5] = set_.items[0];
+  set_.items[5].identity = 9;
+  (*fitted_)[1].tools[5] = body();
+  body().reason = Reason::no_labeling;
+  node_.reference = 5;
+  frame(1);
+  EXPECT_TRUE(out_.state.known());
+  EXPECT_EQ(out_.body, 9U);
+  EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 1}}));
+}
+
+TEST_F(AnchorHeadByABody, KeepsWhatItKnowsInARefusedFrame) {
+  for (int i = 1; i < 9; ++i) frame(i);
+  const Anchor before = out_;
+  refused_ = true;
+  frame(9);
+  EXPECT_TRUE(out_.state.known());
+  EXPECT_EQ(out_.body, before.body);
+  EXPECT_EQ(out_.T_world_reference.translation, before.T_world_reference.translation);
+  EXPECT_FALSE(out_.now.head.valid) << "of this frame nothing is";
+  EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1}}));
 }
 
 // How long the head moved unseen is unknown then: its correction counts for nothing any more.

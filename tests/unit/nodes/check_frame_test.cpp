@@ -46,6 +46,88 @@ TEST(StampFrame, TakesTheStampOffAFrame) {
   EXPECT_EQ(stamp.reason, Reason::frame_invalid);
 }
 
+// Of a frame of 6 by 4 pixels each plane missing, too wide or too high by itself.
+TEST(StampFrame, RefusesEachPlaneThatIsMissingOrOfAnotherSize) {
+  const std::vector<std::uint8_t> bytes(7 * 5);
+  const std::vector<std::uint16_t> words(7 * 5);
+  for (const int bits : {8, 16}) {
+    const auto frame_of = [&](int width, int height, int depth_width, int depth_height) {
+      Frame frame;
+      if (bits == 8) frame.reflectivity_8 = {bytes.data(), width, height};
+      if (bits == 16) frame.reflectivity_16 = {words.data(), width, height};
+      frame.depth = {words.data(), depth_width, depth_height};
+      return frame;
+    };
+    StampFrame node{6, 4, bits};
+    const auto reason_of = [&](const Frame& frame) {
+      FrameStamp stamp;
+      node(frame, stamp);
+      return stamp.reason;
+    };
+    EXPECT_EQ(reason_of(frame_of(6, 4, 6, 4)), Reason::none) << bits;
+    EXPECT_EQ(reason_of(frame_of(7, 4, 6, 4)), Reason::frame_invalid) << bits;
+    EXPECT_EQ(reason_of(frame_of(6, 5, 6, 4)), Reason::frame_invalid) << bits;
+    EXPECT_EQ(reason_of(frame_of(6, 4, 7, 4)), Reason::frame_invalid) << bits;
+    EXPECT_EQ(reason_of(frame_of(6, 4, 6, 5)), Reason::frame_invalid) << bits;
+    Frame bare = frame_of(6, 4, 6, 4);
+    bare.depth.pixels = nullptr;
+    EXPECT_EQ(reason_of(bare), Reason::frame_invalid) << bits;
+    node.reflectivity_bits = 24 - bits;
+    EXPECT_EQ(reason_of(frame_of(6, 4, 6, 4)), Reason::frame_invalid) << "the other plane's bits";
+  }
+}
+
+// Each frame raises one counter by one, and its verdict states its stamp.
+TEST(CheckFrame, CountsEachFrameOnceAndStatesItsStamp) {
+  CheckFrame node;
+  FrameStamp stamp = stamp_at(100, 7);
+  stamp.sigma = {5};
+  FrameVerdict verdict = check(node, stamp);
+  EXPECT_EQ(verdict.stamp.mid_exposure, stamp.mid_exposure);
+  EXPECT_EQ(verdict.stamp.arrival, stamp.arrival);
+  EXPECT_EQ(verdict.stamp.sigma, stamp.sigma);
+  EXPECT_EQ(verdict.stamp.sequence, 7U);
+  const auto expect = [&](std::uint64_t accepted, std::uint64_t late, std::uint64_t doubled,
+                          std::uint64_t invalid) {
+    EXPECT_EQ(verdict.accepted, accepted);
+    EXPECT_EQ(verdict.late, late);
+    EXPECT_EQ(verdict.doubled, doubled);
+    EXPECT_EQ(verdict.invalid, invalid);
+    EXPECT_EQ(verdict.resynchronisations, 0U);
+    EXPECT_FALSE(verdict.resynchronised);
+  };
+  expect(1, 0, 0, 0);
+  verdict = check(node, stamp_at(90, 6));
+  EXPECT_EQ(verdict.stamp.sequence, 6U) << "also of a frame that is refused";
+  expect(1, 1, 0, 0);
+  verdict = check(node, stamp_at(122, 7));
+  expect(1, 1, 1, 0);
+  stamp = stamp_at(122, 8);
+  stamp.reason = Reason::frame_invalid;
+  verdict = check(node, stamp);
+  EXPECT_EQ(verdict.reason, Reason::frame_invalid);
+  expect(1, 1, 1, 1);
+  stamp = stamp_at(122, 8);
+  stamp.arrival = stamp.mid_exposure;
+  verdict = check(node, stamp);
+  EXPECT_TRUE(verdict.usable()) << "exposed as it arrived";
+  expect(2, 1, 1, 1);
+  EXPECT_EQ(node.counts(), (graph::LoopCounts{{1}}));
+}
+
+// A refused frame is not what the next one is compared with.
+TEST(CheckFrame, ComparesWithTheNewestAcceptedFrame) {
+  CheckFrame node;
+  (void)check(node, stamp_at(100, 7));
+  (void)check(node, stamp_at(90, 3));
+  EXPECT_EQ(check(node, stamp_at(90, 3)).reason, Reason::frame_late) << "no frame was doubled";
+  EXPECT_EQ(check(node, stamp_at(100, 8)).reason, Reason::frame_doubled);
+  FrameStamp invalid = stamp_at(200, 9);
+  invalid.reason = Reason::frame_invalid;
+  (void)check(node, invalid);
+  EXPECT_TRUE(check(node, stamp_at(122, 8)).usable());
+}
+
 TEST(CheckFrame, AcceptsFramesInOrder) {
   CheckFrame node;
   for (int i = 0; i < 100; ++i) {
@@ -90,6 +172,43 @@ TEST(CheckFrame, BelievesAClockThatRestartedAfterEightFrames) {
   EXPECT_TRUE(verdict.usable());
   EXPECT_TRUE(verdict.resynchronised);
   EXPECT_TRUE(check(node, stamp_at(522, 41)).usable());
+}
+
+TEST(CheckFrame, CountsAResynchronisationAndGoesOnByTheNewClock) {
+  CheckFrame node;
+  (void)check(node, stamp_at(1000, 50));
+  FrameVerdict verdict;
+  for (int i = 1; i <= k_resync_frames; ++i) {
+    verdict = check(node, stamp_at(22 * i, static_cast<std::uint32_t>(i)));
+    EXPECT_EQ(verdict.resynchronised, i == k_resync_frames) << i;
+  }
+  EXPECT_EQ(verdict.accepted, 2U);
+  EXPECT_EQ(verdict.late, static_cast<std::uint64_t>(k_resync_frames - 1));
+  EXPECT_EQ(verdict.resynchronisations, 1U);
+  const std::int64_t now_ms = 22 * k_resync_frames;
+  EXPECT_EQ(check(node, stamp_at(now_ms, 77)).reason, Reason::frame_doubled);
+  EXPECT_EQ(check(node, stamp_at(now_ms - 1, 78)).reason, Reason::frame_late);
+  verdict = check(node, stamp_at(now_ms + 1, 50));
+  EXPECT_TRUE(verdict.usable()) << "the old clock's sequence numbers are gone, too";
+  EXPECT_FALSE(verdict.resynchronised);
+}
+
+// Eight refused frames in a row whose stamps advance: an accepted one, or one that does not
+// advance, begins the row anew.
+TEST(CheckFrame, NeedsAWholeRowOfAdvancingFramesToBelieveAClock) {
+  CheckFrame node;
+  (void)check(node, stamp_at(1000, 1));
+  std::uint32_t sequence = 2;
+  const auto refused = [&](std::int64_t ms) {
+    return !check(node, stamp_at(ms, sequence++)).usable();
+  };
+  for (int i = 0; i < k_resync_frames - 1; ++i) EXPECT_TRUE(refused(100 + i)) << i;
+  EXPECT_FALSE(refused(1022)) << "the old clock goes on";
+  for (int i = 0; i < k_resync_frames - 1; ++i) EXPECT_TRUE(refused(200 + i)) << i;
+  EXPECT_TRUE(refused(50)) << "the first of another row";
+  EXPECT_TRUE(refused(50)) << "and again: it does not advance";
+  for (int i = 1; i < k_resync_frames - 1; ++i) EXPECT_TRUE(refused(50 + i)) << i;
+  EXPECT_FALSE(refused(50 + k_resync_frames));
 }
 
 TEST(CheckFrame, NeverBelievesLateFramesThatDoNotAdvance) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/kernels/registration/box_model.hpp"
 
@@ -159,6 +161,73 @@ TEST_F(FollowRobotTest, IsNotReadyWithoutPosesOfAllItsLinks) {
   EXPECT_EQ(node.prepare(), Reason::out_of_range);
   node.links = {};
   EXPECT_EQ(node.prepare(), Reason::not_prepared);
+}
+
+TEST_F(FollowRobotTest, StatesWhenAndWhereItWasFollowed) {
+  FollowRobot node = this->node(k_all, {&shown_, 1});
+  RobotProgress progress;
+  run(node, picture(3, {&shown_, 1}), progress);
+  EXPECT_EQ(progress.last, FollowOutcome::followed);
+  EXPECT_EQ(progress.time, Time{} + milliseconds(300));
+  EXPECT_EQ(progress.frame.state, RegistrationState::accepted);
+  EXPECT_FALSE(progress.frame.in_reference);
+  EXPECT_GT(progress.frame.rms_m, 0);
+  EXPECT_LT(progress.frame.rms_m, 0.005);
+  EXPECT_LT((progress.frame.T_world_robot.translation - k_truth.translation).norm(), 0.004);
+}
+
+// Refused and told: by how much it jumped, and nothing of where it was followed.
+TEST_F(FollowRobotTest, CountsAJumpAndStaysWhereItWas) {
+  FollowRobot node = this->node(k_all, {&shown_, 1});
+  node.T_world_robot.translation = k_truth.translation + Vector3(0.03, 0, 0);
+  ASSERT_EQ(node.prepare(), Reason::none);
+  RobotProgress progress;
+  run(node, picture(1, {&shown_, 1}), progress);
+  EXPECT_EQ(progress.last, FollowOutcome::jumped) << name_of(progress.last);
+  EXPECT_EQ(progress.jumps, 1);
+  EXPECT_EQ(progress.followed + progress.unsure, 0);
+  EXPECT_NEAR(progress.shift_m, 0.03, 0.005);
+  EXPECT_LT(progress.turn_rad, 0.02);
+  EXPECT_EQ(progress.time, Time{});
+  EXPECT_EQ(progress.frame.state, RegistrationState::none);
+}
+
+TEST_F(FollowRobotTest, CountsAPictureThatShowsTooLittle) {
+  FollowRobot node = this->node(k_all, {&shown_, 1});
+  RobotProgress progress;
+  run(node, picture(1, {&shown_, 1}), progress);
+  ASSERT_EQ(progress.followed, 1);
+  std::fill(depth_.begin(), depth_.end(), 0.4f);  // a hand before the lens
+  run(node, picture(2, {&shown_, 1}), progress);
+  EXPECT_NE(progress.last, FollowOutcome::followed);
+  EXPECT_EQ(progress.followed, 1);
+  EXPECT_EQ(progress.unsure, 1);
+  EXPECT_EQ(progress.jumps, 0);
+  EXPECT_EQ(progress.time, Time{} + milliseconds(100));
+}
+
+TEST_F(FollowRobotTest, LooksAtEachPictureOnceAndAtNoneWithoutAModelOrSteps) {
+  FollowRobot node = this->node(k_all, {&shown_, 1});
+  RobotProgress progress;
+  EXPECT_GT(run(node, picture(1, {&shown_, 1}), progress), 0);
+  EXPECT_EQ(run(node, picture(1, {&shown_, 1}), progress), 0);
+  EXPECT_EQ(progress.followed, 1);
+  ShownDepth empty = picture(2, {&shown_, 1});
+  empty.scene.depth_m = {};
+  EXPECT_EQ(run(node, empty, progress), 0) << "no robot is looked for";
+  FollowRobot none;
+  none.limits.reference_steps = k_all;
+  ASSERT_EQ(none.prepare(), Reason::none);
+  EXPECT_EQ(run(none, picture(1, {&shown_, 1}), progress), 0);
+  EXPECT_EQ(progress.followed + progress.unsure + progress.jumps, 0);
+  EXPECT_EQ(none.counts(), (graph::LoopCounts{{1, 0}}));
+  FollowRobot still = this->node(0, {&shown_, 1});
+  EXPECT_EQ(run(still, picture(1, {&shown_, 1}), progress), 0);
+  EXPECT_EQ(progress.followed, 0);
+  EXPECT_EQ(FollowRobot::worst(still.limits), (graph::LoopCounts{{1, 0}}));
+  still.limits.reference_steps = 7;
+  EXPECT_EQ(FollowRobot::worst(still.limits),
+            (graph::LoopCounts{{1, 7 + k_follow_item_steps_max}}));
 }
 
 TEST_F(FollowRobotTest, IsPosedWithoutTheHeap) {

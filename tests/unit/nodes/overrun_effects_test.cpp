@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 
 #include "nodes/predict_tools.hpp"
@@ -105,6 +106,76 @@ TEST(FrameOverrun, DeclaresEveryToolLostWhenItStops) {
   EXPECT_EQ(out->tracks[1].reason, Reason::overrun_stopped);
 }
 
+// In the world the tool goes on, and the head has moved meanwhile.
+TEST(FrameOverrun, MovesAPredictedToolOnBeforeAHeadThatMoved) {
+  OverrunFrame frame = frame_at(1020);
+  frame.head.T_world_camera.translation = {0.5, 0, -1};
+  frame.head.T_world_camera.rotation = Quaternion(std::sqrt(0.5), 0, 0, std::sqrt(0.5));
+  auto out = std::make_unique<Estimates>();
+  ASSERT_TRUE(substitute(OverrunPolicy::predict, frame, *moving(), *out));
+  // (0.02, 0, 0) less (0.5, 0, -1), a quarter turn back about z.
+  const Vector3 seen = out->tracks[0].T_camera_tool.translation;
+  EXPECT_LT((seen - Vector3(0, 0.48, 1)).norm(), 1e-12);
+  frame.head.valid = false;
+  auto held = moving();
+  held->tracks[0].T_camera_tool.translation = {7, 8, 9};
+  ASSERT_TRUE(substitute(OverrunPolicy::predict, frame, *held, *out));
+  EXPECT_EQ(out->tracks[0].T_camera_tool.translation, Vector3(7, 8, 9)) << "no head, no camera";
+}
+
+TEST(FrameOverrun, GoesOnNoLongerThanAToolIsKept) {
+  auto out = std::make_unique<Estimates>();
+  ASSERT_TRUE(substitute(OverrunPolicy::predict, frame_at(2000), *moving(), *out));
+  EXPECT_NEAR(out->tracks[0].T_camera_tool.translation.x(), 0.250, 1e-12);
+  auto once = moving();
+  once->tracks[0].has_previous = false;
+  once->tracks[0].T_camera_tool.translation = {7, 8, 9};
+  ASSERT_TRUE(substitute(OverrunPolicy::predict, frame_at(1020), *once, *out));
+  EXPECT_EQ(out->tracks[0].T_camera_tool.translation, Vector3(7, 8, 9)) << "seen once";
+  EXPECT_EQ(out->tracks[0].reason, Reason::overrun_predicted);
+}
+
+// Neither speed nor acceleration moves it; what is known of where it was stays.
+TEST(FrameOverrun, StopsEveryMotionOfAHeldTool) {
+  auto in_time = moving();
+  MotionState& motion = in_time->tracks[0].motion;
+  motion.pose.translation = {1, 2, 3};
+  motion.velocity_m_s = motion.acceleration_m_s2 = {1, 2, 3};
+  motion.angular_velocity_rad_s = motion.angular_acceleration_rad_s2 = {4, 5, 6};
+  auto out = std::make_unique<Estimates>();
+  ASSERT_TRUE(substitute(OverrunPolicy::hold_last, frame_at(1020), *in_time, *out));
+  const Track& track = out->tracks[0];
+  EXPECT_TRUE(track.motion.velocity_m_s.isZero() && track.motion.acceleration_m_s2.isZero());
+  EXPECT_TRUE(track.motion.angular_velocity_rad_s.isZero());
+  EXPECT_TRUE(track.motion.angular_acceleration_rad_s2.isZero());
+  EXPECT_EQ(track.motion.pose.translation, Vector3(1, 2, 3));
+  EXPECT_FALSE(track.has_previous || track.seen_now);
+  EXPECT_TRUE(track.alive);
+}
+
+TEST(FrameOverrun, LeavesAToolThatWasNotFoundAsItWas) {
+  for (const OverrunPolicy policy : {OverrunPolicy::hold_last, OverrunPolicy::predict}) {
+    auto in_time = moving();
+    in_time->tracks[1].reason = Reason::no_labeling;
+    in_time->tracks[2].reason = Reason::bad_fit;  // beyond the tools
+    in_time->tracks[2].alive = true;
+    auto out = std::make_unique<Estimates>();
+    ASSERT_TRUE(substitute(policy, frame_at(1020), *in_time, *out));
+    EXPECT_EQ(out->tracks[0].reason, reason_of(policy));
+    EXPECT_EQ(out->tracks[1].reason, Reason::no_labeling);
+    EXPECT_EQ(out->tracks[2].reason, Reason::bad_fit);
+    EXPECT_EQ(out->tool_count, 2);
+    EXPECT_FALSE(out->verdict.usable());
+  }
+}
+
+TEST(ReasonOfPolicy, IsItsOwn) {
+  EXPECT_EQ(reason_of(OverrunPolicy::skip_output), Reason::overrun_skipped);
+  EXPECT_EQ(reason_of(OverrunPolicy::hold_last), Reason::overrun_held);
+  EXPECT_EQ(reason_of(OverrunPolicy::predict), Reason::overrun_predicted);
+  EXPECT_EQ(reason_of(OverrunPolicy::stop_safe), Reason::overrun_stopped);
+}
+
 // What left at tick 1000 ms, from a measurement 10 ms older, at 2 m/s along y; draw was held.
 std::unique_ptr<PoseSamples> left(int tool = 0) {
   auto samples = std::make_unique<PoseSamples>();
@@ -174,6 +245,49 @@ TEST(TickOverrun, LeavesALostSampleWhoseItIsAndNoPose) {
   EXPECT_EQ(lost.registration_rms_m, was.registration_rms_m);
   EXPECT_FALSE(lost.has_pose());
   EXPECT_TRUE(lost.angular_velocity_rad_s.isZero());
+}
+
+// Position first, then the turn about the tip, for as long as the tick is later.
+TEST(TickOverrun, MovesEachSampleOnAndSaysOfWhichFrameTheyAre) {
+  auto in_time = left();
+  in_time->any_frame = true;
+  in_time->newest_frame = Time{} + milliseconds(995);
+  in_time->count = 2;
+  in_time->items[1] = in_time->items[0];
+  in_time->items[1].tool = 1;
+  in_time->items[1].pose = {from_rotation_vector(Vector3(0.3, 0, 0)), Vector3(1, 2, 3)};
+  in_time->items[1].velocity_m_s = {-1, 0, 0.5};
+  in_time->items[1].angular_velocity_rad_s = {0, 10, 0};
+  auto out = std::make_unique<PoseSamples>();
+  const OverrunTick tick{{Time{} + milliseconds(1020), 255, 0}, k_lost_after, {}};
+  ASSERT_TRUE(substitute(OverrunPolicy::predict, tick, *in_time, *out));
+  EXPECT_EQ(out->count, 2);
+  EXPECT_TRUE(out->any_frame);
+  EXPECT_EQ(out->newest_frame, in_time->newest_frame);
+  EXPECT_NEAR(out->items[0].pose.translation.y(), 0.04, 1e-12);
+  const PoseSample& second = out->items[1];
+  EXPECT_LT((second.pose.translation - Vector3(0.98, 2, 3.01)).norm(), 1e-12);
+  const Quaternion turned =
+      from_rotation_vector(Vector3(0, 0.2, 0)) * from_rotation_vector(Vector3(0.3, 0, 0));
+  EXPECT_LT(rotation_vector(second.pose.rotation * turned.conjugate()).norm(), 1e-12);
+  EXPECT_NEAR(second.pose.rotation.norm(), 1, 1e-15);
+  EXPECT_EQ(second.velocity_m_s, in_time->items[1].velocity_m_s);
+  EXPECT_EQ(second.state, TrackState::predicted);
+  EXPECT_EQ(second.tick_number, 255U);
+}
+
+TEST(TickOverrun, LeavesWhyASampleHadNoPose) {
+  auto in_time = left();
+  in_time->items[0].state = TrackState::none;
+  in_time->items[0].reason = Reason::no_frame_yet;
+  auto out = std::make_unique<PoseSamples>();
+  const OverrunTick tick{{Time{} + milliseconds(1004), 251, 0}, k_lost_after, {3}};
+  ASSERT_TRUE(substitute(OverrunPolicy::predict, tick, *in_time, *out));
+  EXPECT_EQ(out->items[0].state, TrackState::none);
+  EXPECT_EQ(out->items[0].reason, Reason::no_frame_yet);
+  EXPECT_EQ(out->items[0].tick, tick.now.tick);
+  EXPECT_EQ(out->items[0].buttons, 3);
+  EXPECT_TRUE(out->items[0].pose.translation.isZero());
 }
 
 TEST(TickOverrun, LosesAToolThatIsHeldForTooLong) {

@@ -64,6 +64,88 @@ TEST(PackCan, CountsThePosesAndTheFramesOfItsOwn) {
   EXPECT_EQ(counted[3], seen.at(0x720) + seen.at(0x1AE) + seen.at(0x1AF));
 }
 
+// Ticks of one node, so many milliseconds after the start; which frames of its own each brings.
+class OwnFrames : public testing::Test {
+ protected:
+  std::vector<CanFrame> at(std::int64_t ms) {
+    (*node_)({Time{} + milliseconds(ms), static_cast<std::uint64_t>(ms), k_unix_offset_ns},
+             *samples_, *frames_);
+    const auto all = frames_->frames();
+    return {all.begin(), all.end()};
+  }
+  int count_at(std::int64_t ms, std::uint32_t identifier) {
+    int count = 0;
+    for (const CanFrame& frame : at(ms)) count += frame.identifier == identifier ? 1 : 0;
+    return count;
+  }
+  static constexpr std::int64_t k_unix_offset_ns = 1'700'000'000'123'456'789;
+  std::unique_ptr<PackCan> node_ = std::make_unique<PackCan>();
+  std::unique_ptr<PoseSamples> samples_ = std::make_unique<PoseSamples>();
+  std::unique_ptr<CanFrames> frames_ = std::make_unique<CanFrames>();
+};
+
+// A period counts from the tick that was due, and what was skipped is not made up for.
+TEST_F(OwnFrames, AreDueAPeriodAfterTheLast) {
+  EXPECT_EQ(count_at(0, 0x720), 1);
+  EXPECT_EQ(count_at(99, 0x720), 0);
+  EXPECT_EQ(count_at(100, 0x720), 1);
+  EXPECT_EQ(count_at(450, 0x720), 1);
+  EXPECT_EQ(count_at(500, 0x720), 0);
+  EXPECT_EQ(count_at(550, 0x720), 1);
+  EXPECT_EQ(node_->counts(), (graph::LoopCounts{{1, 0, 0, 1}}));
+}
+
+TEST_F(OwnFrames, OfTimeArePairsWhoseCounterRisesModuloSixteen) {
+  const TimeSync sync{.base_identifier = k_can_base_default};
+  for (int second = 0; second < 35; ++second) {
+    const std::int64_t unix_ns = second * 1'000'000'000LL + k_unix_offset_ns;
+    const auto counter = static_cast<std::uint8_t>(second % 16);
+    const std::vector<CanFrame> frames = at(1000 * second);
+    ASSERT_EQ(frames.size(), 3U) << "heartbeat and the pair";
+    EXPECT_EQ(node_->counts(), (graph::LoopCounts{{1, 0, 0, 3}}));
+    const auto begin = time_sync_frame(sync, counter, unix_ns);
+    const auto follow_up = time_follow_up_frame(sync, counter, unix_ns, unix_ns);
+    ASSERT_TRUE(begin && follow_up);
+    EXPECT_EQ(frames[1].identifier, begin.value.identifier);
+    EXPECT_EQ(frames[1].data, begin.value.data) << second;
+    EXPECT_EQ(frames[2].identifier, follow_up.value.identifier);
+    EXPECT_EQ(frames[2].data, follow_up.value.data) << second;
+  }
+}
+
+// At changes of state only, of each tool by itself.
+TEST_F(OwnFrames, OfEmergencyComeWhereAToolIsLostOrFoundAgain) {
+  samples_->count = 2;
+  std::int64_t ms = 1;
+  const auto emergencies = [&](TrackState first, TrackState second) {
+    samples_->items[0].state = first;
+    samples_->items[1].state = second;
+    const int count = count_at(ms++, 0x080 + 32);
+    EXPECT_EQ(node_->counts()[1], 2);
+    EXPECT_EQ(node_->counts()[2], count);
+    return count;
+  };
+  using enum TrackState;
+  EXPECT_EQ(emergencies(none, none), 0);
+  EXPECT_EQ(emergencies(measured, lost), 1) << "lost before it was found";
+  EXPECT_EQ(emergencies(predicted, lost), 0);
+  EXPECT_EQ(emergencies(lost, lost), 1);
+  EXPECT_EQ(emergencies(lost, none), 0);
+  EXPECT_EQ(emergencies(predicted, measured), 1) << "found again; the other was not lost";
+  EXPECT_EQ(emergencies(lost, lost), 2);
+  EXPECT_EQ(emergencies(measured, predicted), 2);
+}
+
+TEST_F(OwnFrames, AreOfNoMoreToolsThanTheCellHas) {
+  node_->limits.tools = 3;
+  samples_->count = 5;
+  (void)at(1);
+  EXPECT_EQ(node_->counts()[1], 3);
+  samples_->count = 2;
+  (void)at(2);
+  EXPECT_EQ(node_->counts()[1], 2);
+}
+
 // The states of the heartbeats over three seconds in which frames arrive up to `last_frame`.
 std::vector<int> heartbeats(Time first_frame, Time last_frame) {
   PackCan node;

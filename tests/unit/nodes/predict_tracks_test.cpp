@@ -110,6 +110,84 @@ TEST_F(PredictTracks, GoesOnWithTheMotionThatTheFilterFollowed) {
   EXPECT_NEAR(across.y(), 0.040, 1e-3) << "turned about the markers' middle";
 }
 
+// Markers at 250 px focal length and half a metre: 25 px aside and 30 px below the middle, with the
+// reach and a marker's width about each.
+TEST_F(PredictTracks, BoundsItsMarkersWithTheReachAboutThem) {
+  const Prediction& found = predict();
+  EXPECT_TRUE(found.in_view);
+  const double around = 250 * (found.reach_m + 2 * 0.005) / 0.5;
+  EXPECT_NEAR(found.low_px.x(), 256 - 25 - around, 1e-6);
+  EXPECT_NEAR(found.low_px.y(), 256 - around, 1e-6);
+  EXPECT_NEAR(found.high_px.x(), 256 + 25 + around, 1e-6);
+  EXPECT_NEAR(found.high_px.y(), 256 + 30 + around, 1e-6);
+  ASSERT_EQ(predictions_->marker_count, 3);
+  const Vector2 expected[] = {{231, 256}, {281, 256}, {256, 286}};
+  for (std::size_t m = 0; m < 3; ++m) {
+    EXPECT_LT((predictions_->markers_px[m] - expected[m]).norm(), 1e-6) << m;
+  }
+}
+
+TEST_F(PredictTracks, TakesNoMarkerForNearerThanFiveCentimetres) {
+  place({Quaternion::Identity(), Vector3(0, 0, 0.03)});
+  tool().markers_m = {Vector3(-0.01, 0, 0), Vector3(0.01, 0, 0), Vector3(0, 0.01, 0)};
+  place({Quaternion::Identity(), Vector3(0, 0, 0.03)});
+  const Prediction& found = predict();
+  const double around = 250 * (found.reach_m + 2 * 0.005) / 0.05;
+  EXPECT_NEAR(found.low_px.x(), 256 - 250 * 0.01 / 0.03 - around, 1e-6);
+}
+
+// Two of three markers are before the camera.
+TEST_F(PredictTracks, IsNotInViewWithAMarkerThatHasNoPixel) {
+  tool().markers_m[2].z() = -0.6;
+  place({Quaternion::Identity(), Vector3(0, 0, 0.5)});
+  const Prediction& found = predict();
+  EXPECT_TRUE(found.has_prior);
+  EXPECT_FALSE(found.in_view);
+  EXPECT_EQ(predictions_->marker_count, 2);
+  EXPECT_LT(found.low_px.x(), 231);
+  EXPECT_TRUE(predictions_->everywhere) << "part of it may be anywhere";
+}
+
+TEST_F(PredictTracks, ListsTheMarkersOfAllItsToolsAndNoMoreThanTheCellHas) {
+  tools_->count = 3;
+  for (const std::size_t t : {1U, 2U}) {
+    tools_->items[t] = tool();
+    last_->tracks[t] = track();
+  }
+  (void)predict();
+  EXPECT_EQ(predictions_->marker_count, 9);
+  EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 3, 3, 9}}));
+  node_.limits.tools = 2;
+  node_.limits.markers_per_tool = 2;
+  (void)predict();
+  EXPECT_EQ(predictions_->marker_count, 4);
+  EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 2, 2, 4}}));
+  EXPECT_FALSE(predictions_->tools[2].has_prior) << "the frame before had it";
+}
+
+TEST_F(PredictTracks, HandsOnTheFramesTurnAndTheNoiseThatWasSeen) {
+  last_->noise.known = true;
+  last_->noise.range_sigma_m = 0.0021;
+  last_->noise.pixel_sigma_px = 0.37;
+  track().seen_now = false;
+  verdict_accepted_ = 123;
+  EXPECT_TRUE(predict().missed_last);
+  EXPECT_EQ(predictions_->turn, 123U);
+  EXPECT_TRUE(predictions_->noise.known);
+  EXPECT_EQ(predictions_->noise.range_sigma_m, 0.0021);
+  EXPECT_EQ(predictions_->noise.pixel_sigma_px, 0.37);
+}
+
+TEST_F(PredictTracks, NarrowsTheSearchOnlyForAToolThatIsPresent) {
+  last_->tracks[0].reason = Reason::runs_full;
+  (void)predict();
+  EXPECT_TRUE(predictions_->narrowed);
+  tool().marker_count = 0;
+  (void)predict();
+  EXPECT_FALSE(predictions_->narrowed);
+  EXPECT_FALSE(predictions_->everywhere) << "there is none to be looked for";
+}
+
 TEST_F(PredictTracks, PredictsNothingFromBeforeTheClockRestarted) {
   ASSERT_TRUE(predict().has_prior);
   restarted_ = true;
