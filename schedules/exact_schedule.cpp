@@ -11,11 +11,10 @@ namespace {
 
 class Search {
  public:
-  Search(const TaskGroup& group, int cores, std::int64_t handover_ns, std::int64_t nodes_max)
+  Search(const TaskGroup& group, int cores, std::int64_t handover_ns)
       : group_(group),
         cores_(cores),
         handover_(handover_ns),
-        nodes_max_(nodes_max),
         tail_(tails_of(group, reach_of(group), cores, handover_ns)),
         twin_(group.nodes.size(), -1),
         core_of_(group.nodes.size(), -1),
@@ -42,7 +41,8 @@ class Search {
     }
   }
 
-  ExactSchedule run() {
+  ExactSchedule run(std::int64_t nodes_max) {
+    nodes_max_ = nodes_max;
     best_.least_possible_ns = least();
     if (best_.makespan_ns > best_.least_possible_ns) extend(0, 0, 0);
     // Below the limit every sequence was searched or pruned.
@@ -164,7 +164,7 @@ class Search {
 
   const TaskGroup& group_;
   int cores_;
-  std::int64_t handover_, nodes_max_;
+  std::int64_t handover_, nodes_max_ = 0;
   std::vector<std::int64_t> tail_;
   std::vector<int> twin_, core_of_;
   std::vector<std::int64_t> end_, earliest_, free_at_;
@@ -176,15 +176,15 @@ class Search {
 }  // namespace
 
 std::int64_t least_makespan(const TaskGroup& group, int cores, std::int64_t handover_ns) {
-  return Search(group, cores, handover_ns, 0).least();
+  return Search(group, cores, handover_ns).least();
 }
 
 ExactSchedule exact_schedule(const TaskGroup& group, int cores, std::int64_t handover_ns,
                              std::int64_t search_nodes_max) {
-  Search search(group, cores, handover_ns, search_nodes_max);
+  Search search(group, cores, handover_ns);
   search.offer(list_schedule(group, cores, handover_ns));
   search.offer(list_schedule(group, 1, handover_ns));
-  return search.run();
+  return search.run(search_nodes_max);
 }
 
 }  // namespace glint

@@ -32,7 +32,7 @@ std::optional<OrderTimes> times_of(const TaskGroup& group,
   };
 
   std::size_t placed = 0;
-  for (bool moved = true; moved && placed < listed;) {
+  for (bool moved = true; moved;) {
     moved = false;
     for (std::size_t core = 0; core < orders.size(); ++core) {
       for (; next[core] < orders[core].size(); ++next[core]) {

@@ -136,6 +136,16 @@ TEST(CanResponse, OfAQueueCountsWhatIsMoreUrgentThanItsLeastUrgentFrame) {
   EXPECT_EQ(found(20 * k_ms, 0)[3].queued_ns, 0);
 }
 
+TEST(CanResponse, OfAFrameThatIsAloneIsItsLength) {
+  std::vector<CanMessage> one(1, davis_2007()[0]);
+  for (const bool fifo : {false, true}) {
+    one[0].fifo = fifo;
+    const auto found = can_responses(one, {.nominal = 125e3});
+    EXPECT_EQ(found[0].response_ns, 1 * k_ms) << fifo;
+    EXPECT_EQ(found[0].queued_ns, 0) << fifo;
+  }
+}
+
 TEST(CanResponse, AQueuesWaitBringsItsFramesCloserTogether) {
   std::vector<CanMessage> messages = davis_2007();
   for (CanMessage& message : messages) message.period_ns = message.deadline_ns = 20 * k_ms;

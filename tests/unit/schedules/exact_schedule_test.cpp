@@ -59,8 +59,11 @@ TEST(ExactSchedule, IsNeverLongerThanTheList) {
     const std::int64_t handover = i % 4;
     const int cores = 2 + i % 3;
     const ExactSchedule found = exact_schedule(group, cores, handover, 20'000);
-    const std::int64_t list =
-        times_of(group, list_schedule(group, cores, handover), handover)->makespan_ns;
+    const CoreOrders listed = list_schedule(group, cores, handover);
+    const std::int64_t list = times_of(group, listed, handover)->makespan_ns;
+    if (found.makespan_ns == list) {
+      EXPECT_EQ(found.orders, listed) << "of equals the list stays";
+    }
     EXPECT_LE(found.makespan_ns, list);
     EXPECT_LE(found.least_possible_ns, found.makespan_ns);
     shorter += found.makespan_ns < list ? 1 : 0;
@@ -137,6 +140,7 @@ TEST(ExactSchedule, KeepsToOneCoreWhereHandingOverCostsMoreThanItGains) {
   const ExactSchedule found = exact_schedule(group, 2, 100);
   EXPECT_EQ(found.makespan_ns, 40);
   EXPECT_TRUE(found.optimal);
+  EXPECT_EQ(found.orders, (CoreOrders{{0, 1, 2, 3}, {}})) << "a list for each core";
 }
 
 TEST(MakespanBound, NoOptimumIsBelowIt) {

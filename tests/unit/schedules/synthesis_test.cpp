@@ -99,6 +99,10 @@ TEST(Synthesis, PutsEachGroupWhereTheTightestResponseIsBest) {
     std::set<int> used;
     for (int g = 0; g < 3; ++g) used.insert(core_of(plan, g));
     EXPECT_EQ(static_cast<int>(used.size()), cores);
+    if (cores == 3) {
+      EXPECT_EQ(core_of(plan, 1), 1) << "of places that are as good, the first that is tried";
+      EXPECT_EQ(core_of(plan, 2), 2);
+    }
     EXPECT_EQ(core_of(plan, 2) == 0, cores < 3) << "of two the tick has the other to itself";
   }
 }
