@@ -86,6 +86,26 @@ TEST_F(RefineFew, BelievesFewWholeMarkersOnlyWhereTheMotionCanHaveBroughtTheTool
   EXPECT_EQ(run_one().reason, Reason::none);
 }
 
+// Two that are merged with another's light, or half behind a hand, leave three of five.
+TEST_F(RefineFew, CountsNoMarkerOfAnotherSizeAsWhole) {
+  Random random(19);
+  Tool tool = test::five_marker_pen();
+  tool.marker_radius_m = 0.0055;
+  const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
+  const Pose aside{truth.rotation, truth.translation + Vector3(0.03, 0, 0)};
+  add_tool(0, tool, truth, 1, random);
+  for (const double part : {1.0, 2.2, 0.5}) {
+    for (int i = 0; i < 5; ++i) {
+      marker_of(0, i).area_px = area_of(tool, truth, i, i < 2 ? part : 1);
+    }
+    foretell(tool, aside, world_->predictions.tools[0]);
+    EXPECT_EQ(run_one().reason == Reason::none, part == 1) << part;
+    foretell(tool, truth, world_->predictions.tools[0]);
+    EXPECT_EQ(run_one().reason, Reason::none) << part;
+    EXPECT_EQ(run_one().tells_near, part != 1) << part;
+  }
+}
+
 TEST_F(RefineFew, TellsAFilterWhatFewMarkersSayNearWhereItExpectsTheTool) {
   Random random(20);
   const Tool tool = test::five_marker_pen();
