@@ -150,7 +150,7 @@ double logarithm(double x) noexcept {
   const double correction = exponent * k_log_2_low - q * (f - p * s);
   const double high = exponent * k_log_2_high;
   const double sum = high + f;
-  const double rest = exponent == 0 ? 0.0 : (high - sum) + f;
+  const double rest = (high - sum) + f;
   return sum + (rest + correction);
 }
 

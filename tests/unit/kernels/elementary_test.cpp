@@ -115,6 +115,54 @@ TEST(Elementary, NeverAnswersWithANumberThatIsNotFinite) {
   }
 }
 
+// Outside its range a value counts as the range's end, and NaN as zero.
+TEST(Elementary, ClampsItsArguments) {
+  for (const double sign : {1.0, -1.0}) {
+    for (const double beyond : {1e5 + 0.75, 1e6, k_infinity}) {
+      EXPECT_EQ(sine_cosine(sign * beyond).sine, sine_cosine(sign * 1e5).sine) << beyond;
+      EXPECT_EQ(sine_cosine(sign * beyond).cosine, sine_cosine(sign * 1e5).cosine) << beyond;
+    }
+    EXPECT_NEAR(sine_cosine(sign * 1e5).sine, std::sin(sign * 1e5), 1e-15);
+    for (const double beyond : {700.5, 1e4, k_infinity})
+      EXPECT_EQ(exponential(sign * beyond), exponential(sign * 700)) << beyond;
+    EXPECT_LE(units_in_last_place(exponential(sign * 700), std::exp(sign * 700)), 2.0);
+    for (const double beyond : {1 + 1e-15, 1.5, k_infinity})
+      EXPECT_EQ(arc_cosine(sign * beyond), arc_cosine(sign)) << beyond;
+  }
+  EXPECT_EQ(arc_cosine(1), 0);
+  EXPECT_DOUBLE_EQ(arc_cosine(-1), std::acos(-1.0));
+  EXPECT_EQ(sine_cosine(k_nan).sine, 0);
+  EXPECT_EQ(sine_cosine(k_nan).cosine, 1);
+  EXPECT_EQ(exponential(k_nan), 1);
+  EXPECT_EQ(arc_cosine(k_nan), arc_cosine(0));
+  EXPECT_EQ(arc_tangent(k_nan, 1), 0);
+  EXPECT_EQ(arc_tangent(2, k_nan), arc_tangent(2, 0));
+  EXPECT_EQ(arc_tangent(k_infinity, 1), arc_tangent(1, 0));
+}
+
+TEST(Elementary, TakesALogarithmFromTheSmallestToTheLargestNumber) {
+  constexpr double largest = std::numeric_limits<double>::max();
+  constexpr double smallest = std::numeric_limits<double>::denorm_min();
+  for (const double too_small : {0.0, -1.0, -k_infinity, k_nan})
+    EXPECT_EQ(logarithm(too_small), logarithm(smallest)) << too_small;
+  EXPECT_EQ(logarithm(k_infinity), logarithm(largest));
+  EXPECT_LE(units_in_last_place(logarithm(largest), std::log(largest)), 2.0);
+  for (double x = smallest; x < 1e-300; x *= 3)  // without a leading bit below 2^-1022
+    EXPECT_LE(units_in_last_place(logarithm(x), std::log(x)), 2.0) << x;
+}
+
+// Each of two functions undoes the other.
+TEST(Elementary, AgreesWithItsInverse) {
+  for (int i = -1000; i <= 1000; ++i) {
+    const double x = i * 0.003;
+    EXPECT_NEAR(logarithm(exponential(x)), x, 1e-15 * (1 + std::abs(x))) << x;
+    const SineCosine both = sine_cosine(x);
+    EXPECT_NEAR(arc_tangent(both.sine, both.cosine), x, 1e-15) << x;
+    EXPECT_NEAR(both.sine * both.sine + both.cosine * both.cosine, 1, 1e-15) << x;
+    EXPECT_NEAR(std::cos(arc_cosine(i * 1e-3)), i * 1e-3, 1e-15) << x;
+  }
+}
+
 // Any compiler, flag or machine that reorders or fuses a single operation changes this number.
 TEST(Elementary, GivesTheSameBitsEverywhere) {
   test::Random random(6);

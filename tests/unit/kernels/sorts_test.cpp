@@ -1,0 +1,131 @@
+// The two sorts: every number of values, equal keys, and what lies behind the values.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "kernels/merge_sort.hpp"
+#include "kernels/sort_pairs.hpp"
+
+namespace glint::sorts_test {
+namespace {
+
+// Compared by its key alone: a lost or doubled entry shows in its number.
+struct Entry {
+  int key = 0;
+  int number = 0;
+  bool operator<(const Entry& other) const { return key < other.key; }
+};
+
+constexpr std::size_t k_room = 70;
+
+TEST(MergeSort, LosesAndDoublesNoEntryWhereKeysAreEqual) {
+  std::mt19937 random(1);
+  for (int count = 0; count <= static_cast<int>(k_room); ++count) {
+    for (const int keys : {1, 2, 5, 1000}) {
+      std::array<Entry, k_room> values{}, spare{};
+      for (int i = 0; i < static_cast<int>(k_room); ++i) {
+        values[static_cast<std::size_t>(i)] = {static_cast<int>(random()) % keys, i};
+      }
+      const auto before = values;
+      merge_sort(values, spare, count);
+      EXPECT_TRUE(std::is_sorted(values.begin(), values.begin() + count)) << count;
+      std::vector<bool> seen(k_room);
+      for (int i = 0; i < count; ++i) {
+        const Entry& entry = values[static_cast<std::size_t>(i)];
+        ASSERT_LT(entry.number, count);
+        EXPECT_FALSE(seen[static_cast<std::size_t>(entry.number)]) << count;
+        seen[static_cast<std::size_t>(entry.number)] = true;
+        EXPECT_EQ(entry.key, before[static_cast<std::size_t>(entry.number)].key);
+      }
+      for (std::size_t i = static_cast<std::size_t>(count); i < k_room; ++i) {
+        EXPECT_EQ(values[i].number, before[i].number) << "behind the values: " << count;
+      }
+    }
+  }
+}
+
+// A network of exchanges sorts everything if it sorts all sequences of zeros and ones.
+// Knuth, vol. 3, section 5.3.4, theorem Z.
+TEST(SortFour, SortsAllSequencesOfZerosAndOnesAndOfFourNumbers) {
+  for (int bits = 0; bits < 16; ++bits) {
+    std::array<int, 4> values{bits & 1, bits >> 1 & 1, bits >> 2 & 1, bits >> 3 & 1};
+    sort_four(values.data());
+    EXPECT_TRUE(std::is_sorted(values.begin(), values.end())) << bits;
+  }
+  std::array<int, 4> order{1, 2, 3, 4};
+  do {
+    std::array<int, 4> values = order;
+    sort_four(values.data());
+    EXPECT_EQ(values, (std::array<int, 4>{1, 2, 3, 4}));
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
+// Of few values all sequences, of more those with the ones in a stretch: each must come out sorted.
+TEST(SortPairs, SortsZerosAndOnesOfEveryNumberOfValues) {
+  for (int count = 0; count <= k_sort_pairs_max; ++count) {
+    const auto check = [count](const auto& is_one) {
+      std::array<double, k_sort_pairs_max> values{};
+      int ones = 0;
+      for (int i = 0; i < count; ++i) {
+        values[static_cast<std::size_t>(i)] = is_one(i) ? 1 : 0;
+        ones += is_one(i) ? 1 : 0;
+      }
+      sort_pairs(values.data(), count);
+      for (int i = 0; i < count; ++i) {
+        ASSERT_EQ(values[static_cast<std::size_t>(i)], i < count - ones ? 0 : 1)
+            << i << " of " << count;
+      }
+    };
+    for (int bits = 0; count <= 10 && bits < 1 << count; ++bits) {
+      check([bits](int i) { return (bits >> i & 1) != 0; });
+    }
+    for (int from = 0; from <= count; ++from) {
+      for (int end = from; end <= count; ++end) {
+        check([from, end](int i) { return i >= from && i < end; });
+      }
+    }
+  }
+}
+
+// Up to which place it fills up: 8, 16, 32 or 64 values.
+TEST(SortPairs, ChangesNothingBehindThePlacesThatItFillsUp) {
+  constexpr double k_mark = -7;
+  for (int count = 0; count <= k_sort_pairs_max; ++count) {
+    std::array<double, k_sort_pairs_max + 8> values;
+    values.fill(k_mark);
+    for (int i = 0; i < count; ++i) values[static_cast<std::size_t>(i)] = count - i;
+    sort_pairs(values.data(), count);
+    const int filled = count <= 8 ? 8 : count <= 16 ? 16 : count <= 32 ? 32 : 64;
+    for (int i = 0; i < static_cast<int>(values.size()); ++i) {
+      const double expected = i < count    ? i + 1
+                              : i < filled ? std::numeric_limits<double>::infinity()
+                                           : k_mark;
+      EXPECT_EQ(values[static_cast<std::size_t>(i)], expected) << i << " of " << count;
+    }
+  }
+}
+
+TEST(TwoDoubles, WorkOnEachLaneByItself) {
+  const std::array<double, 2> left{3, -4}, right{-5, 2.25};
+  const TwoDoubles a = load_two(left.data()), b = load_two(right.data());
+  std::array<double, 2> stored{};
+  store_two(a, stored.data());
+  EXPECT_EQ(stored, left);
+  store_two(lesser(a, b), stored.data());
+  EXPECT_EQ(stored, (std::array<double, 2>{-5, -4}));
+  store_two(greater(a, b), stored.data());
+  EXPECT_EQ(stored, (std::array<double, 2>{3, 2.25}));
+  store_two(both(1.5), stored.data());
+  EXPECT_EQ(stored, (std::array<double, 2>{1.5, 1.5}));
+  store_two(where(a < b, b), stored.data());
+  EXPECT_EQ(stored, (std::array<double, 2>{0, 2.25}));
+  store_two(square_root(TwoDoubles{2.25, 16}), stored.data());
+  EXPECT_EQ(stored, (std::array<double, 2>{1.5, 4}));
+}
+
+}  // namespace
+}  // namespace glint::sorts_test
