@@ -19,6 +19,8 @@ Result<std::uint64_t> checked_word(const CanFrame& frame) {
   return {get_little_endian(frame.bytes()), Reason::none};
 }
 
+TrackState state_of(std::uint64_t word) { return static_cast<TrackState>(word >> 62); }
+
 std::uint8_t counter_of(std::uint64_t word) {
   return static_cast<std::uint8_t>(unsigned_at(word, 8, 4));
 }
@@ -36,8 +38,7 @@ double unless_over(std::uint64_t value, std::uint64_t over, double step) {
 Result<DecodedVelocity> velocity(const CanFrame& frame, double step) {
   const Result<std::uint64_t> word = checked_word(frame);
   if (!word) return {{}, word.reason};
-  return {{counter_of(word.value), static_cast<TrackState>(unsigned_at(word.value, 62, 2)),
-           vector_at(word.value, 14, 16, step)},
+  return {{counter_of(word.value), state_of(word.value), vector_at(word.value, 14, 16, step)},
           Reason::none};
 }
 
@@ -46,7 +47,7 @@ Result<DecodedVelocity> velocity(const CanFrame& frame, double step) {
 Result<DecodedPosition> decode_position(const CanFrame& frame) noexcept {
   const Result<std::uint64_t> word = checked_word(frame);
   if (!word) return {{}, word.reason};
-  return {{counter_of(word.value), unsigned_at(word.value, 63, 1) == 1,
+  return {{counter_of(word.value), word.value >> 63 != 0,
            vector_at(word.value, 12, 17, k_can_position_step_m)},
           Reason::none};
 }
@@ -56,7 +57,7 @@ Result<DecodedOrientation> decode_orientation(const CanFrame& frame) noexcept {
   if (!word) return {{}, word.reason};
   DecodedOrientation result;
   result.counter = counter_of(word.value);
-  result.state = static_cast<TrackState>(unsigned_at(word.value, 62, 2));
+  result.state = state_of(word.value);
   if (result.state != TrackState::measured && result.state != TrackState::predicted)
     return {result, Reason::none};
   SmallestThree packed;
@@ -82,7 +83,7 @@ Result<DecodedQuality> decode_quality(const CanFrame& frame) noexcept {
   const std::uint64_t word = checked.value;
   DecodedQuality q;
   q.counter = counter_of(word);
-  q.state = static_cast<TrackState>(unsigned_at(word, 12, 3) & 3U);
+  q.state = static_cast<TrackState>(unsigned_at(word, 12, 2));
   q.registration = static_cast<RegistrationState>(unsigned_at(word, 15, 2));
   q.markers = static_cast<std::uint8_t>(unsigned_at(word, 17, 4));
   q.sigma_position_m =

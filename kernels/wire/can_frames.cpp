@@ -20,6 +20,9 @@ std::uint64_t as_bits(std::int64_t value) { return static_cast<std::uint64_t>(va
 
 std::uint64_t state_bits(TrackState state) { return static_cast<std::uint64_t>(state) & 3U; }
 
+// Where the position has its valid bit, the other words of a pose have the state.
+std::uint64_t state_at_end(TrackState state) { return state_bits(state) << 62; }
+
 std::uint64_t marker_count(const PoseSample& sample) {
   return static_cast<std::uint64_t>(std::popcount(sample.marker_mask));
 }
@@ -46,23 +49,22 @@ std::uint64_t position_word(const PoseSample& sample) {
                                      -k_position_max - 1, k_position_max);
   if (!sample.has_pose() || !p.fits) return 0;
   return bits_at(as_bits(p.value[0]), 12, 17) | bits_at(as_bits(p.value[1]), 29, 17) |
-         bits_at(as_bits(p.value[2]), 46, 17) | bits_at(1, 63, 1);
+         bits_at(as_bits(p.value[2]), 46, 17) | std::uint64_t{1} << 63;
 }
 
 std::uint64_t orientation_word(const PoseSample& sample) {
-  if (!sample.has_pose()) return bits_at(state_bits(sample.state), 62, 2);
+  if (!sample.has_pose()) return state_at_end(sample.state);
   const SmallestThree q = to_smallest_three(sample.pose.rotation);
   if (!q.valid) return 0;
   return bits_at(q.left_out, 12, 2) |
-         three_words({q.component[0], q.component[1], q.component[2]}) |
-         bits_at(state_bits(sample.state), 62, 2);
+         three_words({q.component[0], q.component[1], q.component[2]}) | state_at_end(sample.state);
 }
 
 std::uint64_t velocity_word(const PoseSample& sample, const Vector3& velocity, double step) {
-  if (!sample.has_pose()) return bits_at(state_bits(sample.state), 62, 2);
+  if (!sample.has_pose()) return state_at_end(sample.state);
   const QuantizedVector v = quantize(velocity, 1 / step, -k_word_max, k_word_max);
   if (!v.fits) return 0;
-  return three_words(v.value) | bits_at(state_bits(sample.state), 62, 2);
+  return three_words(v.value) | state_at_end(sample.state);
 }
 
 // Quantises a value that is undefined without a pose; returns `over` then.
@@ -110,14 +112,12 @@ FdPose quantize_pose(const PoseSample& s) {
                                    -k_word_max, k_word_max);
   const Quaternion& q = s.pose.rotation;
   const std::array<double, 4> component{q.x(), q.y(), q.z(), q.w()};
-  bool fits = pose.position.fits && pose.velocity.fits && pose.angular_velocity.fits &&
-              to_smallest_three(q).valid;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Quantized r = quantize(component[i], k_one_rotation, -k_long_max, k_long_max);
-    pose.rotation[i] = r.value;
-    fits = fits && r.fits;
-  }
-  return fits ? pose : FdPose{};
+  const bool fits = pose.position.fits && pose.velocity.fits && pose.angular_velocity.fits &&
+                    to_smallest_three(q).valid;
+  if (!fits) return {};
+  for (std::size_t i = 0; i < 4; ++i)  // of a unit quaternion each component fits
+    pose.rotation[i] = quantize(component[i], k_one_rotation, -k_long_max, k_long_max).value;
+  return pose;
 }
 
 CanFrame fd(const PoseSample& s, std::uint32_t identifier, std::int64_t unix_offset_ns) {

@@ -40,5 +40,22 @@ TEST(Crc, EqualsPolynomialDivision) {
   }
 }
 
+// Bytes with their remainder behind them divide without one.
+TEST(Crc, OfBytesFollowedByTheirRemainderIsZero) {
+  const auto text = bytes_of_text("glint");
+  for (std::size_t length = 0; length <= text.size(); ++length) {
+    std::vector<std::uint8_t> bytes(text.begin(), text.begin() + static_cast<long>(length));
+    const std::uint8_t j1850 = crc8_j1850_step(0x5A, bytes), h2f = crc8_h2f_step(0x5A, bytes);
+    const std::uint16_t ccitt = crc16_ccitt_step(0x5A5A, bytes);
+    bytes.push_back(j1850);
+    EXPECT_EQ(crc8_j1850_step(0x5A, bytes), 0);
+    bytes.back() = h2f;
+    EXPECT_EQ(crc8_h2f_step(0x5A, bytes), 0);
+    bytes.back() = static_cast<std::uint8_t>(ccitt >> 8);
+    bytes.push_back(static_cast<std::uint8_t>(ccitt & 0xFFU));
+    EXPECT_EQ(crc16_ccitt_step(0x5A5A, bytes), 0);
+  }
+}
+
 }  // namespace
 }  // namespace glint::crc_test

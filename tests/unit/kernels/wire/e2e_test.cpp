@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kernels/wire/crc.hpp"
 #include "tests/unit/kernels/wire/hex.hpp"
 
 namespace glint::e2e_test {
@@ -114,6 +115,73 @@ TEST(EndToEnd, LeavesFramesWithoutRoomAlone) {
   EXPECT_FALSE(check_p01(one, 1, P01Mode::both));
   EXPECT_FALSE(check_p02(one, {}));
   EXPECT_FALSE(check_p05(one, 1));
+}
+
+// AUTOSAR's mode ALT: the identifier's low byte at even counters, its high byte at odd ones.
+TEST(EndToEnd, AlternatesTheBytesOfTheIdentifierByTheCounter) {
+  constexpr std::uint16_t k_id = 0xA55C;
+  for (unsigned counter = 0; counter < k_p01_counters; ++counter) {
+    std::vector<std::uint8_t> frame(8, 0x33), expected = frame;
+    protect_p01(frame, k_id, P01Mode::alternating, counter);
+    EXPECT_TRUE(check_p01(frame, k_id, P01Mode::alternating)) << counter;
+    protect_p01(expected, std::uint16_t(counter % 2 == 0 ? k_id : k_id >> 8), P01Mode::low,
+                counter);
+    EXPECT_EQ(hex_of(frame), hex_of(expected)) << counter;
+  }
+}
+
+// Whatever the checksum is: bits 4..7 of byte 1 must be the identifier's.
+TEST(EndToEnd, ChecksTheNibbleOfTheIdentifierThatTravels) {
+  std::vector<std::uint8_t> frame(8);
+  protect_p01(frame, 0x0700, P01Mode::nibble, 4);
+  EXPECT_EQ(frame[1], 0x74);
+  for (int nibble = 0; nibble < 16; ++nibble) {
+    frame[1] = static_cast<std::uint8_t>(nibble << 4 | 4);
+    int accepted = 0, accepted_otherwise = 0;
+    for (int crc = 0; crc < 256; ++crc) {
+      frame[0] = static_cast<std::uint8_t>(crc);
+      accepted += check_p01(frame, 0x0700, P01Mode::nibble) ? 1 : 0;
+      accepted_otherwise += check_p01(frame, 0x0700, P01Mode::both) ? 1 : 0;
+    }
+    EXPECT_EQ(accepted, nibble == 7 ? 1 : 0) << nibble;
+    EXPECT_EQ(accepted_otherwise, 1) << "the other modes leave it to the data";
+  }
+}
+
+TEST(EndToEnd, CountsModuloItsCountersAndKeepsTheUpperNibble) {
+  for (unsigned counter = 0; counter < 600; ++counter) {
+    std::vector<std::uint8_t> frame(8, 0xC6);
+    protect_p01(frame, 1, P01Mode::both, counter);
+    EXPECT_EQ(frame[1], 0xC0 + counter % 15);
+    protect_p02(frame, {}, counter);
+    EXPECT_EQ(frame[1], 0xC0 + counter % 16);
+    protect_p05(frame, 1, counter);
+    EXPECT_EQ(frame[2], counter % 256);
+  }
+}
+
+// Two bytes hold a checksum of 8 bits and a counter, three one of 16 bits and a counter.
+TEST(EndToEnd, ProtectsTheShortestFrameAndRefusesEveryShorterOne) {
+  std::vector<std::uint8_t> two(2), three(3);
+  protect_p01(two, 0x1A0, P01Mode::both, 3);
+  EXPECT_TRUE(check_p01(two, 0x1A0, P01Mode::both));
+  protect_p02(two, {}, 3);
+  EXPECT_TRUE(check_p02(two, {}));
+  protect_p05(three, 0x1A0, 3);
+  EXPECT_TRUE(check_p05(three, 0x1A0));
+  for (int byte = 0; byte < 256; ++byte) {
+    const std::vector<std::uint8_t> one{static_cast<std::uint8_t>(byte)};
+    EXPECT_FALSE(check_p01(one, 0x1A0, P01Mode::both)) << byte;
+    EXPECT_FALSE(check_p02(one, {})) << byte;
+  }
+  // The checksum of no data at all, of the identifier alone.
+  const std::uint16_t crc = crc16_ccitt_false(std::vector<std::uint8_t>{0xA0, 0x01});
+  std::vector<std::uint8_t> empty{static_cast<std::uint8_t>(crc & 0xFFU),
+                                  static_cast<std::uint8_t>(crc >> 8)};
+  EXPECT_FALSE(check_p05(empty, 0x1A0));
+  const std::vector<std::uint8_t> before = empty;
+  protect_p05(empty, 0x1A0, 3);
+  EXPECT_EQ(empty, before);
 }
 
 }  // namespace

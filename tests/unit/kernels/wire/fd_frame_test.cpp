@@ -140,5 +140,64 @@ TEST(FdFrame, SendsATimeBefore1970AsUnknown) {
   EXPECT_EQ(decode_fd_pose(packed(s, 10)).value.unix_measurement_ns, 0);
 }
 
+TEST(FdFrame, SendsTheLastTimeThatAnInt64Holds) {
+  constexpr std::int64_t k_last = std::numeric_limits<std::int64_t>::max();
+  PoseSample s;
+  s.measurement = {k_last - 10};
+  EXPECT_EQ(decode_fd_pose(packed(s, 10)).value.unix_measurement_ns, k_last);
+  EXPECT_EQ(decode_fd_pose(packed(s, 11)).value.unix_measurement_ns, 0);
+  s.measurement = {0};
+  EXPECT_EQ(decode_fd_pose(packed(s, 0)).value.unix_measurement_ns, 0);
+  EXPECT_EQ(decode_fd_pose(packed(s, 1)).value.unix_measurement_ns, 1);
+}
+
+// A rotation that is none, though each of its components would fit.
+TEST(FdFrame, SendsWhatIsNoUnitQuaternionWithStateNone) {
+  std::mt19937 random(24);
+  PoseSample s = random_sample(random);
+  s.pose.rotation.coeffs() *= 0.9;
+  const auto decoded = decode_fd_pose(packed(s));
+  ASSERT_TRUE(decoded);
+  EXPECT_EQ(decoded.value.quality.state, TrackState::none);
+  EXPECT_EQ(decoded.value.position_m, Vector3::Zero());
+}
+
+TEST(FdFrame, SendsALostToolWithoutAPoseAndItsFiguresAsUnknown) {
+  std::mt19937 random(25);
+  PoseSample s = random_sample(random);
+  s.state = TrackState::lost;
+  s.buttons = 5;
+  const DecodedFdPose pose = decode_fd_pose(packed(s)).value;
+  EXPECT_EQ(pose.quality.state, TrackState::lost);
+  EXPECT_EQ(pose.quality.buttons, 5);
+  EXPECT_EQ(pose.quality.registration, s.registration);
+  EXPECT_EQ(pose.position_m, Vector3::Zero());
+  EXPECT_EQ(pose.velocity_m_s, Vector3::Zero());
+  EXPECT_EQ(pose.angular_velocity_rad_s, Vector3::Zero());
+  EXPECT_EQ(pose.rotation.coeffs(), Quaternion::Identity().coeffs());
+  EXPECT_EQ(pose.quality.sigma_position_m, -1);
+  EXPECT_EQ(pose.quality.sigma_orientation_rad, -1);
+  EXPECT_EQ(pose.quality.age_s, -1);
+  EXPECT_NEAR(pose.quality.registration_rms_m, s.registration_rms_m, k_half * k_can_rms_step_m);
+}
+
+// All ones mean "this or more": the value before is the last that is sent as itself.
+TEST(FdFrame, SendsFiguresBeyondTheirFieldsAsUnknown) {
+  std::mt19937 random(26);
+  for (const bool beyond : {false, true}) {
+    const double last = beyond ? 0xFFFF : 0xFFFE;
+    PoseSample s = random_sample(random);
+    s.sigma_position_m = last * k_can_sigma_position_step_m;
+    s.sigma_orientation_rad = last * k_can_sigma_orientation_step_rad;
+    s.measurement = s.tick - microseconds(100) * static_cast<std::int64_t>(last);
+    s.registration_rms_m = (beyond ? 0xFF : 0xFE) * k_can_rms_step_m;
+    const DecodedQuality q = decode_fd_pose(packed(s)).value.quality;
+    EXPECT_NEAR(q.sigma_position_m, beyond ? -1 : s.sigma_position_m, 1e-12);
+    EXPECT_NEAR(q.sigma_orientation_rad, beyond ? -1 : s.sigma_orientation_rad, 1e-12);
+    EXPECT_NEAR(q.age_s, beyond ? -1 : last * k_can_fd_age_step_s, 1e-9);
+    EXPECT_NEAR(q.registration_rms_m, beyond ? -1 : s.registration_rms_m, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace glint::fd_frame_test

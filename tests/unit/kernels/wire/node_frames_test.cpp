@@ -75,5 +75,47 @@ TEST(NodeFrames, RefuseTimesThatDoNotFit) {
   EXPECT_FALSE(time_follow_up_frame(sync, 0, 1'000'000'000, 999'999'999));
 }
 
+// Each limit alone: the first and the last time of each field, and one beyond.
+TEST(NodeFrames, TakeTimesFrom1970ToTheLastThatTheFieldsHold) {
+  const TimeSync sync;
+  EXPECT_TRUE(time_sync_frame(sync, 0, 0));
+  EXPECT_TRUE(time_follow_up_frame(sync, 0, 0, 0));
+  EXPECT_FALSE(time_follow_up_frame(sync, 0, -1, 0));
+  EXPECT_FALSE(time_follow_up_frame(sync, 0, 0, -1));
+  for (int seconds = 0; seconds <= 5; ++seconds) {
+    const auto frame = time_follow_up_frame(sync, 0, 500, 1'000'000'000LL * seconds + 7);
+    EXPECT_EQ(frame.reason, seconds <= 3 ? Reason::none : Reason::out_of_range) << seconds;
+    if (!frame) continue;
+    EXPECT_EQ(frame.value.data[3], seconds);
+    EXPECT_EQ(frame.value.data[7], 7);
+  }
+}
+
+TEST(NodeFrames, CheckEachFrameByTheIdentifierAtItsCounter) {
+  TimeSync sync;
+  sync.base_identifier = 0x200;
+  for (std::uint8_t i = 0; i < 16; ++i) sync.data_ids[i] = static_cast<std::uint8_t>(91 * i + 17);
+  for (std::uint8_t counter = 0; counter < 32; ++counter) {
+    const auto first = time_sync_frame(sync, counter, 1'000'000'000);
+    const auto second = time_follow_up_frame(sync, counter, 1'000'000'000, 1'000'000'001);
+    ASSERT_TRUE(first && second);
+    EXPECT_EQ(first.value.identifier, 0x20EU);
+    EXPECT_EQ(second.value.identifier, 0x20FU);
+    for (const CanFrame& frame : {first.value, second.value}) {
+      EXPECT_EQ(frame.length, 8);
+      EXPECT_EQ(frame.data[2] & 0xF, counter % 16);
+      EXPECT_TRUE(check(frame, sync)) << int{counter};
+    }
+  }
+}
+
+TEST(NodeFrames, TakeTheNodeModulo128) {
+  for (const unsigned node : {1U, 127U, 129U}) {
+    EXPECT_EQ(heartbeat_frame(node, CanNodeState::boot_up).identifier, 0x700 + node % 128);
+    EXPECT_EQ(emergency_frame(node, {}).identifier, 0x80 + node % 128);
+    EXPECT_EQ(overrun_frame(node, {}).identifier, 0x80 + node % 128);
+  }
+}
+
 }  // namespace
 }  // namespace glint::node_frames_test

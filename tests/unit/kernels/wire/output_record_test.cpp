@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <utility>
 
 #include "kernels/wire/bits.hpp"
 #include "tests/unit/kernels/wire/hex.hpp"
@@ -41,6 +42,16 @@ TEST(OutputRecord, ComesBackBitForBit) {
     EXPECT_EQ(back.value.covariance, s.covariance);
     EXPECT_EQ(back.value.systematic, s.systematic);
     EXPECT_EQ(back.value.registration_rms_m, s.registration_rms_m);
+    EXPECT_EQ(back.value.tick_number, s.tick_number);
+    EXPECT_EQ(back.value.tool, s.tool);
+    EXPECT_EQ(back.value.marker_mask, s.marker_mask);
+    EXPECT_EQ(back.value.buttons, s.buttons);
+    EXPECT_EQ(back.value.state, s.state);
+    EXPECT_EQ(back.value.registration, s.registration);
+    EXPECT_EQ(back.value.velocity_m_s, s.velocity_m_s);
+    EXPECT_EQ(back.value.angular_velocity_rad_s, s.angular_velocity_rad_s);
+    EXPECT_EQ(back.value.sigma_position_m, s.sigma_position_m);
+    EXPECT_EQ(back.value.sigma_orientation_rad, s.sigma_orientation_rad);
   }
 }
 
@@ -131,6 +142,49 @@ TEST(OutputRecord, RefusesBytesThatAreNoRecord) {
   not_a_number[38] = 0xF0;
   not_a_number[39] = 0x7F;
   EXPECT_FALSE(decode(not_a_number));
+}
+
+TEST(OutputRecord, RefusesANumberThatIsNotFiniteInAnyPlace) {
+  const Record good = encoded(PoseSample{});
+  for (std::size_t at = 32; at < k_output_record_bytes; at += 8) {
+    for (const double bad :
+         {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::quiet_NaN()}) {
+      Record record = good;
+      put_little_endian(std::span(record).subspan(at, 8), std::bit_cast<std::uint64_t>(bad));
+      EXPECT_EQ(decode(record).reason, Reason::out_of_range) << at;
+    }
+  }
+}
+
+// A size goes with one layout alone.
+TEST(OutputRecord, RefusesALayoutOfTheOtherSize) {
+  const Record newest = encoded(PoseSample{});
+  for (const std::size_t size : {k_output_record_bytes, k_output_record_bytes_1}) {
+    for (int layout = 0; layout < 256; ++layout) {
+      Record record = newest;
+      record[31] = static_cast<std::uint8_t>(layout);
+      EXPECT_EQ(static_cast<bool>(decode(std::span<const std::uint8_t>(record).first(size))),
+                layout == (size == k_output_record_bytes ? 2 : 1))
+          << size << ' ' << layout;
+    }
+  }
+}
+
+// The last value of each list is taken, the next one is not.
+TEST(OutputRecord, TakesEveryValueOfItsListsAndNoOther) {
+  const Record good = encoded(PoseSample{});
+  const std::pair<std::size_t, int> lists[] = {
+      {24, k_tools_max}, {27, 4}, {28, 4}, {29, 3}, {30, static_cast<int>(k_last_reason) + 1}};
+  for (const auto& [at, values] : lists) {
+    for (int value = 0; value < 256; ++value) {
+      Record record = good;
+      record[at] = static_cast<std::uint8_t>(value);
+      const auto back = decode(record);
+      ASSERT_EQ(static_cast<bool>(back), value < values) << at << ' ' << value;
+      if (!back) continue;
+      EXPECT_EQ(encoded(back.value), record) << at;
+    }
+  }
 }
 
 TEST(OutputRecord, OfLayout1HasNoSystematicPart) {

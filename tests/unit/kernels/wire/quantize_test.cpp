@@ -43,6 +43,18 @@ TEST(Quantize, GivesUpTheWholeVectorForOneOfItsParts) {
   EXPECT_EQ(bad.value[0], 0);
 }
 
+TEST(Quantize, KeepsEachPartOfAVectorInItsPlace) {
+  const QuantizedVector q = quantize(Vector3(-1, 2, 2.96), 10, -30, 30);
+  EXPECT_TRUE(q.fits);
+  EXPECT_EQ(q.value, (std::array<std::int64_t, 3>{-10, 20, 30}));
+  for (int axis = 0; axis < 3; ++axis) {
+    Vector3 one_beyond(1, 2, 3);
+    one_beyond[axis] = -3.1;
+    EXPECT_FALSE(quantize(one_beyond, 10, -30, 30).fits) << axis;
+    EXPECT_EQ(quantize(one_beyond, 10, -30, 30).value, (std::array<std::int64_t, 3>{})) << axis;
+  }
+}
+
 TEST(Quantize, PutsAllOnesWhereAnUncertaintyIsTooLarge) {
   EXPECT_EQ(quantize_or(10.22, 100, 1023), 1022U);
   EXPECT_EQ(quantize_or(10.23, 100, 1023), 1023U);

@@ -53,6 +53,36 @@ TEST(SmallestThree, RefusesWhatIsNoRotation) {
       to_smallest_three(Quaternion(std::numeric_limits<double>::quiet_NaN(), 0, 0, 1)).valid);
 }
 
+// A length within a thousandth of one is divided out.
+TEST(SmallestThree, TakesAQuaternionOfAlmostUnitLengthAsOfUnitLength) {
+  const Quaternion unit = Quaternion(0.3, -0.2, 0.8, 0.4).normalized();
+  const SmallestThree expected = to_smallest_three(unit);
+  for (const double length : {0.9991, 1.0009, 0.9989, 1.0011}) {
+    const Quaternion q(Eigen::Vector4d(length * unit.coeffs()));
+    const SmallestThree packed = to_smallest_three(q);
+    EXPECT_EQ(packed.valid, std::abs(length - 1) < 1e-3) << length;
+    if (!packed.valid) continue;
+    EXPECT_EQ(packed.left_out, expected.left_out);
+    EXPECT_EQ(packed.component, expected.component) << length;
+  }
+}
+
+// The component left out is none of the three: each place of the largest, of either sign.
+TEST(SmallestThree, GivesBackTheLargestComponentAtEachPlace) {
+  for (int place = 0; place < 4; ++place) {
+    for (const double sign : {1.0, -1.0}) {
+      Eigen::Vector4d parts(0.1, -0.2, 0.3, -0.4);  // x, y, z, w
+      parts[place] = sign * 0.9;
+      parts.normalize();
+      const SmallestThree packed = to_smallest_three(Quaternion(parts));
+      EXPECT_EQ(packed.left_out, place);
+      const Eigen::Vector4d back = from_smallest_three(packed).coeffs();
+      EXPECT_LT((back - sign * parts).cwiseAbs().maxCoeff(), 3 * k_smallest_three_step) << place;
+      EXPECT_GT(back[place], 0);
+    }
+  }
+}
+
 TEST(SmallestThree, GivesAUnitQuaternionForAnyIntegers) {
   SmallestThree packed;
   for (const std::int16_t value : {INT16_MIN, INT16_MAX, 0}) {
