@@ -20,7 +20,7 @@ template <class Number>
 bool read(std::string_view text, Number& number, int base) {
   const char* const end = text.data() + text.size();
   const auto result = std::from_chars(text.data(), end, number, base);
-  return result.ec == std::errc{} && result.ptr == end && !text.empty();
+  return result.ec == std::errc{} && result.ptr == end;
 }
 
 bool is_fd_length(std::size_t length) {
@@ -48,7 +48,7 @@ bool read_frame(std::string_view text, CanFrame& frame) {
   frame.fd = text.starts_with('#');
   if (!frame.fd) return read_data(text, frame);
   unsigned flags = 0;
-  if (text.size() < 2 || !read(text.substr(1, 1), flags, 16)) return false;
+  if (!read(text.substr(1, 1), flags, 16)) return false;
   frame.bit_rate_switch = (flags & k_bit_rate_switch_flag) != 0;
   return read_data(text.substr(2), frame);
 }

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <utility>
 
-#include "platform/can/descriptor.hpp"
 #include "platform/can/socketcan_socket.hpp"
 
 namespace glint {
@@ -15,8 +15,7 @@ namespace {
 
 class SocketCanSink : public CanSink {
  public:
-  SocketCanSink(const std::string& interface, const CanSinkOptions& options)
-      : socket_(open_socketcan(interface, options.format)) {}
+  explicit SocketCanSink(Descriptor socket) : socket_(std::move(socket)) {}
 
   bool send(const CanFrame& frame, Time) noexcept override {
     canfd_frame raw{};
@@ -49,7 +48,11 @@ class SocketCanSink : public CanSink {
 
 std::unique_ptr<CanSink> open_socketcan_sink(const std::string& interface,
                                              const CanSinkOptions& options) {
-  return std::make_unique<SocketCanSink>(interface, options);
+  return socketcan_sink_of(open_socketcan(interface, options.format));
+}
+
+std::unique_ptr<CanSink> socketcan_sink_of(Descriptor socket) {
+  return std::make_unique<SocketCanSink>(std::move(socket));
 }
 
 }  // namespace glint

@@ -93,6 +93,22 @@ TEST(ButtonFrames, RefuseAndCountWhatIsNoButtonsFrame) {
   EXPECT_EQ(heard.frames.counts().refused, 4u);
 }
 
+TEST(ButtonFrames, CountWithoutACallback) {
+  ButtonFrames frames(k_identifier, {}, milliseconds(1));
+  EXPECT_FALSE(frames.counts().any());
+  frames.hear(held(0b0011), {10});
+  frames.release_if_silent(Time{11} + milliseconds(1));
+  EXPECT_EQ(frames.counts().heard, 1u);
+  EXPECT_EQ(frames.counts().released, 2u);
+}
+
+TEST(ButtonFrames, AreCountedWhetherHeardOrRefused) {
+  EXPECT_FALSE((ButtonFrameCounts{0, 0, 5}.any()));
+  EXPECT_TRUE((ButtonFrameCounts{1, 0, 0}.any()));
+  EXPECT_TRUE((ButtonFrameCounts{0, 1, 0}.any()));
+  EXPECT_TRUE((ButtonFrameCounts{1, 1, 0}.any()));
+}
+
 TEST(FrameOfSocketCan, IsAClassicOrAnFdDataFrame) {
   const auto classic = from_kernel(k_identifier, 8, CAN_MTU);
   ASSERT_TRUE(classic);
@@ -105,6 +121,40 @@ TEST(FrameOfSocketCan, IsAClassicOrAnFdDataFrame) {
   EXPECT_EQ(fd->identifier, 0x1234567u);
   EXPECT_EQ(fd->length, 64);
   EXPECT_TRUE(fd->fd && fd->extended);
+}
+
+TEST(FrameOfSocketCan, KeepsEveryFieldAndNoByteBeyondItsLength) {
+  for (const bool fd : {false, true}) {
+    for (const std::uint8_t length : {std::uint8_t{0}, std::uint8_t{3}, std::uint8_t{8}}) {
+      for (int flags = 0; flags < 256; ++flags) {
+        canfd_frame raw{};
+        raw.can_id = k_identifier;
+        raw.len = length;
+        raw.flags = static_cast<std::uint8_t>(flags);  // of a classic frame: padding
+        for (std::size_t i = 0; i < sizeof raw.data; ++i)
+          raw.data[i] = static_cast<std::uint8_t>(i + 7);
+        std::array<std::uint8_t, sizeof raw> bytes{};
+        std::memcpy(bytes.data(), &raw, sizeof raw);
+        const auto frame = frame_of_socketcan(std::span(bytes).first(fd ? CANFD_MTU : CAN_MTU));
+        ASSERT_TRUE(frame);
+        EXPECT_EQ(frame->fd, fd);
+        EXPECT_EQ(frame->length, length);
+        EXPECT_EQ(frame->bit_rate_switch, fd && flags % 2 == 1) << flags;
+        for (std::size_t i = 0; i < frame->data.size(); ++i)
+          ASSERT_EQ(frame->data[i], i < length ? i + 7 : 0) << i;
+      }
+    }
+  }
+}
+
+// A frame of 11 bits keeps none of the identifier's upper bits.
+TEST(FrameOfSocketCan, HasTheIdentifierOfItsKind) {
+  const auto classic = from_kernel(0x1FFFFFFFU, 1, CAN_MTU);
+  ASSERT_TRUE(classic);
+  EXPECT_EQ(classic->identifier, k_can_identifier_max);
+  const auto extended = from_kernel(0x1FFFFFFFU | CAN_EFF_FLAG, 1, CAN_MTU);
+  ASSERT_TRUE(extended);
+  EXPECT_EQ(extended->identifier, k_can_extended_identifier_max);
 }
 
 TEST(FrameOfSocketCan, IsNothingElse) {

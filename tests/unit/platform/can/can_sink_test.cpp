@@ -20,8 +20,8 @@ std::string complaint(const std::string& specification) {
 TEST(CanSink, RefusesWhatItDoesNotKnow) {
   for (const char* const bad : {"", "can0", "log", "log:", "socketcan", "socketcan:", "udp:x"}) {
     const std::string text = complaint<InputError>(bad);
-    EXPECT_NE(text.find('"' + std::string(bad) + '"'), std::string::npos) << text;
-    EXPECT_NE(text.find("expected"), std::string::npos) << text;
+    EXPECT_EQ(text, "CAN sink: found \"" + std::string(bad) +
+                        "\"; expected \"socketcan:IF\" or \"log:FILE\"");
   }
 }
 
@@ -37,13 +37,27 @@ TEST(CanSink, RefusesAnInterfaceThatIsNotForCan) {
 }
 
 TEST(CanSink, RefusesAnInterfaceNameThatLinuxCannotHave) {
-  EXPECT_NE(complaint<InputError>("socketcan:a_name_far_too_long").find("at most 15"),
-            std::string::npos);
+  const std::string longest(15, 'x');
+  EXPECT_EQ(complaint<MissingDevice>("socketcan:" + longest),
+            "socketcan:" + longest + ": no such network interface; expected one of `ip link`");
+  EXPECT_EQ(complaint<InputError>("socketcan:x" + longest),
+            "socketcan:x" + longest + ": a name of 16 characters; expected at most 15");
+}
+
+TEST(CanSink, HasSentAllWhereNothingWasDroppedAndNothingFailed) {
+  for (const std::uint64_t dropped : {0, 2}) {
+    for (const std::uint64_t failed : {0, 3}) {
+      const CanSinkCounts counts{7, dropped, failed, 0};
+      EXPECT_EQ(counts.all_sent(), dropped == 0 && failed == 0);
+      EXPECT_EQ(counts.lost(), dropped + failed);
+    }
+  }
 }
 
 TEST(CanSink, NamesTheLogThatCannotBeMade) {
-  EXPECT_NE(complaint<InputError>("log:/no/such/folder/can.log").find("/no/such/folder/can.log"),
-            std::string::npos);
+  EXPECT_EQ(complaint<InputError>("log:/no/such/folder/can.log"),
+            "/no/such/folder/can.log: cannot be written: No such file or directory; expected a "
+            "place for a log");
 }
 
 }  // namespace

@@ -4,7 +4,9 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <random>
+#include <set>
 
 namespace glint::candump_line_test {
 namespace {
@@ -111,6 +113,92 @@ TEST(CandumpLine, IsRefusedWhereItIsNone) {
                                 "(9999999999999.000000) can0 1A0#00"})
     EXPECT_FALSE(parse_candump(bad)) << bad;
   EXPECT_TRUE(parse_candump("(1.000000) can0 1A0#"));
+}
+
+// Of classic frames up to 8 bytes, of FD frames the lengths that ISO 11898-1 has.
+TEST(CandumpLine, HasALengthOfItsKindOfFrame) {
+  const std::set<std::size_t> fd{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
+  for (std::size_t length = 0; length <= 70; ++length) {
+    const std::string data(2 * length, '5');
+    const auto classic = parse_candump("(1.000000) can0 1A0#" + data);
+    ASSERT_EQ(classic.has_value(), length <= 8) << length;
+    if (classic) {
+      EXPECT_EQ(classic->frame.length, length);
+    }
+    const auto long_frame = parse_candump("(1.000000) can0 1A0##5" + data);
+    ASSERT_EQ(long_frame.has_value(), fd.contains(length)) << length;
+    if (long_frame) {
+      EXPECT_EQ(long_frame->frame.length, length);
+    }
+    EXPECT_FALSE(parse_candump("(1.000000) can0 1A0##5" + data + "5")) << "half a byte";
+  }
+}
+
+TEST(CandumpLine, HasAnIdentifierThatItsDigitsHold) {
+  for (const auto& [text, identifier] : std::map<std::string, std::uint32_t>{
+           {"000", 0}, {"7FF", 0x7FF}, {"00000000", 0}, {"1FFFFFFF", 0x1FFFFFFF}}) {
+    const auto record = parse_candump("(1.000000) can0 " + text + "#");
+    ASSERT_TRUE(record) << text;
+    EXPECT_EQ(record->frame.identifier, identifier);
+    EXPECT_EQ(record->frame.extended, text.size() == 8);
+  }
+  for (const char* bad :
+       {"800", "20000000", "FFFFFFFF", "-01", "7F", "07FF", "0007FF", "0000007FF"})
+    EXPECT_FALSE(parse_candump("(1.000000) can0 " + std::string(bad) + "#")) << bad;
+}
+
+TEST(CandumpLine, HasTheBitRateSwitchInTheLowestFlag) {
+  for (unsigned flags = 0; flags < 16; ++flags) {
+    const std::string digit(1, "0123456789ABCDEF"[flags]);
+    const auto record = parse_candump("(1.000000) can0 1A0##" + digit + "00");
+    ASSERT_TRUE(record) << digit;
+    EXPECT_TRUE(record->frame.fd);
+    EXPECT_EQ(record->frame.bit_rate_switch, flags % 2 == 1) << digit;
+  }
+  EXPECT_FALSE(parse_candump("(1.000000) can0 1A0##G00"));
+}
+
+TEST(CandumpLine, HasATimeFrom1970ToTheLastWholeSecondOfAnInt64) {
+  const auto time_of = [](const std::string& time) {
+    const auto record = parse_candump("(" + time + ") can0 1A0#00");
+    return record ? record->unix_ns : -1;
+  };
+  EXPECT_EQ(time_of("0.000000"), 0);
+  EXPECT_EQ(time_of("0.000001"), 1'000);
+  EXPECT_EQ(time_of("0000000012.345678"), 12'345'678'000);
+  EXPECT_EQ(time_of("9223372035.999999"), 9'223'372'035'999'999'000);
+  EXPECT_EQ(time_of("9223372036.000000"), -1);
+  for (const char* bad :
+       {"-1.000000", "1.-00001", "1.00000", "1.0000000", ".000000", "1", "1.", "."})
+    EXPECT_EQ(time_of(bad), -1) << bad;
+  EXPECT_EQ(text_of(frame_of(1, {}), 0), "(0000000000.000000) can0 001#\n");
+  EXPECT_EQ(text_of(frame_of(1, {}), 999), "(0000000000.000000) can0 001#\n");
+  EXPECT_EQ(text_of(frame_of(1, {}), 1'999'999'999), "(0000000001.999999) can0 001#\n");
+}
+
+TEST(CandumpLine, HasItsPartsInTheirPlaces) {
+  for (const char* bad :
+       {"1.000000) can0 1A0#00", "(1.000000 can0 1A0#00", "(1000000) can.0 1A0#00",
+        "(1.000000)can0 1A0#00", "(1.000000) can0  1A0#00", "(1.000000) can0 1A0#00\n\n",
+        "(1.000000) can0 1A0#00 "})
+    EXPECT_FALSE(parse_candump(bad)) << bad;
+  EXPECT_TRUE(parse_candump("(1.000000) can0 1A0#00\n"));
+}
+
+// Printable characters of ASCII, 15 of them at most.
+TEST(CandumpLine, HasAnInterfaceNameThatLinuxCanHave) {
+  for (std::size_t size = 0; size <= 17; ++size) {
+    const std::string name(size, 'v');
+    const auto record = parse_candump("(1.000000) " + name + " 1A0#");
+    ASSERT_EQ(record.has_value(), size >= 1 && size <= 15) << size;
+    if (record) {
+      EXPECT_EQ(record->interface, name);
+    }
+  }
+  for (int c = 0; c < 256; ++c) {
+    const std::string name(1, static_cast<char>(c));
+    EXPECT_EQ(parse_candump("(1.000000) v" + name + " 1A0#").has_value(), c > ' ' && c <= '~') << c;
+  }
 }
 
 TEST(CandumpLine, OfARealLogIsReadAndWrittenUnchanged) {

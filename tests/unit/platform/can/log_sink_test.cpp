@@ -2,6 +2,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 
 #include "platform/can/can_sink.hpp"
@@ -71,6 +72,7 @@ TEST(LogSink, CountsWhatADeviceRefuses) {
   sink->flush();
   EXPECT_EQ(sink->counts().failed, 100U);
   EXPECT_EQ(sink->counts().sent, 0U);
+  EXPECT_EQ(sink->counts().error, ENOSPC);
   sink->send(frame_number(0), {});
   sink->flush();
   EXPECT_EQ(sink->counts().failed, 101U);
@@ -103,6 +105,8 @@ TEST(LogSink, EndsAtAWholeLineWhenTheDiskIsFull) {
   EXPECT_TRUE(text.ends_with("00F#0F000000\n"));
   EXPECT_EQ(counts.sent, lines);
   EXPECT_EQ(counts.failed, 210 - lines);
+  EXPECT_EQ(counts.dropped, 0U);
+  EXPECT_EQ(counts.error, EFBIG);
 }
 
 }  // namespace
