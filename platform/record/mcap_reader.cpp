@@ -14,7 +14,7 @@ std::string kind_and_length(std::uint64_t kind, std::uint64_t bytes) {
 }  // namespace
 
 void McapReader::refuse_content(std::uint64_t offset, const char* kind) const {
-  file_.refuse(offset, std::string("a ") + kind + " record too short for its fields",
+  file_.refuse(offset, std::string(kind) + " record too short for its fields",
                "the fields of the MCAP specification");
 }
 

@@ -190,6 +190,46 @@ TEST(Mcap, WithADamagedChunkLosesThatChunkAlone) {
   }
 }
 
+TEST(Mcap, ThatIsWholeLosesNothing) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.mcap");
+  write_file(path);
+  McapReader reader(path, McapEnding::optional);
+  EXPECT_FALSE(reader.cut_short());
+  EXPECT_EQ(count_messages(reader), k_messages);
+  EXPECT_FALSE(reader.losses().any());
+  EXPECT_FALSE(reader.losses().at_least);
+  EXPECT_EQ(reader.losses().chunks, 0U);
+}
+
+// Behind its data end a file has all its messages, whatever became of its index.
+TEST(Mcap, CutBehindItsDataEndLosesNothingAndKeepsWhatStandsBetweenItsChunks) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.mcap");
+  write_file(path);
+  const McapReader whole(path);
+  Bytes bytes = read_whole(path);
+  const auto [offset, length] = records_of(bytes, McapKind::data_end).front();
+  bytes.resize(offset + length);
+  write_whole(path, bytes);
+  McapReader reader(path, McapEnding::optional);
+  EXPECT_TRUE(reader.cut_short());
+  EXPECT_EQ(count_messages(reader), k_messages);
+  EXPECT_FALSE(reader.losses().any());
+  EXPECT_FALSE(reader.losses().at_least);
+  EXPECT_EQ(reader.metadata(), whole.metadata());
+  ASSERT_EQ(reader.attachments().size(), 1U);
+  const McapAttachmentIndex& found = reader.attachments()[0];
+  const McapAttachmentIndex& expected = whole.attachments()[0];
+  EXPECT_EQ(found.offset, expected.offset);
+  EXPECT_EQ(found.length, expected.length);
+  EXPECT_EQ(found.log_time, expected.log_time);
+  EXPECT_EQ(found.create_time, expected.create_time);
+  EXPECT_EQ(found.data_bytes, expected.data_bytes);
+  EXPECT_EQ(found.name, expected.name);
+  EXPECT_EQ(found.media_type, expected.media_type);
+}
+
 TEST(Mcap, WithADamagedIndexLosesNoMessage) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.mcap");
