@@ -81,7 +81,7 @@ FrameLayout roi_layout(const Frame& frame, const Rois& rois, int margin_px) noex
     kept += area(grown);
   }
   const std::size_t whole = static_cast<std::size_t>(layout.width) * layout.height;
-  return kept >= whole && kept > 0 ? whole_frame_layout(frame) : layout;
+  return kept >= whole ? whole_frame_layout(frame) : layout;
 }
 
 void copy_pixels(const Frame& frame, const FrameLayout& layout,
