@@ -54,8 +54,7 @@ struct RecordingReader::Body {
     const auto extend = [this](auto& item) {
       if constexpr (requires { item.sequence; }) {
         const auto low = static_cast<std::uint32_t>(item.sequence);
-        item.sequence = sequence = any_sequence ? extended_count(low, sequence) : low;
-        any_sequence = true;
+        item.sequence = sequence = extended_count(low, sequence);
       }
     };
     std::visit(extend, message);
@@ -76,8 +75,7 @@ struct RecordingReader::Body {
   std::map<std::string, std::string> facts;
   RecordingLevel level{};
   Duration nominal_tick, unix_offset;
-  std::uint64_t sequence = 0;  // of the newest frame
-  bool any_sequence = false;
+  std::uint64_t sequence = 0;     // of the newest frame
   ImageRows reflectivity, depth;  // the newest; a frame message may refer to them
   std::uint64_t gaps = 0;         // damaged chunks before those images
   std::int64_t frames_without_pixels = 0;

@@ -147,7 +147,7 @@ void TrajectoryLines::add(std::string_view line) {
 bool TrajectoryLines::close() {
   if (closed_) return !failed_;
   closed_ = true;
-  if (!failed_ && !waiting_.empty()) flush();
+  flush();
   const bool named = file_.name();
   failed_ = failed_ || !named;
   return !failed_;

@@ -70,6 +70,66 @@ TEST(OfferRing, TakesWhatEverFitsWheneverItIsEmpty) {
   }
 }
 
+// A record has its room in any state of the ring, or in none: half the ring, with its heading.
+TEST(OfferRing, EverTakesARecordOfHalfOfIt) {
+  for (std::size_t blocks = 0; blocks <= 12; ++blocks) {
+    OfferRing ring;
+    ring.reserve(blocks * k_offer_alignment);
+    for (std::size_t bytes = 0; bytes <= blocks * k_offer_alignment; ++bytes) {
+      const std::size_t needed = 2 + bytes / k_offer_alignment;  // one to spare for a whole block
+      EXPECT_EQ(ring.ever_fits(bytes), needed <= blocks / 2) << blocks << ' ' << bytes;
+      EXPECT_EQ(ring.claim(bytes).empty(), !ring.ever_fits(bytes)) << blocks << ' ' << bytes;
+    }
+  }
+}
+
+TEST(OfferRing, HasRoomForTheLastByteThatItReserved) {
+  OfferRing exact, more;
+  exact.reserve(4 * k_offer_alignment);
+  more.reserve(3 * k_offer_alignment + 1);
+  EXPECT_TRUE(exact.ever_fits(1));
+  EXPECT_TRUE(more.ever_fits(1)) << "rounded up";
+  OfferRing none;
+  EXPECT_FALSE(none.ever_fits(0));
+  EXPECT_TRUE(none.claim(0).empty());
+  EXPECT_TRUE(none.front().empty());
+}
+
+TEST(OfferRing, IsEmptyWhenItIsReservedAnew) {
+  OfferRing ring;
+  ring.reserve(1024);
+  for (std::uint64_t i = 0; i < 7; ++i) ASSERT_TRUE(push(ring, i, 32));
+  expect_front(ring, 0, 32);
+  ring.reserve(512);
+  EXPECT_TRUE(ring.front().empty());
+  std::uint64_t count = 0;
+  while (push(ring, count, 32)) ++count;
+  EXPECT_EQ(count, 8U);
+  for (std::uint64_t i = 0; i < count; ++i) expect_front(ring, i, 32);
+}
+
+// Records of each size up to the ring's end, from each place in it: the next one begins at its
+// start if it does not fit, and nothing of either is overwritten.
+TEST(OfferRing, LeavesTheRestBeforeItsEndOutWhereARecordDoesNotFit) {
+  constexpr std::size_t k_blocks = 16;
+  for (std::size_t first = 1; first <= 6; ++first) {
+    for (std::size_t second = 1; second <= 6; ++second) {
+      OfferRing ring;
+      ring.reserve(k_blocks * k_offer_alignment);
+      std::uint64_t written = 0, read = 0;
+      const auto size_of = [&](std::uint64_t ticket) {
+        return k_offer_alignment * (ticket % 2 == 0 ? first : second);
+      };
+      while (read < 60) {
+        while (push(ring, written, size_of(written))) ++written;
+        ASSERT_GT(written, read) << first << ' ' << second;
+        expect_front(ring, read, size_of(read));
+        ++read;
+      }
+    }
+  }
+}
+
 TEST(OfferRing, HandsOverBetweenTwoThreads) {
   OfferRing ring;
   ring.reserve(2048);

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "platform/input_error.hpp"
+#include "platform/record/file_sync.hpp"
 #include "platform/record/recording_reader.hpp"
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/platform/record/recording_samples.hpp"
@@ -17,14 +18,15 @@
 // In place of the C library's.
 namespace {
 std::atomic<int> g_syncs{0};
-std::atomic<bool> g_sync_fails{false};
+std::atomic<bool> g_sync_fails{false}, g_sync_leaves_errno{false};
 std::array<char, 16> g_sync_thread{};
 }  // namespace
 
 extern "C" int fdatasync(int /*descriptor*/) {
   pthread_getname_np(pthread_self(), g_sync_thread.data(), g_sync_thread.size());
   ++g_syncs;
-  if (g_sync_fails) errno = EIO;
+  if (g_sync_fails) errno = g_syncs == 1 ? EIO : ENOSPC;
+  if (g_sync_leaves_errno) errno = EINTR;
   return g_sync_fails ? -1 : 0;
 }
 
@@ -201,6 +203,33 @@ TEST(Recorder, BringsItsFileToTheDiskAtASteadyRateByAThreadOfItsOwn) {
   EXPECT_GE(g_syncs, 3);
   EXPECT_TRUE(recorder.close().complete());
   EXPECT_STREQ(g_sync_thread.data(), "glint_sync");
+}
+
+void wait_for_syncs(int count) {
+  for (int waited_ms = 0; g_syncs < count && waited_ms < 60'000; ++waited_ms)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+TEST(FileSync, KeepsTheFirstErrorAndNoneOfASynchronisationThatSucceeded) {
+  g_syncs = 0;
+  g_sync_leaves_errno = true;
+  {
+    FileSync sync(-1, milliseconds(1));
+    wait_for_syncs(3);
+    sync.stop();
+    EXPECT_EQ(sync.error(), 0);
+  }
+  g_sync_leaves_errno = false;
+  g_syncs = 0;
+  g_sync_fails = true;
+  FileSync sync(-1, milliseconds(1));
+  wait_for_syncs(3);
+  sync.stop();
+  sync.stop();
+  g_sync_fails = false;
+  EXPECT_EQ(sync.error(), EIO);
+  const int syncs = g_syncs;
+  EXPECT_GE(syncs, 3);
 }
 
 TEST(Recorder, IsNotCompleteWhereTheDiskRefuses) {

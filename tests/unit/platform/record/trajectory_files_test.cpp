@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
+#include <string>
 
 #include "platform/input_error.hpp"
 #include "tests/unit/platform/record/recording_samples.hpp"
@@ -90,6 +93,133 @@ TEST(CsvFile, HasAValueUnderEveryHeading) {
       << with_pose;
   EXPECT_EQ(without_pose.find("0.024000000,0.013000000,6,1,0,lost,none,none,robot,47,0,0,,,"), 0U)
       << without_pose;
+}
+
+// Each field under its own heading, by a number of its own.
+TEST(CsvFile, HasEachFieldUnderItsName) {
+  PoseSample sample = sample_output(9, TrackState::predicted);
+  sample.frame_sequence = 101;
+  sample.tool = 3;
+  sample.registration = RegistrationState::refused;
+  sample.buttons = 6;
+  sample.reason = Reason::imprecise;
+  sample.registration_rms_m = 0.125;
+  sample.velocity_m_s = {11, 12, 13};
+  sample.angular_velocity_rad_s = {14, 15, 16};
+  for (int i = 0; i < 36; ++i) sample.systematic(i / 6, i % 6) = 1000 + i;
+  const TemporaryFolder folder;
+  CsvFile file(folder.file("out.csv"));
+  file.write(sample);
+  ASSERT_TRUE(file.close());
+  std::istringstream lines(text_of(folder.file("out.csv")));
+  std::string names, values;
+  std::getline(lines, names);
+  std::getline(lines, values);
+  std::istringstream name_list(names), value_list(values);
+  std::map<std::string, std::string> row;
+  for (std::string name, value; std::getline(name_list, name, ',');) {
+    ASSERT_TRUE(std::getline(value_list, value, ',')) << name;
+    EXPECT_TRUE(row.emplace(name, value).second) << name;
+  }
+  EXPECT_EQ(row.at("tick_s"), "0.036000000");
+  EXPECT_EQ(row.at("measurement_s"), "0.025000000");
+  EXPECT_EQ(row.at("tick_number"), "9");
+  EXPECT_EQ(row.at("frame_sequence"), "101");
+  EXPECT_EQ(row.at("tool"), "3");
+  EXPECT_EQ(row.at("state"), "predicted");
+  EXPECT_EQ(row.at("reason"), "imprecise");
+  EXPECT_EQ(row.at("registration"), "refused");
+  EXPECT_EQ(row.at("frame"), "robot");
+  EXPECT_EQ(row.at("marker_mask"), "47");
+  EXPECT_EQ(row.at("buttons"), "6");
+  const auto number = [&row](const std::string& name) { return std::stod(row.at(name)); };
+  EXPECT_EQ(number("registration_rms_m"), 0.125);
+  EXPECT_EQ(number("sigma_position_m"), sample.sigma_position_m);
+  EXPECT_EQ(number("sigma_orientation_rad"), sample.sigma_orientation_rad);
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string letter(1, "xyz"[axis]);
+    EXPECT_EQ(number(letter + "_m"), sample.pose.translation[axis]);
+    EXPECT_EQ(number("v" + letter + "_m_s"), sample.velocity_m_s[axis]);
+    EXPECT_EQ(number("w" + letter + "_rad_s"), sample.angular_velocity_rad_s[axis]);
+  }
+  for (int part = 0; part < 4; ++part)
+    EXPECT_EQ(number("q" + std::string(1, "xyzw"[part])), sample.pose.rotation.coeffs()[part]);
+  for (int i = 0; i < 36; ++i) {
+    const std::string place = "c" + std::to_string(i / 6 + 1) + std::to_string(i % 6 + 1);
+    EXPECT_EQ(number(place), sample.covariance(i / 6, i % 6)) << place;
+    EXPECT_EQ(number("systematic_" + place), sample.systematic(i / 6, i % 6)) << place;
+  }
+}
+
+TEST(CsvFile, NamesEveryStateAndNoValueThatIsNone) {
+  const TemporaryFolder folder;
+  CsvFile file(folder.file("out.csv"));
+  for (int i = 0; i < 5; ++i) {
+    PoseSample sample;
+    sample.state = static_cast<TrackState>(i);
+    sample.registration = static_cast<RegistrationState>(i);
+    sample.frame = static_cast<ReferenceFrame>(i);
+    file.write(sample);
+  }
+  ASSERT_TRUE(file.close());
+  const std::string text = text_of(folder.file("out.csv"));
+  for (const char* row :
+       {",none,no_frame_yet,none,camera,", ",predicted,no_frame_yet,given,world,",
+        ",measured,no_frame_yet,accepted,robot,", ",lost,no_frame_yet,refused,unknown,",
+        ",unknown,no_frame_yet,unknown,unknown,"}) {
+    EXPECT_NE(text.find(row), std::string::npos) << row;
+  }
+}
+
+TEST(FramePoseLine, HasNoStandardDeviationBelowZero) {
+  FramePose pose;
+  pose.state = TrackState::measured;
+  pose.covariance.diagonal() << -1, 4, -1e-20, 9, -4, 16;
+  EXPECT_TRUE(frame_pose_line(pose).ends_with(",0,0,0,1,0,2,0,3,0,4")) << frame_pose_line(pose);
+}
+
+TEST(TumLine, HoldsEveryTimeThatAnInt64Does) {
+  const std::string pose = " 0 0 0 0 0 0 1";
+  EXPECT_EQ(tum_line(Time{INT64_MIN}, {}), "-9223372036.854775808" + pose);
+  EXPECT_EQ(tum_line(Time{INT64_MAX}, {}), "9223372036.854775807" + pose);
+  EXPECT_EQ(tum_line(Time{0}, {}), "0.000000000" + pose);
+  EXPECT_EQ(tum_line(Time{-1'000'000'000}, {}), "-1.000000000" + pose);
+  EXPECT_EQ(points_line(Time{1'000'000'010}, {-1.5, 2, 1e-9}), "1.000000010,-1.5,2,1e-09");
+}
+
+// Lines wait for a piece of 64 KiB, each with its newline.
+TEST(TrajectoryLines, GoToTheDiskInPiecesAndAfterTheCloseNowhere) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("lines.txt");
+  TrajectoryLines lines(path);
+  const auto on_disk = [&] { return std::filesystem::file_size(path + ".part"); };
+  for (int i = 0; i < 1023; ++i) lines.add(std::string(63, 'x'));
+  EXPECT_EQ(on_disk(), 0u);
+  lines.add(std::string(62, 'x'));
+  EXPECT_EQ(on_disk(), 0u) << "a byte is missing";
+  lines.add("");
+  EXPECT_EQ(on_disk(), 65'536u);
+  lines.add("last");
+  EXPECT_FALSE(lines.failed());
+  EXPECT_TRUE(lines.close());
+  EXPECT_EQ(std::filesystem::file_size(path), 65'541u);
+  lines.add("too late");
+  EXPECT_TRUE(lines.close());
+  EXPECT_EQ(lines.lines_lost(), 0u);
+  EXPECT_EQ(lines.error(), "");
+  EXPECT_EQ(std::filesystem::file_size(path), 65'541u);
+}
+
+TEST(TrajectoryLines, ThatGotNoNameFailedForGood) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.file("in"));
+  TrajectoryLines lines(folder.file("in/lines.txt"));
+  lines.add("one");
+  std::filesystem::remove_all(folder.file("in"));
+  EXPECT_FALSE(lines.close());
+  EXPECT_TRUE(lines.failed());
+  EXPECT_FALSE(lines.close()) << "again";
+  EXPECT_NE(lines.error().find("rename"), std::string::npos) << lines.error();
 }
 
 TEST(TumFile, ThatCannotBeWrittenSaysSoAndGoesOn) {
