@@ -1,4 +1,4 @@
-// Poses against 4x4 matrices, directions across a vector, times, and names of reasons.
+// Poses against 4x4 matrices, turns between directions, times, and names of reasons.
 #include "kernels/geometry.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,6 @@
 #include <set>
 #include <string_view>
 
-#include "kernels/lone_eigenvector.hpp"
 #include "kernels/reason.hpp"
 #include "kernels/result.hpp"
 #include "kernels/units.hpp"
@@ -64,19 +63,6 @@ TEST(TurnBetween, TurnsHalfAroundBetweenOppositeDirectionsAndNotAtAllBetweenEqua
   const Quaternion exact = turn_between(Vector3::UnitX(), -Vector3::UnitX());
   EXPECT_EQ(exact.w(), 0);
   EXPECT_EQ(exact.vec().x(), 0) << "the axis is across the directions";
-}
-
-TEST(DirectionsAcross, MakeARightHandedFrameWithAnyUnitVector) {
-  test::Random random(4);
-  for (int trial = 0; trial < 200; ++trial) {
-    Vector3 n = random.vector(1).normalized();
-    if (trial < 6) n = (trial < 3 ? 1 : -1) * Vector3::Unit(trial % 3);
-    const DirectionsAcross across = directions_across(n);
-    Matrix3 frame;
-    frame << across.p, across.q, n;
-    EXPECT_LT((frame.transpose() * frame - Matrix3::Identity()).norm(), 1e-14) << n.transpose();
-    EXPECT_NEAR(frame.determinant(), 1, 1e-14) << n.transpose();
-  }
 }
 
 TEST(Units, AddAndScaleTimesAsIntegers) {

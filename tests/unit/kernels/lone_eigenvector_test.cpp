@@ -1,4 +1,4 @@
-// The eigenvector that lies alone, against Eigen's iterative solver.
+// The eigenvector that lies alone, against Eigen's iterative solver, and directions across one.
 #include "kernels/lone_eigenvector.hpp"
 
 #include <gtest/gtest.h>
@@ -81,6 +81,19 @@ TEST(LoneEigenvector, IsZWhereAllEigenvaluesAreEqual) {
     const LoneVector found = lone_eigenvector(parts_of(value * Matrix3::Identity()));
     EXPECT_EQ(found.v, Vector3::UnitZ()) << value;
     EXPECT_FALSE(found.largest) << value;
+  }
+}
+
+TEST(DirectionsAcross, MakeARightHandedFrameWithAnyUnitVector) {
+  test::Random random(4);
+  for (int trial = 0; trial < 200; ++trial) {
+    Vector3 n = random.vector(1).normalized();
+    if (trial < 6) n = (trial < 3 ? 1 : -1) * Vector3::Unit(trial % 3);
+    const DirectionsAcross across = directions_across(n);
+    Matrix3 frame;
+    frame << across.p, across.q, n;
+    EXPECT_LT((frame.transpose() * frame - Matrix3::Identity()).norm(), 1e-14) << n.transpose();
+    EXPECT_NEAR(frame.determinant(), 1, 1e-14) << n.transpose();
   }
 }
 

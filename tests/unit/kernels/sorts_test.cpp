@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
@@ -125,6 +126,17 @@ TEST(TwoDoubles, WorkOnEachLaneByItself) {
   EXPECT_EQ(stored, (std::array<double, 2>{0, 2.25}));
   store_two(square_root(TwoDoubles{2.25, 16}), stored.data());
   EXPECT_EQ(stored, (std::array<double, 2>{1.5, 4}));
+}
+
+// Also those with the machine's own lanes: of two zeros, which are equal, both give the second.
+TEST(TwoDoubles, GiveTheSecondOfTwoThatAreEqual) {
+  for (const double sign : {1.0, -1.0}) {
+    const TwoDoubles a = both(sign * 0.0), b = both(-sign * 0.0);
+    for (int lane = 0; lane < 2; ++lane) {
+      EXPECT_EQ(std::signbit(lesser(a, b)[lane]), std::signbit(-sign));
+      EXPECT_EQ(std::signbit(greater(a, b)[lane]), std::signbit(-sign));
+    }
+  }
 }
 
 }  // namespace
