@@ -103,9 +103,12 @@ void JudgeRun::look_at(const SceneView& view, const SeenPoint& seen, const Point
 }
 
 double JudgeRun::median_m() const noexcept {
-  std::size_t i = 0;
-  for (int below = distances_[0]; 2 * below < distance_count_;) below += distances_[++i];
-  return (static_cast<double>(i) + 0.5) * k_distance_step_m;
+  int below = 0;
+  for (int i = 0; i <= k_distance_steps; ++i) {
+    below += distances_[static_cast<std::size_t>(i)];
+    if (2 * below >= distance_count_) return (i + 0.5) * k_distance_step_m;
+  }
+  return 0;
 }
 
 Judgement judge_alignment(std::span<const SceneView> views, const Pose& T_world_base,

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "platform/record/bytes.hpp"
 #include "platform/record/recorder.hpp"
 #include "platform/record/recording_reader.hpp"
 #include "tests/unit/platform/record/recording_samples.hpp"
