@@ -122,6 +122,15 @@ TEST(Candidates, TakeEachAreaFromTheLeastToTheLargestAndNoneBeyond) {
   }
 }
 
+// Of a marker too small to be seen the slack alone is left, and that is taken.
+TEST(Candidates, TakeJustTheSlackOfAMarkerWithoutAnImage) {
+  Selection s;
+  s.tool.marker_radius_m = 1e-20;
+  s.settings.focal_px = 253;
+  EXPECT_TRUE(s.takes(marker_at(Vector3::UnitZ(), 0.5, 8)));
+  EXPECT_FALSE(s.takes(marker_at(Vector3::UnitZ(), 0.5, 9)));
+}
+
 TEST(Candidates, StateTheNoiseAcrossTheRayByTheFocalLengthOrTheRanges) {
   Selection s;
   s.settings.range_sigma_m = 0.003;

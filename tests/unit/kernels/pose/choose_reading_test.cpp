@@ -147,6 +147,9 @@ TEST(ChooseReading, WithoutAnExpectationComparesChiSquareAlone) {
   EXPECT_EQ(chosen.index, 1);
   EXPECT_DOUBLE_EQ(chosen.odds, 6);
   EXPECT_FALSE(chosen.turned || chosen.unexpected);
+  PoseReading torn = reading_of(0, 300, 0);  // followed by nothing: its chi-square counts whole
+  torn.explained_most = 20;
+  EXPECT_EQ(chosen_of({reading_of(0.7, 100, 0), torn}).index, 0);
 }
 
 }  // namespace

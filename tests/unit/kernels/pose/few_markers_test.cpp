@@ -278,6 +278,12 @@ TEST_F(FewMarkersTest, NamesNoneOfAToolWithAMarkerAtTheCamera) {
   markers_->count = 0;
   show(place(0, 2) + Vector3(0, 0, 1e-9));
   EXPECT_EQ(name().count, 0);
+  // Its gate claims no other tool's marker.
+  expected_[1].predicted = expected_[1].wanted = true;
+  markers_->count = 0;
+  show(place(1, 2));
+  EXPECT_EQ(name().count, 0);
+  EXPECT_EQ(named_[1].count, 1);
   // So it is of a covariance that is none.
   expected_[0].T_camera_tool.translation = Vector3(0, 0, 0.5);
   expected_[0].covariance(1, 1) = -1;
