@@ -16,7 +16,7 @@ using Row = std::array<double, k_rows>;
 class DualSimplexTable {
  public:
   explicit DualSimplexTable(const EnvelopeProblem& problem) : problem_(problem) {
-    for (std::size_t j = 0; j < loops(); ++j) scale_[j] = 0;
+    for (std::size_t j = 0; j < loops(); ++j) scale_[j] = 1;
     for (const ObservedCall& call : problem.calls) {
       cost_scale_ = std::max(cost_scale_, call.cost);
       for (std::size_t j = 0; j < loops(); ++j) {
@@ -26,7 +26,6 @@ class DualSimplexTable {
     if (!(cost_scale_ > 0)) cost_scale_ = 1;
     double weight_max = 0;
     for (std::size_t j = 0; j < loops(); ++j) {
-      if (scale_[j] == 0) scale_[j] = 1;
       weight_max = std::max(weight_max, problem.weight[j] / scale_[j]);
     }
     if (weight_max == 0) weight_max = 1;
@@ -152,7 +151,7 @@ class DualSimplexTable {
 
   const EnvelopeProblem& problem_;
   double cost_scale_ = 0;
-  Row scale_{};  // the largest count of each loop
+  Row scale_{};  // the largest count of each loop, at least 1
   std::array<std::int64_t, k_rows> basis_{};
   std::array<Row, k_rows> inverse_{};
   Row value_{};

@@ -216,6 +216,9 @@ TEST(BusLoad, RefusesABitRateOfZeroOrLess) {
     EXPECT_EQ(check_bus_load({1, 250, CanFormat::fd}, {1e6, rate}), complaint);
     EXPECT_FALSE(check_bus_load({1, 250, CanFormat::classic}, {1e6, rate}));
   }
+  // Any other is a rate, if too low a one.
+  EXPECT_NE(check_bus_load({1, 250, CanFormat::classic}, {0.5, 4e6}), complaint);
+  EXPECT_NE(check_bus_load({1, 250, CanFormat::fd}, {1e6, 0.5}), complaint);
 }
 
 }  // namespace

@@ -222,6 +222,17 @@ TEST(CanResponse, OfNoFrameIsBoundedWhereOneHasNoBound) {
     EXPECT_EQ(found[0].frame_ns, 101'000 * k_ms);
     EXPECT_EQ(found[2].frame_ns, 1 * k_ms);
   }
+  // The last one's releases may all come at once; the others would have a bound.
+  for (const bool fifo : {false, true}) {
+    std::vector<CanMessage> messages = davis_2007();
+    for (CanMessage& message : messages) message.period_ns = 20 * k_ms;
+    messages[2].fifo = fifo;
+    ASSERT_TRUE(can_responses(messages, {.nominal = 125e3})[0].response_ns);
+    messages[2].jitter_ns = 1'000'000'000 * k_ms;
+    const auto found = can_responses(messages, {.nominal = 125e3});
+    ASSERT_EQ(found.size(), 3U);
+    for (const CanResponse& each : found) EXPECT_FALSE(each.response_ns) << fifo;
+  }
   EXPECT_TRUE(can_responses({}, {}).empty());
 }
 
