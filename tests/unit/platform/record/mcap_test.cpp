@@ -230,6 +230,29 @@ TEST(Mcap, CutBehindItsDataEndLosesNothingAndKeepsWhatStandsBetweenItsChunks) {
   EXPECT_EQ(found.media_type, expected.media_type);
 }
 
+// Records between the chunks hold no message: those that the index names, and those that it does
+// not.
+TEST(Mcap, WithADamagedRecordBetweenItsChunksLosesItsBytesAndNoChunk) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.mcap");
+  write_file(path);
+  const Bytes bytes = read_whole(path);
+  for (const McapKind kind : {McapKind::attachment, McapKind::metadata, McapKind::message_index}) {
+    const auto [offset, length] = records_of(bytes, kind).front();
+    Bytes damaged = bytes;
+    damaged[offset + 5] ^= 0x10;  // a length beyond the file
+    write_whole(path, damaged);
+    EXPECT_NE(refusal(path), "");
+    McapReader reader(path, McapEnding::optional);
+    EXPECT_EQ(count_messages(reader), k_messages);
+    EXPECT_EQ(missing_messages(reader), 0U);
+    EXPECT_EQ(reader.losses().chunks, 0U) << static_cast<int>(kind);
+    EXPECT_GE(reader.losses().bytes, length) << static_cast<int>(kind);
+    if (kind == McapKind::message_index) continue;  // lost up to the next record of the index
+    EXPECT_EQ(reader.losses().bytes, length) << static_cast<int>(kind);
+  }
+}
+
 TEST(Mcap, WithADamagedIndexLosesNoMessage) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.mcap");
