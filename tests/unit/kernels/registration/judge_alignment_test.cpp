@@ -132,6 +132,13 @@ TEST(JudgeAlignment, HasTheMiddleDistanceForItsMedian) {
   }
 }
 
+TEST(JudgeAlignment, LeavesWhatIsHiddenOutOfItsMedian) {
+  Square scene;
+  scene.next(30, 0.5f);
+  scene.next(k_on_model - 30, 1);
+  EXPECT_NEAR(scene.judged().median_m, k_distance_step_m / 2, 1e-12);
+}
+
 // What lies beyond the last of its steps counts with that.
 TEST(JudgeAlignment, HasAMedianOfNoMoreThanTheReachOfItsSearches) {
   Square scene;
