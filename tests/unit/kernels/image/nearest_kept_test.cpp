@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "kernels/image/marker_misfit.hpp"
+
 namespace glint::nearest_kept_test {
 namespace {
 
