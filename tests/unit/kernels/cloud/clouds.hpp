@@ -1,4 +1,4 @@
-// Clouds for tests, each with memory of its own.
+// Test point clouds that own their memory; random points and a noisy curved surface.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using Point = std::array<float, 3>;
 
 inline constexpr float k_not_a_number = std::numeric_limits<float>::quiet_NaN();
 
-// Memory that a kernel is prepared with.
+// Memory for the arena that a kernel is prepared with.
 class TestMemory {
  public:
   explicit TestMemory(std::size_t bytes) : bytes_(bytes + Arena::k_alignment), arena_(bytes_) {}
@@ -30,7 +30,7 @@ class TestMemory {
   Arena arena_;
 };
 
-// Exactly so many bytes, from the beginning of a line on: an arena over it loses none.
+// Exactly `bytes` bytes from the start of a cache line: an arena over it loses none to alignment.
 class ExactMemory {
  public:
   explicit ExactMemory(std::size_t bytes) : bytes_(bytes + Arena::k_alignment) {
@@ -72,7 +72,7 @@ inline double squared_distance(const Point& a, const Point& b) {
   return sum;
 }
 
-// Evenly spread in a box about the origin.
+// Uniform in the cube [-half, half]^3 about the origin.
 inline std::vector<Point> random_points(int count, float half, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<float> side(-half, half);
@@ -81,7 +81,7 @@ inline std::vector<Point> random_points(int count, float half, std::uint64_t see
   return out;
 }
 
-// A gently curved sheet, one point every `spacing`, somewhat out of place: z up.
+// Noisy grid of side x side points on a gently curved surface; normals are near +z.
 inline std::vector<Point> sheet_points(int side, float spacing, float noise, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<float> shift(-1, 1);

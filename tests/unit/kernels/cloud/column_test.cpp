@@ -16,7 +16,7 @@ TEST(Arena, HandsOutZeroedPartsThatDoNotOverlapUntilNothingIsLeft) {
   Arena arena(memory);
   Column<float> a, b, c;
   ASSERT_TRUE(a.reserve(16, arena));  // one cache line
-  ASSERT_TRUE(b.reserve(17, arena));  // two
+  ASSERT_TRUE(b.reserve(17, arena));  // two cache lines
   EXPECT_FALSE(c.reserve(1, arena));
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(a.data()) % Arena::k_alignment, 0u);
   EXPECT_EQ(b.data() - a.data(), 16);
@@ -44,7 +44,7 @@ TEST(PointCloud, RefusesACapacityBeyondItsRange) {
   EXPECT_FALSE(cloud.add(0, 0, 0));
 }
 
-// However the memory lies: the first part begins at the first line in it.
+// At any alignment of the memory, the first part begins at the first whole cache line.
 TEST(Arena, BeginsAtTheFirstLineOfItsMemory) {
   alignas(Arena::k_alignment) std::array<std::byte, 5 * Arena::k_alignment> memory;
   for (std::size_t offset = 0; offset <= Arena::k_alignment; ++offset) {

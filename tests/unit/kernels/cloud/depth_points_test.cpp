@@ -41,7 +41,7 @@ TEST(DepthPoints, StandWhereThePinholePutsThem) {
   EXPECT_NEAR(std::sqrt(squared_distance(ray[0], {0, 0, 0})), 2.0, 1e-6);
   Pose pose;
   pose.translation = Vector3(1, 2, 3);
-  pose.rotation = Quaternion(0, 0, 0, 1);  // half a turn about z
+  pose.rotation = Quaternion(0, 0, 0, 1);  // 180 degrees about z
   const std::vector<Point> moved = points_of(depth, {}, pose, 100, 10, dropped);
   EXPECT_FLOAT_EQ(moved[0][0], 1 - 0.7f);
   EXPECT_FLOAT_EQ(moved[0][1], 2 + 0.1f);
@@ -82,7 +82,7 @@ TEST(DepthPoints, NumberThePixelsThatAStrideTakes) {
   }
 }
 
-// Every pixel stands on its own ray, whatever the stride and the slices.
+// Every point is on the ray of its own pixel, for any stride and slice size.
 TEST(DepthPoints, StandOnTheRaysOfTheirPixels) {
   const std::vector<float> depth(48, 2.0f);
   for (const int stride : {1, 2, 3, 5}) {
@@ -121,13 +121,13 @@ TEST(DepthPoints, AreTakenAtBothLimitsAndNotBeyond) {
 TEST(DepthPoints, LeaveOutPixelsWithoutARay) {
   const std::vector<float> depth(48, 1.0f);
   CameraModel camera = small_pinhole();
-  camera.fx = 1e-3;  // only rays that are not 1,000 times as far aside as ahead
+  camera.fx = 1e-3;  // a ray is valid only if |x / z| is below 1,000
   camera.cx = 3.5;
   TestCloud cloud(48);
   int dropped = 0;
   const DepthPicture picture{8, 6, depth};
   EXPECT_EQ(add_depth_points(picture, camera, {}, {}, 0, 100, cloud.points, dropped), 48);
-  EXPECT_EQ(cloud.points.count, 6);  // the column of the axis
+  EXPECT_EQ(cloud.points.count, 6);  // the column of the optical axis
   for (const Point& point : cloud.all()) EXPECT_EQ(point[0], 0);
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
-// The least of many places on the line.
+// Reference: smallest distance to 2,001 samples on the capsule's axis.
 double plain_distance(const LeftOut& capsule, const Vector3& point) {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= 2000; ++i) {
@@ -34,7 +34,7 @@ TEST(LeaveOutCapsules, TakesOffWhatIsWithinTheirRadiusAndKeepsTheOrder) {
     const Point point = {static_cast<float>(p.x()), static_cast<float>(p.y()),
                          static_cast<float>(p.z())};
     const Vector3 rounded(point[0], point[1], point[2]);
-    double least = 1;  // beyond the nearest surface
+    double least = 1;  // upper bound of the distance to the nearest capsule's surface
     for (const LeftOut& capsule : capsules) {
       least = std::min(least, plain_distance(capsule, rounded) - capsule.radius_m);
     }
@@ -93,7 +93,7 @@ TEST(LeaveOutCapsules, TakesOffAPointAtExactlyTheirRadius) {
   EXPECT_EQ(cloud.all(), (std::vector<Point>{{1, beyond, 0}, {-beyond, 0, 0}}));
 }
 
-// Place, normal and weight.
+// Position, normal and weight.
 TEST(LeaveOutCapsules, MovesUpAllOfAPoint) {
   TestCloud cloud(3);
   PointCloud& points = cloud.points;

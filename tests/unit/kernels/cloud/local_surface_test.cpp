@@ -14,9 +14,9 @@ SurfacePoint surface_of(const std::vector<Point>& relative, std::vector<float> w
   for (const Point& p : relative) {
     for (std::size_t i = 0; i < 3; ++i) columns[i].push_back(p[i]);
   }
-  // What lies behind the end is not to be taken for a neighbour.
+  // The padding entries must not count as neighbours.
   for (auto& column : columns) column.resize(relative.size() + k_four_spare, 0.02f);
-  // And nothing is read further behind it.
+  // Entries behind the padding are not read.
   for (auto& column : columns) column.resize(column.size() + 4, k_not_a_number);
   weights.resize(weights.size() + 4, k_not_a_number);
   const Neighbours near{columns[0].data(), columns[1].data(), columns[2].data(), weights.data(),
@@ -47,7 +47,7 @@ TEST(LocalSurface, IsThatOfATextbookInDouble) {
   }
 }
 
-// Upright walls: the first of z, y and x that is not zero is positive.
+// For upright walls, the first non-zero component in the order z, y, x is positive.
 TEST(LocalSurface, TurnsItsNormalByTheLastAxisThatIsNotZero) {
   for (const int axis : {0, 1}) {
     for (const float lean : {-1.0f, 0.0f, 1.0f}) {
@@ -110,7 +110,7 @@ TEST(LocalSurface, IsThePlaneForFewNeighboursAndForThoseOnALineOrInOnePlace) {
   EXPECT_NEAR(surface_of(place).normal.norm(), 1, 1e-12);
 }
 
-// Two rings, the inner one 20 mm below: the sheet through them lies 36 mm below at their middle.
+// Two rings, the inner one 20 mm below: the fitted polynomial is 36 mm below at their centre.
 TEST(LocalSurface, IsThePlaneWhereTheSheetLiesFurtherAwayThanTheRadius) {
   std::vector<Point> rings;
   for (const auto& [x, y] : {std::array{1.0f, 0.0f}, {0.0f, 1.0f}, {0.6f, 0.8f}, {0.6f, -0.8f}}) {
@@ -135,8 +135,8 @@ TEST(LocalSurface, NeverCarriesAPointFurtherThanTheRadius) {
   }
 }
 
-// Five neighbours around at height 0 and two at the middle: the sheet passes through each of the
-// five, and at the middle through the mean of the two, weighted by exp(-d^2 / r^2) alone.
+// Five neighbours at height 0 on a circle, two at its centre. The polynomial passes through each of
+// the five, and at the centre through the mean of the two weighted by exp(-d^2 / r^2).
 TEST(LocalSurface, WeighsNeighboursByTheExponentialOfTheirSquaredDistance) {
   const double r = static_cast<double>(k_radius);
   for (const auto& [first, second] :

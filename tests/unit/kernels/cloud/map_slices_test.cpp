@@ -1,4 +1,4 @@
-// The steps of a map in slices, beside those that its kernels take by themselves.
+// Step counts of the sliced mapping pipeline, compared with those of its kernels run separately.
 #include "kernels/cloud/map_slices.hpp"
 
 #include <map>
@@ -16,7 +16,7 @@ using mapped_wall::TestMap;
 using mapped_wall::wall;
 using Stage = MapSlices::Stage;
 
-// Steps of the slice that one row of pixels takes.
+// Steps of the slice that processes one row of pixels.
 int steps_of_row(const Picture& picture) {
   TestMap test;
   EXPECT_TRUE(test.map.look(picture.view()));
@@ -51,7 +51,7 @@ TEST(MapSliceSteps, OfPixelsAddUpAndSoDoThoseOfWhatIsLeftOut) {
   }
 }
 
-// A table's ray is looked up once, that of a polynomial is found in as many steps as it may take.
+// A lookup table is read once a ray; a polynomial lens counts its maximum number of iterations.
 TEST(MapSliceSteps, OfAPixelAreThoseOfItsLens) {
   const int plain = pixel_steps(), look_up = pixel_steps(Lens::lut) - plain;
   EXPECT_GT(look_up, 0);
@@ -59,7 +59,7 @@ TEST(MapSliceSteps, OfAPixelAreThoseOfItsLens) {
   EXPECT_EQ(pixel_steps(Lens::rational) - plain, k_ray_steps_max * look_up);
 }
 
-// Beside those of a row without depth.
+// The difference to a row without depth.
 TEST(MapSliceSteps, OfVoxelsAreThoseOfTheSlotsLookedAt) {
   const int probe = steps_of_row(1, 1.005f) - steps_of_row(1);
   EXPECT_GT(probe, 0);
@@ -101,14 +101,14 @@ TEST(MapSliceSteps, OfEachStageAreItsKernelsOfEachCallAndOfBeginningTheNext) {
   EXPECT_EQ(taken[Stage::points].calls, pixels / k_map_pixels_at_once);
   EXPECT_EQ(taken[Stage::points].steps, taken[Stage::points].calls * call + pixels * pixel_steps() +
                                             static_cast<int>(alone.voxels.probes()) * probe);
-  // One voxel, one point a call, each for the same steps.
+  // Each call processes one voxel or point; all calls take the same number of steps.
   EXPECT_EQ(taken[Stage::voxels].calls, alone.voxels.count());
   EXPECT_EQ(taken[Stage::voxels].steps % alone.voxels.count(), 0);
   EXPECT_EQ(taken[Stage::snap].calls, alone.smoothed.points.count);
   EXPECT_EQ(taken[Stage::snap].steps % alone.smoothed.points.count, 0);
 }
 
-// So many as the steps suffice for; one voxel more for each of its steps.
+// A slice processes as many items as its steps allow; one more voxel needs its full step count.
 TEST(MapSliceSteps, OfVoxelsAndPointsSufficeForAsMany) {
   const int call = call_steps();
   const Picture picture = wall();
@@ -121,7 +121,7 @@ TEST(MapSliceSteps, OfVoxelsAndPointsSufficeForAsMany) {
   for (const Stage stage : {Stage::voxels, Stage::snap}) {
     const int each = at_stage(stage)->map.step(1) - call;
     EXPECT_GT(each, 0);
-    // A call takes steps of its own: fewer items than the slice suffices for end it.
+    // The overhead of a call counts too: it ends the slice although the items leave a few steps.
     for (const int items : {1, 2, 7, 100}) {
       EXPECT_EQ(at_stage(stage)->map.step(items * each), call + items * each);
       EXPECT_EQ(at_stage(stage)->map.step(items * each + each - 1), call + items * each);

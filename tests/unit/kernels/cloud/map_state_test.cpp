@@ -1,4 +1,4 @@
-// What a map in slices counts, what it is when prepared anew, and which settings it takes.
+// Sliced mapping pipeline: its counters, its state after prepare(), and the limits of its settings.
 #include "mapped_wall.hpp"
 
 namespace glint::map_state_test {
@@ -37,7 +37,7 @@ TEST(MapTotals, AreThoseOfTheKernelsByThemselves) {
   EXPECT_LT(totals.kept, totals.voxels);
 }
 
-// Every other pixel of every other row, and none beyond the limits.
+// Every second pixel of every second row, within the depth limits.
 TEST(MapTotals, CountThePixelsThatItsSettingsTake) {
   MapSettings settings = small_settings();
   settings.depth.stride = 2;
@@ -55,7 +55,7 @@ TEST(MapTotals, CountThePixelsThatItsSettingsTake) {
   EXPECT_LT(expected, 300);
 }
 
-// Far away the filters' grids end: that of outliers before that of voxels.
+// Points far away are outside the filters' grids; the outlier grid is smaller than the voxel grid.
 TEST(MapTotals, CountWhatIsBeyondEitherGridAndWhatHasNoVoxelLeft) {
   MapSettings settings = small_settings();
   settings.voxels_max = 60;
@@ -97,7 +97,7 @@ TEST(MapTotals, CountWhatIsLeftOutByTheFirstCapsulesAlone) {
 
 TEST(MapState, PreparedAnewIsThatOfANewMap) {
   const Picture picture = wall();
-  for (const int steps : {100, 5'000, 100'000, 1 << 29}) {  // left in its midst, and ended
+  for (const int steps : {100, 5'000, 100'000, 1 << 29}) {  // interrupted, and complete
     TestMap used(small_settings(), 2), fresh(small_settings(), 2);
     for (int i = 0; i < 3; ++i) {
       ASSERT_TRUE(used.map.look(picture.view()));
@@ -137,7 +137,7 @@ TEST(MapState, PreparedAnewIsThatOfANewMap) {
   }
 }
 
-// The same picture adds no voxel: each map is as large as the first, and takes its place whole.
+// The same image adds no voxel: each map is as large as the first and replaces it completely.
 TEST(MapState, MakesEachMapAnew) {
   const Picture picture = wall();
   TestMap test(small_settings(), 1);
@@ -202,7 +202,7 @@ TEST(MapState, AnswersTheSettingsByTheirLimits) {
   EXPECT_EQ(bytes_of([](S& s) { s.support.candidates_max = k_map_candidates_max + 1; }), 0u);
 }
 
-// 100 voxels: where points fill whole lines the grids state a line too many.
+// 100 voxels: where points fill whole cache lines, the grids request one line too many.
 TEST(MapState, TakesTheMemoryThatItStatesAndRefusesLess) {
   MapSettings settings = small_settings();
   settings.voxels_max = 100;

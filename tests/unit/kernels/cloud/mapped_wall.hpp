@@ -1,4 +1,4 @@
-// A wall in two parts, a small map of it in slices, and what its kernels make of it by themselves.
+// Depth image of a wall in two parts, its sliced map, and the output of the kernels run separately.
 #pragma once
 
 #include <map>
@@ -9,7 +9,7 @@
 
 namespace glint::mapped_wall {
 
-inline constexpr int k_never = 1'000'000;  // pictures: no map is made
+inline constexpr int k_never = 1'000'000;  // images a map: makes no map
 
 inline MapSettings small_settings() {
   MapSettings settings;
@@ -52,7 +52,7 @@ struct Picture {
   }
 };
 
-// A wall, its right part 4 cm further away, and points that hang in the air before it.
+// A wall whose right part is 4 cm farther away, with isolated points in front of it.
 inline Picture wall() {
   Picture picture(40, 30, 1.005f);
   for (int i = 0; i < 40 * 30; ++i) {
@@ -63,7 +63,7 @@ inline Picture wall() {
   return picture;
 }
 
-// What the kernels give and take by themselves, each step a slice of one.
+// Outputs and step counts of the kernels run separately, each call with a limit of one step.
 struct ByThemselves {
   struct Taken {
     int calls = 0, steps = 0;

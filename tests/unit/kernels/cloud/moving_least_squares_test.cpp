@@ -73,7 +73,7 @@ TEST(MovingLeastSquares, HasUnitNormalsAcrossTheSurface) {
   }
 }
 
-// Against as many points without neighbours, which take the same sorting.
+// The difference to as many points without neighbours; sorting costs the same.
 TEST(MovingLeastSquares, CountsTheStepsOfEachCandidateAndNeighbour) {
   constexpr int k_crowd = 30;
   const auto steps_of = [](const std::vector<Point>& points) {
@@ -139,7 +139,7 @@ TEST(MovingLeastSquares, SaysWhenThereIsNoRoomAndWhenCandidatesWereUsedUp) {
   EXPECT_EQ(cut.run(points).size(), 400u);
   EXPECT_GT(cut.smoothing.cut(), 200);
   EXPECT_EQ(cut.smoothing.reason(), Reason::search_full);
-  // A crowd counts, and no point far away from it does.
+  // Points of a crowd reach the limit; points far away from it do not.
   std::vector<Point> crowd(50, {0, 0, 0});
   for (int i = 1; i < 5; ++i) crowd.push_back({static_cast<float>(i), 0, 0});
   TestSmoothing far(400, few);
@@ -179,7 +179,7 @@ TEST(MovingLeastSquares, RefusesWhatItCannotWorkWith) {
   EXPECT_EQ(smoothing.reason(), Reason::not_prepared);
 }
 
-// A crowd in one place, whose points all are neighbours.
+// All points are at one position, so that each is a neighbour of each.
 TEST(MovingLeastSquares, CountsTheStepsOfACrowdByHand) {
   const struct {
     int crowd, candidates, room;
@@ -229,7 +229,7 @@ TEST(MovingLeastSquares, CountsANeighbourAtExactlyTheRadius) {
   MovingLeastSquaresSettings settings;
   settings.radius_m = 0.03125f;
   TestSmoothing test(10, settings);
-  // The corner has two neighbours, each of these one.
+  // The corner point has two neighbours, the other two points one each.
   EXPECT_EQ(test.run({{0, 0, 0}, {0.03125f, 0, 0}, {0, 0.03125f, 0}}).size(), 1u);
   EXPECT_EQ(test.smoothing.lonely(), 2);
   EXPECT_EQ(test.smoothing.source_of(0), 0);

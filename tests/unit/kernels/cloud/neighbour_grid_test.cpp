@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-// Near the origin, and in single cells far apart: pointers must leap.
+// Dense near the origin, and isolated cells far apart, so that the sweep skips empty cells.
 std::vector<Point> clusters() {
   std::vector<Point> points = random_points(1'500, 0.2f, 1);
   for (const Point& p : random_points(300, 20.0f, 2)) {
@@ -82,7 +82,7 @@ TEST(NeighbourGrid, LeavesOutWhatIsBeyondItOrNotFiniteAndCountsIt) {
   EXPECT_EQ(sorted.grid.count(), 2);
 }
 
-// Cells at the end of one row and at the beginning of the next are not neighbours.
+// The last cell of a row and the first cell of the next row are not neighbours.
 TEST(NeighbourSweep, DoesNotRunFromTheEndOfARowIntoTheNext) {
   const float end = static_cast<float>(k_grid_cells_half) - 0.5f;
   const SortedCloud sorted({{end, 0.5f, 0.5f}, {-end, 1.5f, 0.5f}, {-end, 0.5f, 0.5f}}, 1.0f);
@@ -123,14 +123,14 @@ TEST(NeighbourGrid, EndsAtTheSameCellAlongEachAxisAndEitherWay) {
       EXPECT_EQ(sorted.grid.out_of_range(), 1) << axis << ' ' << side;
       ASSERT_EQ(sorted.grid.count(), 1) << axis << ' ' << side;
       EXPECT_EQ(sorted.grid.place_in_cloud(0), 1);
-      // One cell at each end stays empty.
+      // The first and the last cell of each axis stay empty.
       const std::uint32_t digit = sorted.grid.key(0) >> (axis * k_grid_axis_bits) & 1023;
       EXPECT_EQ(digit, side < 0 ? 1u : 1022u);
     }
   }
 }
 
-// A cell holds its lower boundary and not its upper one, on both sides of zero.
+// A cell contains its lower boundary but not its upper one, for either sign.
 TEST(NeighbourGrid, PutsAPointOnABoundaryIntoTheCellAbove) {
   const SortedCloud sorted(
       {{-1, 0, 0}, {-0.5f, 0, 0}, {0, 0, 0}, {0.5f, 0, 0}, {1, 0, 0}, {1.5f, 0, 0}}, 1.0f);
@@ -150,7 +150,7 @@ TEST(NeighbourGrid, CountsDownThePointsLeftInEachPass) {
   for (const int left : {3, 2, 1}) {
     EXPECT_FALSE(grid.keyed());
     EXPECT_EQ(grid.left_in_pass(), left);
-    grid.sort(0);  // at least one
+    grid.sort(0);  // processes at least one point
   }
   for (int pass = 0; pass < 4; ++pass) {
     for (const int left : {2, 1}) {
@@ -171,7 +171,7 @@ TEST(NeighbourGrid, CountsDownThePointsLeftInEachPass) {
   EXPECT_TRUE(grid.sorted());
 }
 
-// Also where it is left in the midst of a pass.
+// Also if the previous sort was interrupted within a pass.
 TEST(NeighbourGrid, BegunAgainSortsAsANewOne) {
   std::vector<Point> first = random_points(90, 5, 10);
   first[3][1] = k_not_a_number;
@@ -205,7 +205,7 @@ TEST(NeighbourGrid, BegunAgainSortsAsANewOne) {
   }
 }
 
-// A capacity at the limit is not out of range: what it lacks is memory.
+// At the limit the capacity itself is valid: the reason is missing memory.
 TEST(NeighbourGrid, TakesTheMemoryThatItStatesAndRefusesLess) {
   NeighbourGrid grid;
   TestMemory one(NeighbourGrid::bytes(1));
@@ -217,7 +217,7 @@ TEST(NeighbourGrid, TakesTheMemoryThatItStatesAndRefusesLess) {
     const std::size_t bytes = NeighbourGrid::bytes(points);
     ExactMemory enough(bytes), less(bytes - 1);
     EXPECT_EQ(grid.prepare(points, enough.arena()), Reason::none) << points;
-    // Where points fill whole lines it states a line too many for two of its columns.
+    // Where points fill whole cache lines, bytes() counts one line too many for two of its columns.
     if (points % 16 == 0) continue;
     EXPECT_EQ(grid.prepare(points, less.arena()), Reason::not_prepared) << points;
   }

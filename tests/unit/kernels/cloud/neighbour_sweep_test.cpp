@@ -1,4 +1,4 @@
-// The rows of points around a cell, and the comparisons that finding them takes.
+// Neighbour sweep: rows of points around a cell, and the number of comparisons of its search.
 #include <cmath>
 #include <set>
 
@@ -8,7 +8,7 @@
 namespace glint::neighbour_sweep_test {
 namespace {
 
-// Its own row stands first.
+// rows[0] is the cell's own row.
 TEST(NeighbourSweep, RowsHoldThePointsOfThe27CellsAroundAndNoOthers) {
   const SortedCloud sorted(random_points(700, 4.5f, 7), 1.0f);
   const auto cell_of = [](const NeighbourGrid& grid, int i) {
@@ -37,7 +37,7 @@ TEST(NeighbourSweep, RowsHoldThePointsOfThe27CellsAroundAndNoOthers) {
   }
 }
 
-// Eight comparisons one by one, then halvings: 63 cells are halved six times, whichever is sought.
+// Eight linear comparisons, then binary search: 63 cells take six bisections for any key.
 TEST(NeighbourSweep, ComparesOneByOneThenByHalves) {
   NeighbourSweep sweep;
   NeighbourSweep::Rows rows;
@@ -51,10 +51,10 @@ TEST(NeighbourSweep, ComparesOneByOneThenByHalves) {
   const SortedCloud sorted(line, 1.0f);
   ASSERT_EQ(sorted.grid.cells(), 71);
   sweep.begin();
-  // Its own row: one and three. Four rows before it: one and one. Four behind the line: 8 + 6 to
-  // begin; of these the row above has one cell near, the others none.
+  // Own row: 1 + 3. Each of the four rows before it: 1 + 1. Each of the four rows behind the line:
+  // 8 + 6 to find its begin. The row above has one near cell, the other three have none.
   EXPECT_EQ(sweep.rows_around(sorted.grid, 0, rows), 4 + 4 * 2 + 4 * (8 + 6) + 3 * 1 + 2);
-  // The next cell's rows lie where the last one's were found: only its own row is one further.
+  // The next cell's rows begin where the last one's did; only its own row advances, by one cell.
   EXPECT_EQ(sweep.rows_around(sorted.grid, 1, rows), 3 + 8 * 2);
 }
 

@@ -1,4 +1,4 @@
-// The order and the steps of a walk through a grid's points.
+// Neighbour walk: visiting order and step count over the points of a grid.
 #include "kernels/cloud/neighbour_walk.hpp"
 
 #include "clouds.hpp"
@@ -22,7 +22,7 @@ struct TestWalk {
     entered.clear();
     seen.clear();
   }
-  // One call; a cell takes enter_steps and a point look_steps.
+  // One call; entering a cell costs enter_steps, visiting a point look_steps.
   bool step(SliceSize most, int enter_steps = 0, int look_steps = 0) {
     const bool done = walk.step(
         grid, most,
@@ -52,7 +52,7 @@ struct TestWalk {
   std::vector<NeighbourSweep::Row> own_rows;
 };
 
-// So many points in each of the cells (0, 0, 0), (1, 0, 0), ..
+// counts[i] points in the cell (i, 0, 0).
 std::vector<Point> points_in_cells(const std::vector<int>& counts) {
   std::vector<Point> points;
   for (std::size_t cell = 0; cell < counts.size(); ++cell) {
@@ -72,7 +72,7 @@ TEST(NeighbourWalk, SortsInFivePassesForTheSameStepsInSlicesOfAnySize) {
   } cases[] = {{k_whole, 5},
                {7, 8 + 4 * 8},
                {1, 53 + 4 * 50},
-               {{1 << 20, 3 * k_key_steps}, 18 + 4 * 5},  // ten points of the later passes
+               {{1 << 20, 3 * k_key_steps}, 18 + 4 * 5},  // ten points a call in the later passes
                {{1 << 20, 1}, 53 + 4 * 50}};
   for (const auto& [most, calls] : cases) {
     TestWalk test(points);
@@ -102,7 +102,7 @@ TEST(NeighbourWalk, EntersEachCellOnceBeforeItsPointsInTheirOrder) {
     EXPECT_EQ(test.seen, (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7}));
     EXPECT_EQ(test.entered, (std::vector<int>{0, 4, 5}));
     EXPECT_EQ(test.calls, (8 + slice - 1) / slice);
-    // A cell's own row, with its neighbours along x.
+    // rows[0]: the cell itself and its neighbours along x.
     ASSERT_EQ(test.own_rows.size(), 3u);
     const int begin[] = {0, 0, 4}, end[] = {5, 8, 8};
     for (std::size_t cell = 0; cell < 3; ++cell) {
@@ -148,7 +148,7 @@ TEST(NeighbourWalk, BegunAgainGoesAsANewOne) {
   const std::vector<Point> second = points_in_cells({2, 5, 1});
   TestWalk fresh(second), used(points_in_cells({9, 9, 9, 9}));
   used.sort(k_whole);
-  EXPECT_FALSE(used.step(20));  // left in the midst of its points
+  EXPECT_FALSE(used.step(20));  // interrupted before its last point
   const TestCloud cloud(second);
   used.begin(cloud.points);
   EXPECT_EQ(used.walk.steps(), 0);

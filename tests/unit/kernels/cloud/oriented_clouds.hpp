@@ -1,4 +1,4 @@
-// Clouds whose points have normals, and a search for their planes.
+// Point clouds with normals for tests, and a plane search over them.
 #pragma once
 
 #include <cmath>
@@ -49,8 +49,8 @@ struct TestSearch {
   PlaneSupport support;
 };
 
-// A floor of 6,000 points, a wall of 3,000, 1,500 here and there, and 400 on the floor's plane that
-// stand across it; 3 mm noise, normals a few degrees off and of either sign.
+// Scene: a floor of 6,000 points, a wall of 3,000, 1,500 scattered, and 400 on the floor's plane
+// with normals across it. 3 mm noise; normals are a few degrees off and of either sign.
 inline std::vector<Oriented> room(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<float> side(-1, 1);
@@ -79,7 +79,7 @@ inline std::vector<Oriented> room(std::uint64_t seed) {
   return out;
 }
 
-// Points 1 cm apart, `across` of them side by side, at the height z with this normal.
+// A grid with 1 cm spacing and `across` points a row, at height z, all with this normal.
 inline std::vector<Oriented> tile(int points, int across, float z, const Point& normal) {
   std::vector<Oriented> out;
   for (int i = 0; i < points; ++i) {

@@ -1,5 +1,5 @@
-// Moving least squares as a textbook has it, in double, with Eigen's solvers and the library's
-// exponential: what the kernel is compared with.
+// Reference moving least squares in double, with Eigen's solvers and std::exp; tests compare the
+// kernel with it.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -20,7 +20,7 @@ inline Vector3 vector_of(const Point& p) {
   return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
 }
 
-// At least six neighbours.
+// Requires at least six neighbours.
 inline PlainSurface plain_surface(const Point& of, const std::vector<Point>& near, double radius) {
   Vector3 mean = Vector3::Zero();
   for (const Point& p : near) mean += vector_of(p) / static_cast<double>(near.size());

@@ -32,7 +32,7 @@ struct TestSample {
   PlaneSample sample;
 };
 
-// Of three points: these, in this order.
+// Random numbers that draw all three points of a sample of three, in order.
 constexpr std::uint64_t k_third = (1u << 20) / 3 + 1;
 constexpr std::uint64_t k_all_three = k_third << 20 | 2 * k_third << 40;
 
@@ -112,7 +112,7 @@ TEST(PlaneSample, IsEmptyWhenClearedOrPreparedAnewAndFullAtItsCapacity) {
   EXPECT_EQ(test.sample.count(), 0);
 }
 
-// Twenty bits a point, spread evenly over the sample; what stands above them is not read.
+// Each index takes 20 bits, mapped evenly to the sample; the four bits above are not read.
 TEST(PlaneSample, DrawsAnyThreeOfItsPoints) {
   constexpr std::uint64_t k_points = 7;
   const std::vector<Point> points = random_points(7, 1, 3);
@@ -122,7 +122,7 @@ TEST(PlaneSample, DrawsAnyThreeOfItsPoints) {
   const auto first_of = [](std::uint64_t i) { return ((i << 20) + k_points - 1) / k_points; };
   for (std::uint64_t draw = 0; draw < 2 * 343; ++draw) {
     const std::uint64_t a = draw % 7, b = draw / 7 % 7, c = draw / 49 % 7;
-    // The first number that stands for a point, and the last.
+    // The smallest and the largest 20-bit number that map to index i.
     const auto number_of = [&](std::uint64_t i) {
       return draw < 343 ? first_of(i) : first_of(i + 1) - 1;
     };
@@ -171,13 +171,13 @@ TEST(PlaneSample, HasNoCandidateOfWhatIsNoNumber) {
   }
 }
 
-// Steele, Lea and Flood's SplitMix64: its first numbers, as its authors' program prints them.
+// Reference outputs of SplitMix64 (Steele, Lea and Flood), as the authors' program prints them.
 TEST(PlaneSample, DrawsTheNumbersOfSplitMix64) {
   const std::uint64_t expected[] = {6457827717110365317u, 3203168211198807973u,
                                     9817491932198370423u, 4593380528125082431u,
                                     16408922859458223821u};
   for (int i = 0; i < 5; ++i) EXPECT_EQ(random_at(1234567, 0, i), expected[i]) << i;
-  // A stream begins 2^40 numbers behind the last one.
+  // Successive streams begin 2^40 numbers apart.
   constexpr std::uint64_t k_further = 0x9E3779B97F4A7C15u << 40;
   for (int stream = 0; stream < 5; ++stream) {
     EXPECT_EQ(random_at(7, stream + 1, 3), random_at(7 + k_further, stream, 3));

@@ -1,4 +1,4 @@
-// What a search for planes costs, and what it draws, against a plain one.
+// Step counts of the plane search, and its draws compared with a plain implementation.
 #include <algorithm>
 
 #include "oriented_clouds.hpp"
@@ -50,7 +50,7 @@ TEST(PlaneSteps, AreThoseOfItsPassesInSlicesOfAnySize) {
       settings.seed = seed;
       TestSearch test(k_points, settings);
       const Taken one = run(test.search, cloud.points, c.most);
-      const int planes = test.search.count();  // none where its three points lie on a line
+      const int planes = test.search.count();  // 0 if the three drawn points are collinear
       found += planes;
       EXPECT_EQ(one.calls, c.listed + c.drawn + 1 + planes * (k_plane_fits * c.fitted + c.taken));
       const int of_points =
@@ -58,7 +58,7 @@ TEST(PlaneSteps, AreThoseOfItsPassesInSlicesOfAnySize) {
           planes * (k_plane_score_steps + k_plane_fits * k_plane_fit_steps + k_plane_take_steps);
       EXPECT_EQ(one.steps,
                 one.calls * k_plane_turn_steps + k_points * of_points + k_plane_try_steps);
-      // Where another may be found its points are listed: none is left.
+      // If a further plane is allowed, the free points are listed again; none is left.
       settings.planes_max = 2;
       TestSearch more(k_points, settings);
       const Taken two = run(more.search, cloud.points, c.most);
@@ -73,7 +73,7 @@ TEST(PlaneSteps, AreThoseOfItsPassesInSlicesOfAnySize) {
 
 TEST(PlaneSteps, AreThoseOfItsTriesInSlicesOfAnySize) {
   constexpr int k_points = 400, k_tries = 100;
-  // No plane through them has this normal: every try fails.
+  // Every point's normal lies in the plane: every try fails.
   const TestCloud cloud = cloud_of(tile(k_points, 20, 0.5f, k_across));
   const struct {
     SliceSize most;
@@ -81,8 +81,8 @@ TEST(PlaneSteps, AreThoseOfItsTriesInSlicesOfAnySize) {
   } cases[] = {{k_whole, 1, 1, 1},
                {7, 58, 58, 15},
                {1, 400, 400, 100},
-               {{1 << 20, 50}, 50, 200, 34},   // the third try goes beyond
-               {{1 << 20, 48}, 50, 200, 50}};  // two tries use it up
+               {{1 << 20, 50}, 50, 200, 34},   // the third try exceeds the steps
+               {{1 << 20, 48}, 50, 200, 50}};  // two tries use up the steps
   for (const auto& c : cases) {
     TestSearch test(k_points, few_tries(k_tries, 8));
     const Taken all = run(test.search, cloud.points, c.most);
@@ -94,7 +94,7 @@ TEST(PlaneSteps, AreThoseOfItsTriesInSlicesOfAnySize) {
   }
 }
 
-// A scored sample counts as many items as it has points, beside the try's own.
+// A scored try counts as one item per sample point, plus one for the try itself.
 TEST(PlaneSteps, CountAScoredSampleByItsPoints) {
   constexpr int k_points = 400, k_tries = 10;
   const TestCloud cloud = cloud_of(tile(k_points, 20, 0.5f, k_up));
@@ -109,7 +109,7 @@ TEST(PlaneSteps, CountAScoredSampleByItsPoints) {
                           k_plane_fits * k_plane_fit_steps + k_plane_take_steps;
     const int scored = whole.steps - whole.calls * k_plane_turn_steps - k_points * of_points -
                        k_tries * k_plane_try_steps;
-    if (scored != k_tries * k_points * k_plane_score_steps) continue;  // some were on a line
+    if (scored != k_tries * k_points * k_plane_score_steps) continue;  // some draws were collinear
     ++checked;
     EXPECT_EQ(run(test.search, cloud.points, k_points + 1).calls, passes + k_tries);
     EXPECT_EQ(run(test.search, cloud.points, k_points + 2).calls, passes + k_tries / 2);
@@ -117,8 +117,8 @@ TEST(PlaneSteps, CountAScoredSampleByItsPoints) {
   EXPECT_GT(checked, 2);
 }
 
-// The search's draws and scores in plain loops: of equal parts of the points on no plane one each,
-// then planes through three of them, the first of the best.
+// Reference: the search's draws and scores in plain loops. One sample point from each of equal
+// parts of the free points; then planes through three of them; the first of the best wins.
 struct PlainSearch {
   PlaneSettings settings;
   const PointCloud& cloud;
@@ -151,8 +151,8 @@ struct PlainSearch {
   }
 };
 
-// Two tiles of the same size, one over the other: only what was drawn first decides which is the
-// first plane. Of 4,000 points about half are in the sample.
+// Two tiles of the same size, one above the other: the order of the draws alone decides which plane
+// is found first. Of 4,000 points about half are in the sample.
 TEST(PlaneSteps, AreThoseOfAPlainSearchThatDrawsTheSameNumbers) {
   for (const int points : {300, 2'000}) {
     std::vector<Oriented> both = tile(points, 50, 0, k_up);
@@ -203,7 +203,8 @@ TEST(PlaneSteps, GoNoFurtherBeyondASliceThanStated) {
       ASSERT_GT(test.search.steps(), 0);
     }
   }
-  // Where all tries are scored one by one, a slice of one step is a turn, a try and a sample.
+  // If each try is scored in its own call, a slice of one step costs one turn, one try and one
+  // sample.
   PlaneSettings settings = few_tries(4096, 256);
   settings.gate.normal_cosine_min = 0;
   TestSearch one(20'000, settings);

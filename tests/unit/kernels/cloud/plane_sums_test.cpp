@@ -13,7 +13,7 @@ TEST(PlaneSums, HaveTheSmallestEigenvectorWhateverTheShape) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
   for (int round = 0; round < 3'000; ++round) {
-    // Discs, rods, balls and all between, turned at random.
+    // Discs, rods, balls and intermediate shapes, randomly rotated.
     const Vector3 sizes(1, std::abs(normal(random)), 0.3 * std::abs(normal(random)));
     const Matrix3 turn = Quaternion(normal(random), normal(random), normal(random), normal(random))
                              .normalized()
@@ -35,7 +35,7 @@ TEST(PlaneSums, HaveTheSmallestEigenvectorWhateverTheShape) {
     EXPECT_NEAR(plane.spread, solver.eigenvalues()(1), 1e-13);
     EXPECT_NEAR(plane.normal.norm(), 1, 1e-14);
     EXPECT_LT((plane.mean - mean).norm(), 1e-14);
-    // Where two are nearly alike the vector is free between them: its variance is what counts.
+    // Two nearly equal eigenvalues leave the vector undetermined: compare the variance along it.
     EXPECT_NEAR(plane.normal.dot(covariance * plane.normal), solver.eigenvalues()(0), 1e-13);
     ASSERT_FALSE(HasFailure()) << "round " << round;
   }

@@ -8,8 +8,8 @@
 namespace glint::plane_support_test {
 namespace {
 
-// A table of 1 cm voxels, and beside it a wall that crosses its plane, with normals that are wrong
-// by the worst of luck: only the wall's other points tell that the stripe is no part of the table.
+// A table of 1 cm voxels, and beside it a wall that crosses its plane and has the table's normals
+// (worst case). Only the wall's other points show that the stripe is not part of the table.
 TEST(PlaneSupport, TakesOffAStripeAndLeavesEdgesOn) {
   std::vector<Oriented> points;
   for (int i = 0; i < 60 * 60; ++i) {
@@ -62,7 +62,7 @@ TEST(PlaneSupport, CountsItsStepsAndRefusesSettingsThatFindNothing) {
     done = support.step(SliceSize{k_most, k_most});
     EXPECT_LE(support.steps(), k_most + PlaneSupport::steps_max(PlaneSupportSettings{}));
   }
-  // Each point costs its share, and on a plane at least a look at itself.
+  // Each point costs k_support_steps, and on a plane at least one vote (its own).
   std::int64_t on_planes = 0;
   for (int i = 0; i < cloud.points.count; ++i)
     on_planes += test.search.plane_of(i) != PlaneSearch::k_no_plane ? 1 : 0;
@@ -76,7 +76,7 @@ TEST(PlaneSupport, CountsItsStepsAndRefusesSettingsThatFindNothing) {
   }
 }
 
-// Every pair of points is looked at.
+// Reference: all pairs of points.
 TEST(PlaneSupport, LeavesOnAPlaneWhatAPlainCountOfNeighboursLeaves) {
   const std::vector<Oriented> points = room(5);
   const TestCloud cloud = cloud_of(points);
@@ -115,7 +115,7 @@ TEST(PlaneSupport, RefusesWhatItCannotWorkWith) {
   EXPECT_EQ(support.plane_of(0), PlaneSearch::k_no_plane);
 }
 
-// A tile in one cell, and points beside it on no plane.
+// A tile within one cell, and k_off points off every plane.
 struct SupportedTile {
   static constexpr int k_on = 400, k_off = 16, k_all = k_on + k_off;
   explicit SupportedTile(PlaneSupportSettings settings = {}, bool off_first = false)
@@ -128,10 +128,10 @@ struct SupportedTile {
     planes_of = std::make_unique<TestSearch>(k_all, planes);
     planes_of->run(cloud->points);
     EXPECT_EQ(planes_of->search.count(), 1);
-    settings.radius_m = 1;  // the cell's width
+    settings.radius_m = 1;  // equals the cell's width
     EXPECT_EQ(support.prepare(settings, k_all, memory.arena()), Reason::none);
   }
-  // Steps of all calls.
+  // Sum of the steps of all calls.
   int run(SliceSize most) {
     support.begin(cloud->points, planes_of->search);
     int steps = 0;
@@ -159,9 +159,9 @@ TEST(PlaneSupport, CountsTheStepsOfMarkingSortingAndEachCandidate) {
     const int voted = std::min(candidates, k_all) * k_on * k_vote_steps;
     const int rest = sorting_steps(k_all, k_all) + k_walk + voted;
     EXPECT_EQ(tile.run(1 << 20), 1 + k_all / k_marked_a_step + rest) << candidates;
-    // A hundred points at a time are marked for seven steps, the last sixteen for two.
+    // Marking 100 points takes seven steps, the last 16 take two.
     EXPECT_EQ(tile.run(100), 4 * (1 + 100 / k_marked_a_step) + 1 + 1 + rest) << candidates;
-    // Of two steps, each call marks for one more what two steps mark.
+    // With a budget of two steps, each call takes three: one is the overhead of the call.
     EXPECT_EQ(tile.run({1 << 20, 2}), k_all / (2 * k_marked_a_step) * 3 + rest) << candidates;
   }
 }
@@ -174,14 +174,14 @@ TEST(PlaneSupport, TakesNoMoreStepsThanItStatesForOnePoint) {
   int calls = 0;
   for (bool done = false; !done; ++calls) {
     done = tile.support.step(1);
-    // Those of sorting, which ends each pass by a turn, are another matter.
+    // Skip the calls that sort: each pass ends with extra steps.
     if (calls > 6 * SupportedTile::k_all) most = std::max(most, tile.support.steps());
   }
   EXPECT_EQ(most, k_support_steps + k_vote_steps * 100);
   EXPECT_EQ(PlaneSupport::steps_max(settings) - most - k_lone_cell_steps, k_worst_cell_more);
 }
 
-// The cell's first points vote: of 20, 16 are on no plane.
+// The first points of the cell vote: 16 of the first 20 are off the plane.
 TEST(PlaneSupport, StaysWhereExactlyThePartAskedForOfTheCandidatesIsOnThePlane) {
   for (const auto& [part, candidates, stays] :
        {std::tuple{0.2f, 20, true}, std::tuple{0.21f, 20, false}, std::tuple{0.2f, 19, false},
@@ -194,7 +194,7 @@ TEST(PlaneSupport, StaysWhereExactlyThePartAskedForOfTheCandidatesIsOnThePlane) 
   }
 }
 
-// Three points in a row are on a plane, a fourth off it stands at exactly the radius of the last.
+// One further point is off the plane, above the corner point at exactly the radius.
 TEST(PlaneSupport, CountsANeighbourAtExactlyTheRadius) {
   std::vector<Oriented> points;
   for (int i = 0; i < 9; ++i) {
@@ -212,7 +212,7 @@ TEST(PlaneSupport, CountsANeighbourAtExactlyTheRadius) {
     ASSERT_EQ(search.search.count(), 1);
     TestMemory memory(PlaneSupport::bytes(10));
     PlaneSupport support;
-    // The corner has itself and two neighbours on the plane: three of three, or of four.
+    // The corner counts itself and two neighbours on the plane: 3 of 3, or 3 of 4.
     ASSERT_EQ(support.prepare({0.125f, 0.8f, 100}, 10, memory.arena()), Reason::none);
     support.begin(cloud.points, search.search);
     while (!support.step(1)) {
@@ -245,7 +245,7 @@ TEST(PlaneSupport, PreparedAnewHasNoPointOnAPlane) {
   EXPECT_EQ(used.support.steps(), 0);
 }
 
-// Of a cloud beyond the capacity the first points are judged, the others are on no plane.
+// Only the first points up to the capacity are tested; the others are on no plane.
 TEST(PlaneSupport, OfACloudBeyondItsCapacityJudgesTheFirstPoints) {
   SupportedTile tile;
   TestMemory memory(PlaneSupport::bytes(150));

@@ -21,7 +21,7 @@ TEST(Planes, OfAsManyPointsAsAskedForAreFoundAndOfOneLessAreNot) {
 }
 
 TEST(Planes, CountTheStepsOfEveryPassAndTry) {
-  // No plane through them has this normal.
+  // Every point's normal lies in the plane: every try fails.
   const TestCloud cloud = cloud_of(tile(600, 25, 0.5f, {1, 0, 0}));
   const auto steps_of = [&](const PlaneSettings& settings) {
     TestSearch test(1'000, settings);
@@ -163,8 +163,8 @@ TEST(Planes, RefuseWhatTheyCannotWorkWith) {
   EXPECT_EQ(search.reason(), Reason::not_prepared);
 }
 
-// Points at exactly the threshold, and normals at exactly the angle, in pairs that leave the plane
-// where it is.
+// Points exactly at the threshold and normals exactly at the angle, in symmetric pairs that do not
+// move the plane.
 TEST(Planes, TakeWhatIsExactlyAtTheGate) {
   const float height = 0.0078125f, beyond = std::nextafter(height, 1.0f);
   PlaneSettings settings;
@@ -187,7 +187,7 @@ TEST(Planes, TakeWhatIsExactlyAtTheGate) {
   }
 }
 
-// Normals along one axis alone.
+// All normals along one coordinate axis.
 TEST(Planes, AreFoundAcrossEachAxis) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::vector<Oriented> points = tile(600, 25, 0.5f, {0, 0, 1});
@@ -205,7 +205,7 @@ TEST(Planes, AreFoundAcrossEachAxis) {
   }
 }
 
-// Against the smallest principal axis of their points.
+// Reference: the smallest principal axis of the points.
 TEST(Planes, AreTheLeastSquaresOfTheirPoints) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<float> noise(-0.004f, 0.004f);
@@ -233,7 +233,7 @@ TEST(Planes, AreTheLeastSquaresOfTheirPoints) {
   EXPECT_NEAR(plane.rms_m, std::sqrt(solver.eigenvalues()(0)), 1e-9);
 }
 
-// Beside 50 points that are on none.
+// 50 further points are on no plane.
 TEST(Planes, WithTooFewOfTheFreePointsAreNone) {
   std::vector<Oriented> points = tile(400, 20, 0.5f, {0, 0, 1});
   for (const Oriented& p : tile(50, 50, 0.9f, {0, 1, 0})) points.push_back(p);
@@ -268,7 +268,7 @@ TEST(Planes, AreAsManyAsAskedForOfMore) {
 TEST(Planes, BegunAgainAreThoseOfANewSearch) {
   const TestCloud before = cloud_of(room(1)), cloud = cloud_of(room(2));
   TestSearch used(11'000), fresh(11'000);
-  for (const int calls : {3, 1'000'000}) {  // left in its midst, and ended
+  for (const int calls : {3, 1'000'000}) {  // interrupted, and complete
     used.search.begin(before.points);
     for (int i = 0; i < calls && !used.search.step(500); ++i) {
     }
@@ -343,7 +343,7 @@ TEST(Planes, TakeEachSettingAtItsLimitAndRefuseItBeyond) {
   EXPECT_EQ(PlaneSearch().prepare({}, 10, less.arena()), Reason::not_prepared);
 }
 
-// Left in the midst of its search.
+// prepare() interrupts a search.
 TEST(Planes, PreparedAnewAreNoneUntilTheSearchBegins) {
   const TestCloud cloud = cloud_of(room(1));
   for (const bool refused : {false, true}) {

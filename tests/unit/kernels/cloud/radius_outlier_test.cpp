@@ -64,7 +64,7 @@ TEST(RadiusOutlier, GivesTheSameInSlicesAndSaysHowManyThereWere) {
   const std::vector<Point> points = random_points(1'000, 0.2f, 3);
   TestFilter test(1'000);
   const std::vector<Point> whole = test.run(points);
-  EXPECT_EQ(test.calls, 6);  // five passes to sort, one to judge
+  EXPECT_EQ(test.calls, 6);  // five sorting passes and one filter pass
   EXPECT_EQ(test.run(points, 17), whole);
   EXPECT_EQ(test.calls, 6 * 59);
 }
@@ -91,12 +91,12 @@ TEST(RadiusOutlier, SaysWhenThereIsNoRoomAndKeepsTheFirst) {
   EXPECT_EQ(test.run(points, 4, 12).size(), 12u);
   EXPECT_EQ(test.filter.dropped(), 3);
   EXPECT_EQ(test.filter.reason(), Reason::cloud_full);
-  // Five more than the grid holds, and eight of its twenty that find no room.
+  // Five points exceed the grid; of its twenty, eight do not fit into the output.
   EXPECT_EQ(test.run(std::vector<Point>(25, Point{0.5f, 0, 0}), 4, 12).size(), 12u);
   EXPECT_EQ(test.filter.dropped(), 13);
 }
 
-// A crowd in the next cell, but out of reach: the search ends all the same.
+// 1,000 points in the next cell, out of the radius: the search stops at candidates_max.
 TEST(RadiusOutlier, DropsAPointWhoseCandidatesAreUsedUpAndSaysSo) {
   std::vector<Point> points(1'000, Point{0.098f, 0.001f, 0.001f});
   for (int i = 0; i < 10; ++i) points.push_back({0.001f, 0.001f, 0.001f});
@@ -122,7 +122,7 @@ TEST(RadiusOutlier, RefusesWhatItCannotWorkWith) {
   EXPECT_EQ(filter.reason(), Reason::not_prepared);
 }
 
-// A crowd in one place is looked at by fours, until the neighbours asked for are found or the
+// Coincident points are tested four at a time, until the required neighbours are found or the
 // candidates are used up.
 TEST(RadiusOutlier, CountsTheStepsOfEachFourCandidates) {
   const struct {
@@ -153,7 +153,7 @@ TEST(RadiusOutlier, CountsTheStepsOfEachFourCandidates) {
   }
 }
 
-// The last four may hold one candidate that counts.
+// Of the last four candidates, one may be within the limit.
 TEST(RadiusOutlier, TakesNoMoreStepsThanItStatesForOnePoint) {
   const RadiusOutlierSettings settings{0.05f, 4, 5};
   TestFilter test(30, settings);

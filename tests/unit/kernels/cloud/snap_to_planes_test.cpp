@@ -29,7 +29,7 @@ TEST(SnapToPlanes, MakesTheirPointsFlatAndMovesNoOther) {
   }
 }
 
-// A point keeps what lies along the plane, and takes over all of its normal.
+// A point keeps its component along the plane and receives the plane's normal.
 TEST(SnapToPlanes, MovesAlongTheNormalAndGivesItToThePoint) {
   const std::vector<Oriented> points = room(3);
   TestCloud cloud = cloud_of(points);

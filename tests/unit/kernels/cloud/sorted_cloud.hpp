@@ -1,4 +1,4 @@
-// A cloud in a grid, sorted.
+// A point cloud together with the grid that sorts it.
 #pragma once
 
 #include "clouds.hpp"

@@ -24,7 +24,7 @@ struct TestGrid {
   VoxelGrid grid;
 };
 
-// The plain version: a map of lists, in the order of first points.
+// Reference: voxel means with std::map, in the order of each voxel's first point.
 std::vector<Point> plain_means(const std::vector<Point>& points, float voxel_m) {
   struct Sum {
     std::array<double, 3> sum{};
@@ -114,7 +114,7 @@ TEST(VoxelGrid, SaysHowManyMeasurementsAPointIsTheMeanOf) {
   EXPECT_EQ(out.points.weight[1], 1.0f);
 }
 
-// Voxels whose keys fall on one slot, found by what looking for each costs beside the first alone.
+// Voxels whose keys hash to one slot: next to the first voxel alone, each costs two probes.
 TEST(VoxelGrid, LooksAtAsManySlotsAsDeclaredAndDropsWhatHasNoneThere) {
   TestGrid test(2 * k_voxel_probes_max, 1.0f);
   const auto cost_of = [&](const Point& point) {
@@ -142,7 +142,7 @@ TEST(VoxelGrid, LooksAtAsManySlotsAsDeclaredAndDropsWhatHasNoneThere) {
   EXPECT_EQ(test.grid.reason(), Reason::cloud_full) << "although there are voxels left";
 }
 
-// A voxel holds its lower boundary and not its upper one, on both sides of zero.
+// A voxel contains its lower boundary but not its upper one, for either sign.
 TEST(VoxelGrid, PutsAPointOnABoundaryIntoTheVoxelAbove) {
   TestGrid test(8, 0.125f);
   test.add(TestCloud(std::vector<Point>{
@@ -197,7 +197,7 @@ TEST(VoxelGrid, RefusesWhatItCannotWorkWith) {
   EXPECT_EQ(grid.count(), 0);
 }
 
-// Exactly on the grid's end, along each axis and either way.
+// Points exactly at the grid's end, on each axis and either side.
 TEST(VoxelGrid, EndsAtTheSameVoxelAlongEachAxisAndEitherWay) {
   const float edge = static_cast<float>(k_voxel_range), inside = std::nextafter(edge, 0.0f);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -268,7 +268,7 @@ TEST(VoxelGrid, GoesOnWritingBehindWhereACloudWasFull) {
   EXPECT_EQ(second.all(), (std::vector<Point>{{3, 0, 0}}));
 }
 
-// At most half of the slots are taken, and their number is a power of two.
+// The load factor is at most 1/2; the number of slots is a power of two.
 TEST(VoxelGrid, TakesTheMemoryThatItStatesAndRefusesLess) {
   constexpr std::size_t k_voxel = 8 + 3 * 8 + 4 + 4;  // key, sums, points, slot
   VoxelGrid grid;
@@ -284,7 +284,7 @@ TEST(VoxelGrid, TakesTheMemoryThatItStatesAndRefusesLess) {
   }
 }
 
-// A capacity at the limit is not out of range: what it lacks is memory.
+// At the limit the capacity itself is valid: the reason is missing memory.
 TEST(VoxelGrid, TakesEachSettingAtItsLimitAndRefusesItBeyond) {
   const auto reason_of = [](float voxel_m, int voxels) {
     TestMemory memory(VoxelGrid::bytes(10));
