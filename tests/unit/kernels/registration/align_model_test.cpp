@@ -22,7 +22,7 @@ struct Scene {
   std::vector<std::uint8_t> mask;
   AlignmentScratch scratch;
 
-  // With a wall behind, 0.4 m farther.
+  // With a wall 0.4 m behind the arm.
   explicit Scene(double noise_m = 0, const Pose& truth = k_truth) {
     EXPECT_EQ(scratch.prepare(2, 160 * 120, 64), Reason::none);
     std::vector<std::int32_t> face(depth.size());
@@ -83,7 +83,7 @@ TEST(AlignModel, ReachesTheSameEndByEachWayOfMatching) {
   for (const Matching matching : {Matching::point, Matching::plane, Matching::projective}) {
     const ModelAlignment end = scene.align(start_off(0.01, 1), only(matching));
     ASSERT_EQ(end.reason, Reason::none);
-    // Points are 9 mm apart in this scene: nearest points of a shifted raster creep.
+    // Points are 9 mm apart in this scene: nearest-point pairs on a shifted raster converge slowly.
     const double least = matching == Matching::projective ? 3e-4 : 4e-3;
     EXPECT_LT((end.T_world_base.translation - k_truth.translation).norm(), least)
         << static_cast<int>(matching);
@@ -121,8 +121,8 @@ TEST(AlignModel, IsNotDrawnToWhatStandsInFront) {
 }
 
 TEST(AlignModel, LeavesWhatIsHiddenOutOfTheWidestGate) {
-  // A board hides the left; what lies behind it would find neighbours aside, in the part that
-  // shows.
+  // A surface in front hides the left part. Points behind it would match wrong neighbours in the
+  // visible part.
   Scene scene;
   for (int y = 0; y < 120; ++y) {
     for (int x = 0; x < 68; ++x) scene.depth[static_cast<std::size_t>(y * 160 + x)] = 0.8f;
@@ -133,7 +133,7 @@ TEST(AlignModel, LeavesWhatIsHiddenOutOfTheWidestGate) {
   const ModelAlignment end = scene.align(k_truth, wide);
   EXPECT_LT((end.T_world_base.translation - k_truth.translation).norm(), 0.01);
   EXPECT_LT(degrees_between(end.T_world_base, k_truth),
-            3);  // three times as far with what is hidden
+            3);  // three times as far if hidden points are included
 }
 
 TEST(AlignModel, TwoViewsKnowMoreThanOne) {
@@ -142,7 +142,7 @@ TEST(AlignModel, TwoViewsKnowMoreThanOne) {
   const ModelAlignment both = align_model(views, start_off(0.02, 2), {}, scene.scratch);
   const ModelAlignment one = scene.align(start_off(0.02, 2));
   EXPECT_EQ(both.pairs, 2 * one.pairs);
-  // A view from elsewhere: the scene is the same, told in another frame.
+  // The same scene in the frame of another camera pose.
   const Pose other{Quaternion(Eigen::AngleAxisd(0.7, Vector3::UnitY())), {0.3, -0.1, 0.2}};
   views[0].T_camera_world = other.inverse();
   const ModelAlignment moved =
@@ -180,7 +180,7 @@ TEST(JudgeAlignment, TellsAnOutlineFromAPatchOfAWall) {
   EXPECT_GT(there.outline.falls, 200);
   EXPECT_EQ(there.outline.goes_on, 0);
   EXPECT_EQ(there.outline_share(), 1);
-  // A wall with a box's face in it explains that face, but goes on beside it.
+  // A wall that contains a box's face explains that face, but continues beside it.
   const Pose upright{Quaternion::Identity(), {0, 0, 1}};
   std::fill(scene.depth.begin(), scene.depth.end(), 1.0f);
   const Judgement flat = scene.judge(upright);
@@ -188,7 +188,7 @@ TEST(JudgeAlignment, TellsAnOutlineFromAPatchOfAWall) {
   EXPECT_EQ(flat.outline.falls, 0);
   EXPECT_GT(flat.outline.goes_on, 100);  // a face of 30 pixels a side
   EXPECT_LT(flat.outline_share(), 0.2);
-  // What stands in front of the edge says nothing, nor what was not measured.
+  // A pixel in front of the edge, or without depth, counts as neither.
   for (const float beside : {0.0f, 0.5f}) {
     std::vector<float>& depth = scene.depth;
     const AlignmentScratch::View& seen = scene.scratch.views[0];

@@ -1,4 +1,4 @@
-// One step of an alignment against the normal equations by hand; its gates, its slices, its rest.
+// Gauss-Newton steps of an alignment: normal equations, gates, slices, convergence, step counts.
 #include "kernels/registration/align_model.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ using test::Model;
 
 constexpr int k_pixels = 160 * 120;
 
-// The arm before a wall, seen by two cameras.
+// The arm in front of a wall, seen by two cameras.
 struct TwoViews {
   Model model;
   Pinhole camera{160, 120, 150, 150, 80, 60};
@@ -68,7 +68,8 @@ Pose start_off() {
   return {(turn * k_truth.rotation).normalized(), k_truth.translation + Vector3(0.004, 0.002, 0)};
 }
 
-// The middle of what is seen, the step, and what it leaves, from all pairs at once.
+// Reference: centroid of the visible points, Gauss-Newton step and residual, from all pairs at
+// once.
 TEST(AlignSteps, AreThoseOfGaussAndNewtonOverTheSeenPointsOfAllViews) {
   TwoViews scene(0.004);
   const std::vector<SceneView> views = scene.views();
@@ -108,7 +109,7 @@ TEST(AlignSteps, AreThoseOfGaussAndNewtonOverTheSeenPointsOfAllViews) {
   EXPECT_EQ(found.steps, 1);
   EXPECT_EQ(found.pairs, sums.count);
   EXPECT_NEAR(found.residual_m, std::sqrt(sums.squares / sums.count), 1e-9);
-  // Of the origin, which a turn about the middle moves.
+  // Covariance of the base's origin, which a rotation about the centroid translates.
   Matrix6 to_origin = Matrix6::Identity();
   for (int axis = 0; axis < 3; ++axis) {
     to_origin.block<3, 1>(0, 3 + axis) = Vector3::Unit(axis).cross(origin - middle);
@@ -118,7 +119,7 @@ TEST(AlignSteps, AreThoseOfGaussAndNewtonOverTheSeenPointsOfAllViews) {
   EXPECT_LT((found.covariance - expected).norm(), 1e-6 * expected.norm());
 }
 
-// At rest once a step is below both limits; a wide gate's own is a fiftieth of it.
+// Converged when a step is below both limits; point and plane gates use at least gate_m / 50.
 TEST(AlignSteps, EndAtRestOrAsManyAsTheGateHas) {
   TwoViews scene(0.004);
   const auto steps_of = [&](Matching matching, double shift, double turn) {
@@ -136,7 +137,7 @@ TEST(AlignSteps, EndAtRestOrAsManyAsTheGateHas) {
   EXPECT_EQ(steps_of(Matching::projective, 9, 0), 7);
   EXPECT_EQ(steps_of(Matching::projective, 0, 9), 7);
   EXPECT_EQ(steps_of(Matching::plane, 9, 9), 1);
-  // From the truth the way is below 3 mm and 3 mrad.
+  // From the ground truth, a step is below 3 mm and 3 mrad.
   EXPECT_LE(steps_of(Matching::plane, 0, 0), 2);
   EXPECT_LE(steps_of(Matching::plane, 9, 0), 2);
 }
@@ -155,10 +156,10 @@ TEST(AlignSteps, TakeAsManySlicesAsTheirGatesSay) {
                 7 + 12}};
   for (const auto& c : cases) {
     AlignmentSettings settings = gates(c.gates);
-    settings.rest_shift_m = settings.rest_turn_rad = -1;  // never
+    settings.rest_shift_m = settings.rest_turn_rad = -1;  // never converges
     EXPECT_EQ(AlignmentRun::slices_max(settings, 1), c.one_view);
     EXPECT_EQ(AlignmentRun::slices_max(settings, 2), c.two_views);
-    if (c.gates[0].matching != Matching::projective) continue;  // may rest before
+    if (c.gates[0].matching != Matching::projective) continue;  // may converge earlier
     const std::vector<SceneView> views = scene.views();
     for (const std::size_t count : {1u, 2u}) {
       AlignmentRun run;
@@ -188,8 +189,8 @@ TEST(AlignSteps, AreCountedWithinTheirLimits) {
   EXPECT_EQ(slices(1, false, k_gates_max + 5), 2 * k_gates_max);
 }
 
-// Triangles are rendered for nothing: what is left are the points seen, once for their middle and
-// once a step for their pair, and the solution of each step.
+// Rendering triangles takes no steps of the budget. The rest: each visible point once for the
+// centroid and once per step for its pair, and the solution of each step.
 TEST(AlignSteps, TakeTheirStepsFromTheBudgetInSlicesOfAnySize) {
   TwoViews scene(0.004);
   constexpr int k_steps = 3;
@@ -197,7 +198,7 @@ TEST(AlignSteps, TakeTheirStepsFromTheBudgetInSlicesOfAnySize) {
   gate.step = 3;
   gate.steps_max = k_steps;
   AlignmentSettings settings = gates({gate});
-  settings.rest_shift_m = settings.rest_turn_rad = -1;  // never
+  settings.rest_shift_m = settings.rest_turn_rad = -1;  // never converges
   const std::vector<SceneView> views = scene.views();
   for (const int budget : {1, 1'000, SliceSize::k_steps_max}) {
     AlignmentRun run;
@@ -216,7 +217,7 @@ TEST(AlignSteps, TakeTheirStepsFromTheBudgetInSlicesOfAnySize) {
   }
 }
 
-// A grid of the scene's measured pixels: of every second one where points are further apart.
+// Search grid of the scene's measured pixels: every second row and column if `step` is above 2.
 TEST(AlignSteps, SearchTheSceneNoThinnerThanEveryOtherPixel) {
   TwoViews scene(0.001);
   for (const int step : {1, 2, 3, 5}) {
@@ -251,7 +252,7 @@ TEST(AlignSteps, OfNoGateLeaveThePoseAndOfAnEmptyOneGoOnToTheNext) {
   EXPECT_EQ(one.covariance, two.covariance);
 }
 
-// Six pairs are what a pose takes: none is left that shows how far they are off.
+// Six pairs determine the pose without redundancy: there is no residual variance.
 TEST(AlignSteps, HaveNoCovarianceOfSixPairs) {
   TwoViews scene(0.004);
   const std::vector<float> whole = scene.depth[0];
@@ -273,7 +274,7 @@ TEST(AlignSteps, HaveNoCovarianceOfSixPairs) {
     const std::vector<SceneView> views = scene.views();
     const ModelAlignment end =
         align_model(std::span(views).first(1), k_truth, gates({gate}), scene.scratch);
-    if (end.reason != Reason::none) continue;  // they do not fix a pose
+    if (end.reason != Reason::none) continue;  // the pairs do not determine a pose
     ++posed;
     EXPECT_EQ(end.covariance.norm() > 0, end.pairs > 6) << end.pairs;
     EXPECT_GE(end.pairs, 6);
@@ -294,7 +295,7 @@ TEST(AlignSteps, StartedAnewAreThoseOfANewRun) {
   EXPECT_FALSE(used.step(views, scene.scratch)) << "it has ended";
   Gate more = k_projective;
   more.steps_max = 4;
-  for (const int slices : {1, 2, 5}) {  // left in its midst
+  for (const int slices : {1, 2, 5}) {  // interrupted
     used.start(start_off(), gates({more, more}));
     for (int i = 0; i < slices; ++i) EXPECT_TRUE(used.step(views, scene.scratch));
     for (AlignmentRun* run : {&used, &fresh}) {

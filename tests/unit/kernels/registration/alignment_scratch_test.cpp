@@ -1,4 +1,4 @@
-// The memory of an alignment: which sizes fit, and what is made ready in it.
+// Scratch memory of an alignment: limits of its sizes, and the scene grid built in it.
 #include "kernels/registration/alignment_scratch.hpp"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ TEST(AlignmentScratch, HasRoomForEachViewsPixelsCornersAndPatches) {
   }
 }
 
-// A view of 5 x 4 pixels and 3 corners or points, of two that there is room for.
+// A view of 5 x 4 pixels with 3 corners or points; the scratch has room for two views.
 struct Scene {
   std::vector<float> depth = std::vector<float>(20, 1);
   std::vector<std::uint8_t> mask;
@@ -102,7 +102,7 @@ TEST(SceneFits, WhereEachSizeIsThatOfTheCameraAndNoMoreThanTheScratchs) {
   EXPECT_FALSE(scene_fits(std::span(three).first(2), less));
 }
 
-// Of measured pixels that may be the model, every step-th of every step-th row.
+// Measured pixels that the mask allows: every step-th of every step-th row.
 TEST(SearchScene, TakesTheMeasuredPixelsOfTheRaster) {
   Scene scene;
   scene.mask.assign(20, 1);
@@ -146,7 +146,7 @@ TEST(SceneIndexing, GivesTheSearchOfAllPixelsForTheStepsOfPixelsAndGrid) {
   const int expected = 20 * k_scene_pixel_steps + SliceSize::k_steps_max - building.left();
   SceneIndexing indexing;
   for (const int budget : {1, 40, SliceSize::k_steps_max, 7}) {
-    if (budget == 40) {  // left in its midst
+    if (budget == 40) {  // interrupted
       indexing.start();
       StepBudget some(100);
       EXPECT_FALSE(indexing.step(scene.view(), 0.2, some, sliced));

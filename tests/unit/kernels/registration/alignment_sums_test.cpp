@@ -29,7 +29,7 @@ std::vector<Row> random_rows(int count, std::mt19937& random) {
   return rows;
 }
 
-// How a residual changes with a shift and a turn about the point that levers begin at.
+// Derivative of a residual by a translation and a rotation about the origin of the levers.
 Vector6 derivative_of(const Row& row) {
   Vector6 derivative;
   derivative << row.gradient, row.lever.cross(row.gradient);

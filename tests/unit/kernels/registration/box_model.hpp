@@ -1,4 +1,4 @@
-// An arm of three boxes, and where it stands in the tests of registration.
+// Test model for registration: an arm of three boxes, its ground truth pose, and points on it.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace glint::test {
 
-// An arm of three boxes about one corner, none alike.
+// An arm of three boxes about one corner, each of a different size.
 struct Model {
   std::vector<Vector3f> corners;
   std::vector<Face> faces;
@@ -34,12 +34,13 @@ struct Model {
   }
 };
 
-// Seen from above and aside: three sides of each box, or a direction would stay open.
+// Camera above and aside: three sides of each box are visible. Otherwise a direction would be
+// unobservable.
 inline const Pose k_truth{Quaternion(Eigen::AngleAxisd(2.094, Vector3::UnitX()) *
                                      Eigen::AngleAxisd(0.6, Vector3::UnitZ())),
                           {-0.1, 0.15, 1.3}};
 
-// Points over its surface, some of them for each square of spacing_m; the same each time.
+// Random points on its surface, on average one per spacing_m^2; fixed random seed.
 struct SampledModel {
   std::vector<Vector3f> points, normals;
   float spacing_m;

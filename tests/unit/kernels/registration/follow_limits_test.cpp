@@ -1,4 +1,4 @@
-// What decides whether a reference is followed, each limit alone, and how far it is.
+// Robot tracking: each limit that decides whether an alignment is accepted, and the update's size.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using test::k_truth;
 using test::k_world_pixels;
 using test::World;
 
-// 12 mm aside, turned by 0.02 rad, and some of its pixels seen through: all within the limits.
+// 12 mm aside, rotated by 0.02 rad, one of 40 pixels seen through: all within the limits.
 FollowReport report_of(const FollowSettings& settings) {
   World world;
   world.follower.settings = settings;
@@ -59,9 +59,9 @@ TEST(FollowLimits, DecideEachAlone) {
   }
 }
 
-// The turn is that between both rotations, the shift that of the middle of what is seen.
+// The rotation is between both orientations; the translation is that of the visible centroid.
 TEST(FollowLimits, MeasureTheTurnAndTheShiftOfTheMiddle) {
-  for (const double sign : {1.0, -1.0}) {  // a rotation's quaternion is either of two
+  for (const double sign : {1.0, -1.0}) {  // q and -q are the same rotation
     World world;
     Vector3 middle = Vector3::Zero();
     world.draw(k_truth);
@@ -90,7 +90,7 @@ TEST(FollowLimits, MeasureTheTurnAndTheShiftOfTheMiddle) {
   }
 }
 
-// By 1 - exp(-dt / time constant) of the way, and the covariance with it.
+// By the fraction 1 - exp(-dt / time constant) of the rotation; the covariance likewise.
 TEST(FollowReference, GoesThatPartOfTurnAndCovarianceToo) {
   for (const double seconds : {0.3, 2.0, 1e4}) {
     World world;
@@ -105,7 +105,7 @@ TEST(FollowReference, GoesThatPartOfTurnAndCovarianceToo) {
     EXPECT_EQ(after.measured, at(seconds));
     const Quaternion expected = k_truth.rotation.slerp(gain, report.seen.T_world_base.rotation);
     EXPECT_LT(after.T_world_base.rotation.angularDistance(expected), 1e-7);
-    // What the drift may have done by then is the same at both times.
+    // The declared drift contributes the same at both times.
     const Matrix6 mixed =
         (1 - gain) * (1 - gain) * 1e-6 * Matrix6::Identity() + gain * gain * report.seen.covariance;
     const Matrix6 drifted = before.covariance - 1e-6 * Matrix6::Identity();
@@ -207,7 +207,7 @@ TEST(FollowReference, TakesStepsForEachCallAndNoneWithoutAPicture) {
   }
 }
 
-// Until its steps are used up, or the picture is through.
+// Until its steps are used up or the image is complete.
 TEST(FollowReference, GoesOnUntilItsStepsAreUsedUp) {
   World world;
   world.draw(k_truth);

@@ -25,7 +25,7 @@ TEST(FollowReference, FollowsADriftWithinItsCovariance) {
   double squares = 0, worst_mm = 0;
   int judged = 0;
   for (int i = 1; i <= 40; ++i) {
-    const double t = 0.5 * i;  // two pictures a second, 1 mm and 0.03 degrees a second
+    const double t = 0.5 * i;  // two images a second; drift 1 mm/s and 0.03 deg/s
     const Pose truth{
         (Quaternion(Eigen::AngleAxisd(5e-4 * t, Vector3::UnitZ())) * k_truth.rotation).normalized(),
         k_truth.translation + 1e-3 * t * Vector3(0.6, 0, 0.8)};
@@ -40,9 +40,9 @@ TEST(FollowReference, FollowsADriftWithinItsCovariance) {
     ++judged;
   }
   EXPECT_LT(squares / judged, 1.5);
-  EXPECT_GT(squares / judged, 0.05);  // nor is it much too careful
-  EXPECT_LT(worst_mm, 5);             // of 20 that it drifted
-  EXPECT_GT(worst_mm, 0.5);           // it lags, as it says
+  EXPECT_GT(squares / judged, 0.05);  // not overly conservative
+  EXPECT_LT(worst_mm, 5);             // of 20 mm of drift
+  EXPECT_GT(worst_mm, 0.5);           // the low-pass lags, as stated
 }
 
 TEST(FollowReference, GoesAPartOfTheWayByItsTimeConstant) {
@@ -69,12 +69,12 @@ TEST(FollowReference, RefusesAJumpAndTellsIt) {
   }
   EXPECT_EQ(world.follower.reference(at(3)).T_world_base.translation, k_truth.translation);
   EXPECT_EQ(world.follower.reference(at(3)).measured, at(0));
-  // Back where it was, it is followed again.
+  // Back at the reference pose, it is followed again.
   world.draw(k_truth);
   world.look(at(4));
   EXPECT_EQ(world.follower.report().outcome, FollowOutcome::followed);
   EXPECT_EQ(world.follower.report().jumps, 0);
-  // And a turn on the spot is a jump as well.
+  // A rotation in place is a jump as well.
   world.draw({(Quaternion(Eigen::AngleAxisd(0.06, Vector3::UnitY())) * k_truth.rotation),
               k_truth.translation});
   world.look(at(5));
@@ -97,7 +97,7 @@ TEST(FollowReference, LeavesAHiddenRobotAloneAndKnowsLessOfItAsTimePasses) {
   EXPECT_EQ(after.T_world_base.translation, before.T_world_base.translation);
   EXPECT_EQ(after.T_world_base.rotation.coeffs(), before.T_world_base.rotation.coeffs());
   const auto spread = [](const FollowedReference& r) { return std::sqrt(r.covariance(0, 0)); };
-  EXPECT_NEAR(spread(after) - spread(before), 0.009, 0.001);  // 9 s of 1 mm a second
+  EXPECT_NEAR(spread(after) - spread(before), 0.009, 0.001);  // 9 s at 1 mm/s
 }
 
 TEST(FollowReference, IsNotTakenInByARobotThatIsGone) {
@@ -108,7 +108,7 @@ TEST(FollowReference, IsNotTakenInByARobotThatIsGone) {
   EXPECT_EQ(world.follower.reference(at(1)).T_world_base.translation, k_truth.translation);
 }
 
-// Three times the root of the position's, or the rotation's, three variances.
+// The limit is 3 sqrt(trace) of the position's, or the rotation's, covariance.
 TEST(FollowReference, IsUnsureWhereAJumpCouldBeNoise) {
   const auto outcome = [](double jump_m, double jump_rad, Matrix6& covariance) {
     World world;
@@ -159,7 +159,7 @@ TEST(FollowReference, LeavesAPictureUnfinishedWhenANewReferenceComes) {
 
 TEST(FollowReference, TakesNoMoreSlicesThanItSaysAndNoHeap) {
   World world;
-  world.follower.settings.alignment.rest_shift_m = 0;  // never at rest
+  world.follower.settings.alignment.rest_shift_m = 0;  // never converges
   world.draw({k_truth.rotation, k_truth.translation + Vector3(0.004, 0, 0)});
   EXPECT_EQ(world.look(at(1)), world.follower.slices_max());
   const HeapCount heap;

@@ -1,4 +1,4 @@
-// A robot that is points, followed in slices of any number of steps: the bits of whole slices.
+// Tracking of a robot given as a point cloud: any limit of steps a slice gives the same bits.
 #include <gtest/gtest.h>
 
 #include "kernels/registration/follow_reference.hpp"
@@ -82,7 +82,7 @@ TEST_P(FollowInSlices, GivesTheBitsOfWholeOnes) {
     EXPECT_EQ(one.T_world_base.rotation.coeffs(), two.T_world_base.rotation.coeffs());
     EXPECT_EQ(one.covariance, two.covariance);
   }
-  // So many steps in all, whatever the slices: a short slice does little.
+  // The total number of steps does not depend on the slices: short slices are many.
   if (GetParam() == 1) {
     EXPECT_GT(world.slices, 10'000);
   }

@@ -1,4 +1,4 @@
-// An arm of boxes before a wall, and a reference of it that is followed.
+// Test scene: an arm of boxes in front of a wall, and a tracker of its reference pose.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ struct World {
   [[nodiscard]] SceneView view() const {
     return {camera, depth, {}, {model.corners, model.faces}, {}};
   }
-  // With 1 % of noise, and a wall behind.
+  // With 1 % depth noise, and a wall behind.
   void draw(const Pose& truth) {
     std::vector<std::int32_t> face(depth.size());
     std::vector<ProjectedCorner> corners(64);
@@ -40,7 +40,7 @@ struct World {
     std::normal_distribution<float> noise(0, 0.01f);
     for (float& z : depth) z = z == 0 ? 1.9f : z * (1 + noise(random));
   }
-  // Slices that it took.
+  // Returns the number of slices.
   int look(Time time) {
     int slices = 0;
     if (!follower.look(view(), time)) return slices;

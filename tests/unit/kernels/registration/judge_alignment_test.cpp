@@ -1,4 +1,4 @@
-// What is counted of a model's pixels, each kind by hand; the shares, and the steps.
+// Evaluation of an alignment: counts of each kind of model pixel by hand, shares, and step counts.
 #include "kernels/registration/judge_alignment.hpp"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ namespace {
 constexpr int k_width = 16, k_height = 12, k_pixels = k_width * k_height;
 constexpr int k_on_model = 8 * 6;
 
-// A square one metre ahead, on pixels 4 to 11 of rows 3 to 8. Neighbouring pixels are 62 mm apart,
-// so that each has its own scene point nearest.
+// A square 1 m ahead, on columns 4 to 11 of rows 3 to 8. Neighbouring pixels are 62 mm apart, so
+// that each pixel's nearest scene point is its own.
 struct Square {
   Pinhole camera{k_width, k_height, 16, 16, 8, 6};
   std::vector<Vector3f> corners = {
@@ -27,13 +27,13 @@ struct Square {
   std::vector<std::uint8_t> mask;
   JudgeSettings settings{0.02, 0.25};
   AlignmentScratch scratch;
-  int set = 0;  // pixels of the model that have a depth
+  int set = 0;  // number of model pixels assigned
 
   Square() { EXPECT_EQ(scratch.prepare(2, k_pixels, 4), Reason::none); }
   static std::size_t pixel_of(int i) {
     return static_cast<std::size_t>((3 + i / 8) * k_width + 4 + i % 8);
   }
-  // The next pixels of the model.
+  // Assigns a depth to the next model pixels.
   void next(int count, float depth_m, int mask_value = 1) {
     for (int i = 0; i < count; ++i, ++set) {
       depth[pixel_of(set)] = depth_m;
@@ -52,10 +52,10 @@ TEST(JudgeAlignment, CountsEachKindOfPixelUpToItsLimit) {
   Square scene;
   scene.next(5, 0);
   scene.next(7, 0.7f);    // in front: hidden
-  scene.next(3, 0.75f);   // just not
+  scene.next(3, 0.75f);   // at the limit: not hidden
   scene.next(4, 1.3f);    // behind: seen through
-  scene.next(2, 1.25f);   // just not
-  scene.next(1, 1.03f);   // near, but no inlier
+  scene.next(2, 1.25f);   // at the limit: not seen through
+  scene.next(1, 1.03f);   // near, but not an inlier
   scene.next(2, 1.015f);  // an inlier
   scene.next(24, 1);
   const Judgement judged = scene.judged();
@@ -76,12 +76,13 @@ TEST(JudgeAlignment, CountsEachKindOfPixelUpToItsLimit) {
   EXPECT_GT(judged.outline.falls, 0);
 }
 
-// What the mask excludes hides the model from however near, and is no scene point of it.
+// A scene pixel that the mask excludes hides the model at any distance in front of it, and is not
+// used as a scene point.
 TEST(JudgeAlignment, CountsByTheMaskWhatIsNotTheModel) {
   Square scene;
   scene.mask.assign(k_pixels, 0);
-  for (std::size_t i = 0; i < 6; ++i) scene.mask[i] = 2;  // of these a measured pixel each
-  scene.depth[0] = 0;                                     // but one
+  for (std::size_t i = 0; i < 6; ++i) scene.mask[i] = 2;  // six masked pixels, measured
+  scene.depth[0] = 0;                                     // except the first
   scene.next(6, 0.99f, 0);                                // just in front
   scene.next(5, 1, 0);                                    // at the model
   scene.next(4, 1.3f, 0);                                 // behind
@@ -117,14 +118,14 @@ TEST(JudgeAlignment, AddsUpOverViews) {
             Reason::not_prepared);
 }
 
-// Of an even number of distances the lower one of the middle two.
+// For an even number of distances, the lower of the two middle ones.
 TEST(JudgeAlignment, HasTheMiddleDistanceForItsMedian) {
   for (const auto& [near, far, is_near] :
        {std::tuple{2, 1, true}, std::tuple{1, 1, true}, std::tuple{1, 2, false},
         std::tuple{20, 21, false}, std::tuple{24, 24, true}}) {
     Square scene;
     scene.next(near, 1);
-    scene.next(far, 1.03f);  // along the ray up to 1.04 times as far
+    scene.next(far, 1.03f);  // up to 1.04 times as far along the ray
     scene.next(k_on_model - near - far, 0);
     const double median = scene.judged().median_m;
     EXPECT_GE(median, is_near ? k_distance_step_m / 2 : 0.03) << near << ' ' << far;
@@ -139,7 +140,7 @@ TEST(JudgeAlignment, LeavesWhatIsHiddenOutOfItsMedian) {
   EXPECT_NEAR(scene.judged().median_m, k_distance_step_m / 2, 1e-12);
 }
 
-// What lies beyond the last of its steps counts with that.
+// A distance beyond the histogram's last step counts in that step.
 TEST(JudgeAlignment, HasAMedianOfNoMoreThanTheReachOfItsSearches) {
   Square scene;
   scene.next(k_on_model, 1.2f);
@@ -148,18 +149,18 @@ TEST(JudgeAlignment, HasAMedianOfNoMoreThanTheReachOfItsSearches) {
 
 TEST(JudgeAlignment, TakesTheStepsOfItsPixelsInSlicesOfAnySize) {
   Square scene;
-  scene.depth.assign(k_pixels, 0);  // the grid is empty: no search takes steps
+  scene.depth.assign(k_pixels, 0);  // the grid is empty: a search takes no steps
   scene.set = k_on_model;
   const SceneView one[] = {scene.view()};
-  constexpr int k_slots = 512;  // of a grid of 192 points
+  constexpr int k_slots = 512;  // of a grid for 192 points
   const int expected = k_pixels * (k_scene_pixel_steps + k_outline_pixel_steps) +
                        k_slots * (k_grid_clear_steps + k_grid_sum_steps) +
                        k_on_model * k_judged_steps;
-  const SceneView twice[] = {one[0], one[0]};  // a second view that nothing is taken from later
+  const SceneView twice[] = {one[0], one[0]};  // a second view, which later runs must not use
   EXPECT_EQ(judge_alignment(twice, {}, scene.settings, scene.scratch).rendered, 2 * k_on_model);
   JudgeRun run;
   for (const int budget : {1, 100, SliceSize::k_steps_max}) {
-    for (const float depth : {0.0f, -1.0f}) {  // not measured: only judged
+    for (const float depth : {0.0f, -1.0f}) {  // not measured: no search
       scene.depth.assign(k_pixels, depth);
       run.start({}, scene.settings);
       int steps = 0;
@@ -179,7 +180,7 @@ TEST(JudgeAlignment, TakesTheStepsOfItsPixelsInSlicesOfAnySize) {
   EXPECT_EQ(more.left(), SliceSize::k_steps_max);
 }
 
-// A search takes steps of the budget, too: those that it takes by itself.
+// The steps of each search count as well: as many as a separate search takes.
 TEST(JudgeAlignment, TakesTheStepsOfItsSearches) {
   Square scene;
   scene.next(k_on_model, 1);
@@ -201,7 +202,7 @@ TEST(JudgeAlignment, TakesTheStepsOfItsSearches) {
     return budget.left();
   };
   const int found = steps_of();
-  scene.faces.clear();  // nothing to judge
+  scene.faces.clear();  // no model to evaluate
   const SceneView empty[] = {scene.view()};
   JudgeRun run;
   run.start({}, scene.settings);
@@ -229,7 +230,7 @@ TEST(Judgement, HasTheSharesOfItsCounts) {
   EXPECT_DOUBLE_EQ(j.mask_share(), 0.75);
   EXPECT_DOUBLE_EQ(j.visible_share(), 0.4);
   EXPECT_DOUBLE_EQ(j.outline_share(), 0.5);
-  // All that was measured is hidden, or all but one pixel.
+  // All measured pixels are hidden; then all but one.
   j.hidden = 50;
   EXPECT_EQ(j.inlier_share(), 0);
   EXPECT_EQ(j.unhidden_seen_through_share(), 0);
@@ -245,7 +246,7 @@ TEST(Judgement, HasTheSharesOfItsCounts) {
   EXPECT_EQ(j.mask_share(), 1);
 }
 
-// The two faces of the square are a link each.
+// Each of the square's two faces is one link.
 TEST(JudgeLinks, CountsTheSameKindsByLink) {
   Square scene;
   scene.next(5, 0);
@@ -267,7 +268,7 @@ TEST(JudgeLinks, CountsTheSameKindsByLink) {
   EXPECT_EQ(a.looked_at + b.looked_at, judged.measured - judged.hidden);
   EXPECT_EQ(a.explained + b.explained, judged.inliers);
   EXPECT_EQ(a.seen_through + b.seen_through, judged.seen_through);
-  // Pixels of each face, by hand.
+  // Reference: counts of the first face's pixels.
   LinkCounts upper;
   for (int i = 0; i < k_on_model; ++i) {
     const std::size_t pixel = Square::pixel_of(i);
@@ -281,7 +282,7 @@ TEST(JudgeLinks, CountsTheSameKindsByLink) {
   EXPECT_EQ(a.looked_at, upper.looked_at);
   EXPECT_EQ(a.explained, upper.explained);
   EXPECT_EQ(a.seen_through, upper.seen_through);
-  // A face without a number adds nothing, nor does one whose number is no link.
+  // A face without a link number adds nothing, nor does a number that is not a link's.
   const std::span<const std::uint16_t> first[] = {std::span(numbers).first(1)};
   const LinkJudgement fewer = judge_links(one, first, {}, scene.settings, scene.scratch);
   EXPECT_EQ(fewer.links[3].looked_at, a.looked_at);

@@ -10,7 +10,7 @@ namespace {
 
 using test::k_truth;
 
-// The arm of three boxes before a wall; each box is a link.
+// The arm of three boxes in front of a wall; each box is a link.
 struct ArmScene {
   test::Model model;
   Pinhole camera{320, 240, 300, 300, 160, 120};
@@ -34,7 +34,7 @@ struct ArmScene {
     const std::span<const std::uint16_t> links(numbers);
     return judge_links({&view, 1}, {&links, 1}, k_truth, {}, scratch);
   }
-  // Pixels of link 2 get another depth.
+  // Offsets the depth of link 2's pixels.
   void move_hand(float by_m) {
     for (std::size_t i = 0; i < depth.size(); ++i) {
       if (face[i] >= 24) depth[i] += by_m;

@@ -1,4 +1,4 @@
-// Single pairs: what they pull at, and which there are.
+// Single point pairs: residual and gradient of each matching, and the conditions for a pair.
 #include "kernels/registration/match_points.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr int k_width = 32, k_height = 24;
 
-// A picture of one depth, and the scene's points.
+// An image of constant depth, and the scene's points.
 struct Scene {
   Pinhole camera{k_width, k_height, 64, 64, 16, 12};
   std::vector<float> depth;
@@ -43,10 +43,10 @@ struct Scene {
   }
 };
 
-// A small motion's shift and turn, in the frame of the sums.
+// Translation and rotation of a small motion, in the frame of the sums.
 const Vector3 k_shift(1e-6, -2e-6, 3e-6), k_turn(4e-6, 1e-6, -2e-6);
 
-// A point and a direction of the camera's frame, moved so about the scene's middle.
+// A point of the camera's frame after that motion about the scene's `middle`.
 Vector3 moved_point(const Scene& scene, const Vector3& p) {
   const Vector3 shift = scene.turn.conjugate() * k_shift, turn = scene.turn.conjugate() * k_turn;
   return p + shift + turn.cross(p - scene.middle);
@@ -59,7 +59,7 @@ Scene tilted_frame(float depth_m, const std::vector<Vector3f>& points = {}) {
   return scene;
 }
 
-// Along the ray of the pixel: how far it meets the model's plane behind the scene.
+// Residual along the pixel's ray: how far the model's plane is behind the scene.
 TEST(MatchPoints, ProjectivePairsPullAlongTheRayToTheModelsPlane) {
   const Scene scene = tilted_frame(2.1f);
   const Vector3f point(0.3f, 0.2f, 2.0f);
@@ -70,7 +70,7 @@ TEST(MatchPoints, ProjectivePairsPullAlongTheRayToTheModelsPlane) {
   const Vector3 ray = p.normalized();
   const double residual = p.norm() - static_cast<double>(2.1f) / ray.z();
   EXPECT_NEAR(sums.squares, residual * residual, 1e-12);
-  // The derivative by a motion, from where the ray meets the moved plane.
+  // Reference change of the residual: the ray's intersection with the moved plane.
   const Vector3 moved_normal = n + (scene.turn.conjugate() * k_turn).cross(n);
   const double met = moved_normal.dot(moved_point(scene, p)) / moved_normal.dot(ray);
   const Vector6 derivative = sums.slope / residual;
@@ -101,18 +101,18 @@ TEST(MatchPoints, PointPairsPullAlongAllAxes) {
   const Vector3 p = point.cast<double>(), apart = p - other.cast<double>();
   EXPECT_NEAR(sums.squares, apart.squaredNorm(), 1e-15);
   EXPECT_LT((sums.slope.head<3>() - scene.turn * apart).norm(), 1e-15);
-  // Half the sum of squares changes by the slope.
+  // The slope is the gradient of half the sum of squares.
   const Vector3 after = moved_point(scene, p) - other.cast<double>();
   const double change = sums.slope.head<3>().dot(k_shift) + sums.slope.tail<3>().dot(k_turn);
   EXPECT_NEAR(change, (after.squaredNorm() - apart.squaredNorm()) / 2, 1e-10);
 }
 
-// As if they had been seen where they are now.
+// Equal to the pairs of points seen at their moved positions.
 TEST(MatchPoints, TakesPointsAndNormalsWhereTheModelMovedTo) {
   const Vector3f other(0.27f, 0.23f, 2.04f);
   for (const Matching matching : {Matching::point, Matching::plane, Matching::projective}) {
     Scene still = tilted_frame(2.1f, {other}), moved = tilted_frame(2.1f, {other});
-    // A quarter turn about z: (x, y) becomes (-y, x).
+    // 90 degrees about z: (x, y) becomes (-y, x).
     moved.T_moved = {Quaternion(Eigen::AngleAxisd(M_PI / 2, Vector3::UnitZ())), {0.5, 0.25, -0.5}};
     const AlignmentSums a = still.pairs(matching, {0.25f, 0.1875f, 2}, {0.6f, 0, -0.8f});
     const AlignmentSums b = moved.pairs(matching, {-0.0625f, 0.25f, 2.5f}, {0, -0.6f, -0.8f});
@@ -153,7 +153,7 @@ TEST(MatchPoints, ProjectivePairsNeedASurfaceThatFacesTheCamera) {
   EXPECT_EQ(scene.count(Matching::projective, ahead, {0, 0, 1}), 0);
 }
 
-// A pixel holds its left and upper boundary and not the others; the picture likewise.
+// A pixel contains its left and upper boundary but not the other two; so does the image.
 TEST(MatchPoints, ProjectivePairsAreOfThePixelInWhichAPointLies) {
   const auto pixel_of = [](const Vector3f& point) {
     Scene scene(0.0f);

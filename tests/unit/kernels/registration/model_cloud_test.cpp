@@ -1,4 +1,4 @@
-// A model that is points, posed by its links: all at once and in slices of any number of steps.
+// Point cloud model posed by its links: in one call and in slices with any limit of steps.
 #include "kernels/registration/model_cloud.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TEST(PoseCloud, MovesEachPointWithItsLink) {
 
 constexpr std::size_t k_points = 2'000;
 
-// Points on links that change often and now and then stay, each link turned and moved.
+// Points whose link changes often and sometimes stays; each link is rotated and translated.
 struct Arm {
   std::vector<Vector3f> points, normals;
   std::vector<std::uint16_t> links;
@@ -59,7 +59,7 @@ struct Arm {
   [[nodiscard]] LinkCloud cloud() const { return {{points, normals, 0.01f}, links}; }
 };
 
-// Steps of all points, with those of each other link than the last point's.
+// Steps of each point, plus those of each change of link between successive points.
 constexpr int k_steps = static_cast<int>(k_points) * k_posed_point_steps + 506 * k_posed_link_steps;
 
 class PoseCloudInSlices : public testing::TestWithParam<int> {};
@@ -135,7 +135,7 @@ TEST(PoseCloudSlices, EndAtALinkThatHasNoPose) {
   EXPECT_FALSE(run.step(budget)) << "it has ended";
 }
 
-// Left in its midst, ended at a link without a pose, or refused.
+// After a run that was interrupted, one that ended at a link without a pose, and a refused one.
 TEST(PoseCloudSlices, StartedAgainPoseAsANewRun) {
   Arm fresh;
   ASSERT_EQ(pose_cloud(fresh.cloud(), fresh.poses, fresh.moved, fresh.turned), Reason::none);

@@ -1,4 +1,4 @@
-// What lies beside the edge of a model: hand-made pictures.
+// Occluding-contour test: counts beside a model's outline, on synthetic images.
 #include "kernels/registration/outline.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 constexpr int k_width = 40, k_height = 30;
 constexpr double k_far_m = 0.25;
 
-// The scene one metre away; the model one pixel of it, in the middle.
+// The scene is 1 m away; the model is one pixel in the middle of the image.
 struct OnePixel {
   int x = 20, y = 15;
   std::vector<float> depth = std::vector<float>(k_width * k_height, 1.0f);
@@ -53,7 +53,7 @@ TEST(Outline, LooksAtTheNearestMeasuredPixelWithinItsReach) {
     const bool counts = measured >= k_outline_from && measured <= k_outline_reach;
     EXPECT_EQ(scene.look().falls, counts ? 1 : 0) << measured;
     EXPECT_EQ(scene.look().goes_on, 3);
-    // What is further away than that is not asked.
+    // Pixels behind the nearest one that counts are not read.
     scene.depth[OnePixel::at(scene.x + measured + 1, scene.y)] = 1;
     const bool next = !counts && measured + 1 >= k_outline_from && measured + 1 <= k_outline_reach;
     EXPECT_EQ(scene.look().goes_on, next ? 4 : 3) << measured;
@@ -76,7 +76,7 @@ TEST(Outline, FallsBeyondTheLimitAndGoesOnUpToIt) {
   }
 }
 
-// The scene is there, as near to the model as far_m.
+// An edge counts only if the scene explains it: the depths differ by at most far_m.
 TEST(Outline, CountsEdgesThatTheSceneExplains) {
   for (const auto& [model, counts] :
        {std::pair{1.25f, true}, std::pair{std::nextafter(1.25f, 2.0f), false},
@@ -90,7 +90,7 @@ TEST(Outline, CountsEdgesThatTheSceneExplains) {
   EXPECT_EQ(unmeasured.look().goes_on, 0);
 }
 
-// A neighbour of the model makes no edge, and what else is of the model ends a look.
+// A side with a model pixel next to it is not an edge; another model pixel ends the search.
 TEST(Outline, EndsAtTheModelAndAtThePicture) {
   OnePixel two;
   two.triangle[OnePixel::at(21, 15)] = 5;
@@ -98,7 +98,7 @@ TEST(Outline, EndsAtTheModelAndAtThePicture) {
   for (int between = 2; between <= k_outline_reach + 1; ++between) {
     OnePixel apart;
     apart.triangle[OnePixel::at(20 + between, 15)] = 5;
-    const bool ends = between == k_outline_from;  // where the look begins
+    const bool ends = between == k_outline_from;  // the search begins there
     EXPECT_EQ(apart.look().goes_on, 8 - (ends ? 2 : 0)) << between;
   }
   for (const int edge : {0, 1, 2, 3}) {

@@ -25,7 +25,7 @@ constexpr int k_width = 320, k_height = 240;
 constexpr double k_noise_m = 0.008;
 const double k_gate_m = AlignmentSettings{}.gates[4].gate_m;
 
-// The arm of boxes before nothing, its depth off by noise that `block` by `block` pixels share.
+// The arm of boxes without background; blocks of `block` x `block` pixels share a depth error.
 struct NoisyScene {
   test::Model model;
   Pinhole camera{k_width, k_height, 300, 300, 160, 120};
@@ -54,7 +54,7 @@ struct NoisyScene {
   }
 };
 
-// Mean squared errors in sigmas, of six, by each covariance.
+// Mean squared Mahalanobis distance per degree of freedom (of six), by each covariance.
 struct Consistency {
   double independent = 0, patches = 0;
 };
@@ -92,7 +92,8 @@ TEST(PatchCovariance, KnowsHowSureItIsWhereNeighboursErrAlike) {
   EXPECT_LT(mean.patches, 2);
 }
 
-// Eq. of the header, patch by patch from single pairs; each view has patches of its own.
+// Reference for the header's equation, patch by patch from single pairs; each view has its own
+// patches.
 Matrix6 plain_patch_covariance(std::span<const SceneView> views, const Pose& T_world_base,
                                const AlignmentScratch& scratch) {
   Matrix6 matrix = Matrix6::Zero(), spread = Matrix6::Zero();
@@ -128,7 +129,7 @@ TEST(PatchCovariance, IsThatOfTheSumsOfItsPatches) {
                    {0.3, -0.1, 0.2}};
   SceneView views[] = {scene.view(), scene.view()};
   for (SceneView& view : views) view.T_camera_world = other.inverse();
-  // The second camera sees the lower half alone.
+  // The second camera sees the lower half only.
   std::vector<std::uint8_t> mask(k_width * k_height, 0);
   std::fill(mask.begin() + k_width * 125, mask.end(), 1);
   views[1].mask = mask;

@@ -1,4 +1,4 @@
-// What building a grid of points and searching it cost, and where a search ends.
+// Point grid: step counts of building and searching, and the limits of a search.
 #include "kernels/registration/point_grid.hpp"
 
 #include <gtest/gtest.h>
@@ -15,11 +15,11 @@ namespace {
 
 constexpr float k_reach = 0.125f, k_cell = k_reach / 2;
 
-// Of so many points' room: the larger it is, the fewer of its slots are shared.
+// Capacity for `room` points; a larger table has fewer hash collisions.
 struct TestGrid {
   PointGrid grid;
   explicit TestGrid(int room) { EXPECT_EQ(grid.prepare(room), Reason::none); }
-  // Steps of each call.
+  // Returns the steps of each call.
   std::vector<int> build(const std::vector<Vector3f>& points, int budget) {
     EXPECT_EQ(grid.begin_build(points, static_cast<double>(k_reach)), Reason::none);
     std::vector<int> steps;
@@ -43,7 +43,7 @@ int sum_of(const std::vector<int>& steps) {
   return sum;
 }
 
-// The middle of a cell.
+// Centre of a cell.
 Vector3f middle_of(int x, int y, int z) {
   const auto at = [](int i) { return (static_cast<float>(i) + 0.5f) * k_cell; };
   return {at(x), at(y), at(z)};
@@ -88,11 +88,11 @@ TEST(PointGridSteps, OfASearchAreThoseOfItsCells) {
   (void)test.build({middle_of(40, 0, 0)}, SliceSize::k_steps_max);
   const Vector3f query = middle_of(0, 0, 0);
   EXPECT_EQ(test.search_steps(query, k_reach, -1), 125 * k_cell_steps);
-  // The cells that are not neighbours lie a cell away.
+  // Cells that are not neighbours are at least one cell width away.
   EXPECT_EQ(test.search_steps(query, k_cell, -1), 125 * k_cell_steps);
   EXPECT_EQ(test.search_steps(query, std::nextafter(k_cell, 0.0f), -1), 27 * k_cell_steps);
   EXPECT_EQ(test.search_steps({std::nanf(""), 0, 0}, k_reach, -1), 0);
-  // A point found near by leaves them out, too.
+  // A point found nearby excludes them as well.
   (void)test.build(std::vector<Vector3f>(30, query + Vector3f(0.01f, 0, 0)),
                    SliceSize::k_steps_max);
   EXPECT_EQ(test.search_steps(query, k_reach, 0), 27 * k_cell_steps + 30 * k_grid_point_steps);
@@ -100,7 +100,7 @@ TEST(PointGridSteps, OfASearchAreThoseOfItsCells) {
             27 * k_cell_steps + 30 * k_grid_point_steps);
 }
 
-// A point in each cell that is no neighbour, beyond the reach: each is looked at once.
+// One point in each non-neighbouring cell, out of reach: a search compares each once.
 TEST(PointGridSteps, OfASearchLookAtEachPointOnce) {
   std::vector<Vector3f> points;
   for (int x = -2; x <= 2; ++x) {
@@ -135,7 +135,7 @@ TEST(PointGridSteps, EndInACrowdAfterAsManyPointsAsStated) {
   }
 }
 
-// Cells that fall on one slot, found by what it takes to insert them beside the first.
+// Cells that hash to one slot, found by the extra steps of inserting them beside the first.
 TEST(PointGridSteps, LookAtAsManySlotsAsDeclaredAndLeaveOutWhatHasNoneThere) {
   TestGrid test(2 * k_grid_probes_max);
   const int slots = 4 * k_grid_probes_max;
@@ -149,7 +149,7 @@ TEST(PointGridSteps, LookAtAsManySlotsAsDeclaredAndLeaveOutWhatHasNoneThere) {
     const Vector3f candidate = middle_of(x % 1'000, x / 1'000, 0);
     if (probes_of({same_slot[0], candidate}) == 1) same_slot.push_back(candidate);
   }
-  // The first is found at once, each further one after one slot more.
+  // The first needs no extra probe, each further one needs one more than the last.
   constexpr int k_fit = k_grid_probes_max * (k_grid_probes_max - 1) / 2;
   std::vector<Vector3f> all(same_slot.begin(), same_slot.begin() + k_grid_probes_max);
   EXPECT_EQ(probes_of(all), k_fit);
@@ -172,7 +172,7 @@ TEST(PointGrid, FindsNothingAtExactlyTheRadiusAndTheFirstOfEquallyNearPoints) {
   EXPECT_EQ(near.index, 0);
   EXPECT_EQ(near.square_m2, k_cell * k_cell);
   EXPECT_EQ(test.grid.nearest({1, 0, 0}, k_cell).square_m2, k_cell * k_cell) << "none: the radius";
-  // The second is in the query's own cell, the first in the next one: both at the same distance.
+  // At equal distances: one point in the query's own cell, one in the next cell.
   const float off = k_cell / 4;
   for (const float side : {-1.0f, 1.0f}) {
     const Vector3f query(0, 0.3f * k_cell, 0.3f * k_cell);
@@ -223,7 +223,7 @@ TEST(PointGrid, FindsWhatAPlainSearchFindsWhereItIsBuiltInSlicesAgain) {
   const std::vector<Vector3f> before = cloud(900), points = cloud(700);
   EXPECT_EQ(test.grid.begin_build(before, 0.3), Reason::none);
   StepBudget some(5'000);
-  EXPECT_FALSE(test.grid.build_step(some));  // left in its midst
+  EXPECT_FALSE(test.grid.build_step(some));  // interrupted
   (void)test.build(points, 77);
   EXPECT_EQ(test.grid.size(), 700);
   for (const Vector3f& query : cloud(300)) {

@@ -57,7 +57,7 @@ TEST(PointGrid, LeavesOutWhatIsNoPlace) {
   EXPECT_EQ(grid.size(), 1);
   EXPECT_EQ(grid.nearest({1, 0.05f, 0}, 0.1f).index, 3);
   EXPECT_EQ(grid.nearest({nan, 0, 0}, 0.1f).index, -1);
-  // Ten kilometres off there are no more cells, along any axis and either way.
+  // Points 10 km away are beyond the grid, on each axis and either side.
   for (const float end : {-1e4f, 1e4f}) {
     const std::vector<Vector3f> far = {{end, 0, 0}, {0, end, 0}, {0, 0, end}, {1, 0, 0}};
     ASSERT_EQ(grid.build(far, 0.1), Reason::none);
@@ -84,7 +84,7 @@ TEST(PointGrid, TakesTheFirstOfPointsInOnePlaceAndEndsInACrowd) {
   EXPECT_EQ(grid.nearest({1, 1, 1.01f}, 0.1f).index, 0);
 }
 
-// Its cells, and each point that it looks at.
+// Steps of its cells, and of each point compared.
 TEST(PointGrid, TakesItsStepsFromTheBudget) {
   const auto steps_for = [](int points) {
     PointGrid grid;

@@ -35,7 +35,7 @@ TEST(RenderDepth, LeavesNoSeamAndNoHoleBetweenNeighbours) {
 TEST(RenderDepth, CoversThePixelsWhoseCentresLieOnItsOutline) {
   Picture picture;
   picture.camera.fx = picture.camera.fy = 64;
-  // From 10.5 to 18.5 across and from 8.5 to 16.5 down; an area that divides without rounding.
+  // Columns 10.5 to 18.5 and rows 8.5 to 16.5; the area divides without rounding.
   const float left = -21.5f / 64, right = -13.5f / 64, top = -15.5f / 64, bottom = -7.5f / 64;
   ASSERT_EQ(picture.render({{left, top, 1}, {right, top, 1}, {right, bottom, 1}, {left, bottom, 1}},
                            {{0, 1, 2}, {0, 2, 3}}),
@@ -60,7 +60,7 @@ TEST(RenderDepth, KeepsWhatIsNearerWhicheverCameFirst) {
   }
 }
 
-// Its pixels are more than an integer can number.
+// Its pixel coordinates exceed the range of an integer.
 TEST(RenderDepth, LeavesOutWhatLiesFarBesideThePicture) {
   for (const float far : {1e12f, -1e12f}) {
     Picture picture;
@@ -95,7 +95,7 @@ TEST(RenderDepth, EndsAfterItsBudgetOfTests) {
   EXPECT_GT(picture.z[picture.at(50, 10)], 0);
 }
 
-// Far beyond what an integer holds, on each side.
+// Far beyond the range of an integer, on each side.
 TEST(RenderDepth, DrawsNothingOfATriangleFarOutsideThePicture) {
   for (const float far : {1e11f, -1e11f}) {
     Picture picture;
@@ -108,7 +108,7 @@ TEST(RenderDepth, DrawsNothingOfATriangleFarOutsideThePicture) {
   }
 }
 
-// Rotated and shifted as if the corners had been so before.
+// Equal to a rendering of corners that were transformed before.
 TEST(RenderDepth, TakesTheModelWhereItsPoseHasIt) {
   const Pose pose{Quaternion(Eigen::AngleAxisd(0.4, Vector3(1, -2, 0.5).normalized())),
                   {0.1, -0.2, 0.6}};
@@ -161,13 +161,13 @@ TEST(RenderDepth, LeavesOutAFaceWithAnyCornerThatIsNotAhead) {
   }
 }
 
-// A face whose box has 48 pixels: 256 tests a pixel suffice for 16,384 of them.
+// A face whose bounding box has 48 pixels: 256 tests a pixel are sufficient for 16,384 faces.
 TEST(RenderDepth, DrawsWhatItsTestsSufficeForAndNoFaceMore) {
   const auto corner = [](int x, int y, float z) {
     return Vector3f((static_cast<float>(x) - 32) / 60 * z, (static_cast<float>(y) - 24) / 60 * z,
                     z);
   };
-  // From 8 to 16 across and from 6 to 12 down; the last face is nearer.
+  // Columns 8 to 16 and rows 6 to 12; the last face is nearer.
   const std::vector<Vector3f> points = {corner(8, 6, 2), corner(16, 6, 2), corner(8, 12, 2),
                                         corner(8, 6, 1), corner(16, 6, 1), corner(8, 12, 1)};
   constexpr int k_faces = 64 * 48 * k_render_tests_a_pixel / 48;

@@ -26,7 +26,7 @@ struct Seen {
     view.camera = picture.camera;
     view.model = {corners, faces};
     const auto pixels = static_cast<std::size_t>(view.camera.width * view.camera.height);
-    // What lies behind the picture's end would be a face.
+    // Entries behind the image's end would be visible points if they were read.
     picture.z.assign(pixels + 64, 1), picture.face.assign(pixels + 64, 0);
     count = seen_points(view, pose, step,
                         {std::span(picture.z).first(pixels), std::span(picture.face).first(pixels),
@@ -52,7 +52,7 @@ TEST(SeenPoints, AreNoMoreThanThereIsRoomFor) {
   for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(few[i].pixel, all[i].pixel);
 }
 
-// Also where a step ends at the picture's edge.
+// Also where a step ends at the image's edge.
 TEST(SeenPoints, AreThePixelsOfTheRasterInTheirOrder) {
   for (const int step : {1, 2, 3, 4, 7, 31, 32, 47, 95, 96, 200}) {
     Seen seen;
@@ -91,7 +91,7 @@ TEST(SeenPoints, LieOnTheModelAndHaveItsNormalsTowardsTheCamera) {
   }
 }
 
-// Seen through a lens as long as that, a face fills pixels whose cross product is nothing.
+// At such a long focal length the face covers pixels, but its cross product underflows to zero.
 TEST(SeenPoints, LeaveOutAFaceTooSmallForANormal) {
   Seen seen;
   seen.corners = {{-1e-25f, -1e-25f, 1}, {1e-25f, -1e-25f, 1}, {0, 1e-25f, 1}};

@@ -20,7 +20,7 @@ using test::k_truth;
 constexpr int k_width = 320, k_height = 240;
 const double k_gate_m = AlignmentSettings{}.gates[4].gate_m;
 
-// The arm of boxes before nothing, its depth off by a constant and slopes.
+// The arm of boxes without background; the depth has a constant error and slopes in x and y.
 struct BiasedScene {
   test::Model model;
   Pinhole camera{k_width, k_height, 300, 300, 160, 120};
@@ -45,8 +45,8 @@ struct BiasedScene {
   }
 };
 
-// The end's error against the one-sigma ellipsoid's matrix: at most 1 where one error of one sigma
-// is all there is.
+// Squared Mahalanobis distance of the converged pose, by the consider covariance: at most 1 for a
+// single error of one sigma.
 double squared_distance(const Vector3& errors_m, double sigma_m) {
   BiasedScene scene(errors_m);
   const SceneView one[] = {scene.view()};
@@ -59,7 +59,8 @@ double squared_distance(const Vector3& errors_m, double sigma_m) {
   Vector6 off;
   off << end.T_world_base.translation - k_truth.translation,
       2 * turn.vec() * (turn.w() < 0 ? -1 : 1);
-  // What only the rays' small errors explain is rounding and the second order.
+  // Allowance for rounding and second-order terms in directions that only the small ray errors
+  // cover.
   const Matrix6 rounding = 1e-7 * Matrix6::Identity();
   return off.dot((shared.value + rounding).inverse() * off);
 }
@@ -117,7 +118,7 @@ TEST(SharedErrors, StatesWhereNothingIsSeen) {
             Reason::not_prepared);
 }
 
-// The header's equation from single pairs, for two cameras that share their errors.
+// Reference for the header's equation from single pairs, for two cameras that share their errors.
 TEST(SharedErrors, AreThoseOfTheSumsOfAllPairs) {
   BiasedScene scene(Vector3(0.003, -0.002, 0.004));
   ASSERT_EQ(scene.scratch.prepare(2, k_width * k_height, 64), Reason::none);
@@ -127,7 +128,7 @@ TEST(SharedErrors, AreThoseOfTheSumsOfAllPairs) {
   std::vector<std::uint8_t> mask(k_width * k_height, 1);
   for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = i % 5 == 0 ? 0 : 1;
   views[1].mask = mask;
-  // The base is where each camera sees it.
+  // Each camera sees the base at the same relative pose.
   const Pose T_world_base = other * k_truth;
   views[0].T_camera_world = views[1].T_camera_world = other.inverse();
   const SharedErrors errors{0.005, 0.002};
@@ -145,7 +146,7 @@ TEST(SharedErrors, AreThoseOfTheSumsOfAllPairs) {
                 views[v].T_camera_world * T_world_base.translation, pair);
       if (pair.count == 0) continue;
       matrix += pair.matrix;
-      // A metre of depth moves the scene's point along the ray by range / z.
+      // 1 m of depth moves the scene's point along the ray by range / z.
       const Vector3 p = seen.point.cast<double>(), n = seen.normal.cast<double>();
       const double along = p.norm() / p.z(), cosine = -n.dot(p) / p.norm();
       const Vector3 lever = other.rotation * (p - k_truth.translation);
@@ -165,7 +166,7 @@ TEST(SharedErrors, AreThoseOfTheSumsOfAllPairs) {
     const Vector6 moves = errors.depth_sigma_m * inverse * sum;
     expected += moves * moves.transpose();
   }
-  // Rays that turn about the camera carry the base along.
+  // A rotation of the rays about the camera moves the base with them.
   const Vector3 lever = T_world_base.translation - other.translation;
   for (int axis = 0; axis < 3; ++axis) {
     Vector6 moves;

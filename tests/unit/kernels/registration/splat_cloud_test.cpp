@@ -56,8 +56,8 @@ TEST(SplatCloud, SeesWhatItsSurfaceShows) {
     apart += a && b && std::abs(scene.rendered.z[i] - splatted.z[i]) > 0.005f ? 1 : 0;
   }
   EXPECT_GT(both, 1500);
-  EXPECT_LT(only_one, both / 10);  // the edge, by a pixel at most
-  EXPECT_LT(apart, both / 20);     // where one part ends before another; no holes
+  EXPECT_LT(only_one, both / 10);  // the silhouette, by at most one pixel
+  EXPECT_LT(apart, both / 20);     // depth edges between parts; no holes
 }
 
 TEST(SplatCloud, SeenPointsLieOnTheSurfaceAndFaceTheCamera) {
@@ -77,7 +77,7 @@ TEST(SplatCloud, SeenPointsLieOnTheSurfaceAndFaceTheCamera) {
       off += std::abs(scene.rendered.z[pixel] - p.point.z()) > 1e-5f ? 1 : 0;
   }
   EXPECT_LT(beside, count / 50);
-  EXPECT_LT(off, count / 50);  // where two sides meet
+  EXPECT_LT(off, count / 50);  // at edges between two sides
   const int fewer = seen_cloud_points(scene.view(), k_truth, 4, splatted.buffer(), seen);
   EXPECT_NEAR(fewer, count / 16, count / 50);
 }
@@ -95,14 +95,14 @@ TEST(SplatCloud, AlignsAndJudgesAsTrianglesDo) {
   const ModelAlignment a = align_model(cloud, start, {}, scene.scratch);
   const ModelAlignment b = align_model(triangles, start, {}, scene.scratch);
   ASSERT_EQ(a.reason, Reason::none);
-  // The same scene and noise: what differs is which points stand for the surface.
+  // Same scene and noise: only the points that represent the surface differ.
   const double sigma = std::sqrt(b.covariance.topLeftCorner<3, 3>().trace());
   EXPECT_LT((a.T_world_base.translation - b.T_world_base.translation).norm(), sigma);
   EXPECT_LT((a.T_world_base.translation - k_truth.translation).norm(), 3 * sigma);
   EXPECT_LT(std::sqrt(a.covariance.topLeftCorner<3, 3>().trace()), 1.3 * sigma);
   const Judgement judged = judge_alignment(cloud, a.T_world_base, {}, scene.scratch);
   EXPECT_GT(judged.inlier_share(), 0.99);
-  EXPECT_LT(judged.seen_through_share(), 0.03);  // discs at the edges
+  EXPECT_LT(judged.seen_through_share(), 0.03);  // discs that extend beyond edges
   EXPECT_GT(judged.outline_share(), 0.95);
   Pose aside = k_truth;
   aside.translation.x() += 0.1;

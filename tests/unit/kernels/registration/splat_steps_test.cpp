@@ -1,5 +1,4 @@
-// What rendering a cloud costs, step by step; which discs and pixels there are, against plain
-// loops.
+// Splatting of a point cloud: step counts, and discs and visible pixels compared with plain loops.
 #include "kernels/registration/splat_cloud.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +16,7 @@ struct Splat {
   Pinhole camera{k_side, k_side, 10, 10, k_side / 2, k_side / 2};
   std::vector<Vector3f> points, normals;
   float spacing_m = 0.1f;
-  int raster = 0;  // none is gathered
+  int raster = 0;  // no visible points are gathered
   std::vector<float> z;
   std::vector<std::int32_t> number;
   std::vector<ProjectedCorner> corners;
@@ -25,7 +24,7 @@ struct Splat {
   CloudSplat run;
   int calls = 0;
 
-  // Points that face the camera.
+  // Points whose normals face the camera.
   explicit Splat(const std::vector<Vector3f>& of_points = {}) : points(of_points) {
     normals.assign(points.size(), Vector3f(0, 0, -1));
   }
@@ -38,7 +37,7 @@ struct Splat {
     return run.start({points, normals, spacing_m}, {}, camera, raster, {z, number, corners},
                      std::span(seen).first(room));
   }
-  // Steps of all calls.
+  // Sum of the steps of all calls.
   int steps(int budget = SliceSize::k_steps_max, std::size_t room = 1'000) {
     EXPECT_EQ(start(room), Reason::none);
     int sum = 0;
@@ -57,7 +56,7 @@ struct Splat {
   }
 };
 
-// At once.
+// Clearing in one call.
 constexpr int k_clear_steps = 1 + k_side * k_side / k_splat_cleared_a_step;
 
 int steps_of_tests(int reach) { return (2 * reach + 1) * (2 * reach + 1) * k_splat_test_steps; }
@@ -92,7 +91,7 @@ TEST(SplatSteps, AddUpInSlicesOfAnySize) {
                        k_side * k_side * k_splat_pixel_steps + drawn * k_splat_seen_steps);
   const int count = splat.run.count();
   for (const int budget : {1, 16, 100, 5'000}) {
-    // Each call of clearing takes a step of its own.
+    // Each call that clears takes one additional step.
     const int cleared = budget * k_splat_cleared_a_step;
     const int clears = (k_side * k_side + cleared - 1) / cleared;
     EXPECT_EQ(splat.steps(budget), whole + clears - 1) << budget;
@@ -103,10 +102,10 @@ TEST(SplatSteps, AddUpInSlicesOfAnySize) {
   }
 }
 
-// Points outside of the picture, and whose discs do not reach into it, are not tested.
+// Points outside the image are not tested if their discs do not reach into it.
 TEST(SplatSteps, LeaveOutPointsWhoseDiscsEndBeforeThePicture) {
   const auto tests_of = [](float x, float y) {
-    Splat splat({Vector3f(x, y, 1)});  // reach 2
+    Splat splat({Vector3f(x, y, 1)});  // the disc reaches 2 pixels
     return (splat.steps() - k_clear_steps - k_splat_point_steps) / k_splat_test_steps;
   };
   EXPECT_EQ(tests_of(0, 0), 25);
@@ -137,7 +136,7 @@ TEST(SplatCloud, ProjectsEachPointThatLiesAhead) {
   EXPECT_EQ(splat.corners[3].inverse_z, 1);
 }
 
-// One disc after the other over the pixels around it, in double.
+// Reference: each disc in turn over the pixels around it, in double.
 struct PlainPicture {
   std::vector<double> z;
   std::vector<std::int32_t> number;
@@ -203,7 +202,7 @@ TEST(SplatCloud, IsThatOfPlainLoopsOverDiscsAndPixels) {
       drawn += plain.number[i] >= 0 ? 1 : 0;
       if (plain.seen[i]) seen.push_back(i);
       if (plain.number[i] != splat.number[i]) {
-        ++different;  // at a disc's edge, by rounding
+        ++different;  // rounding at a disc's edge
       } else if (plain.number[i] >= 0) {
         EXPECT_NEAR(splat.z[i], plain.z[i], 1e-4) << i;
       } else {
@@ -229,7 +228,7 @@ TEST(SplatCloud, IsThatOfPlainLoopsOverDiscsAndPixels) {
   }
 }
 
-// Pixels are 1/8 apart: six of them are a disc's radius, three that of what is seen of it.
+// The pixel pitch is 1/8 m: the disc's radius is six pixels, that of its visible part three.
 TEST(SplatCloud, DrawsAndSeesPixelsAtExactlyItsRadii) {
   Splat splat({Vector3f(0.0625f, 0.0625f, 1)});
   splat.camera.fx = splat.camera.fy = 8;
@@ -246,7 +245,7 @@ TEST(SplatCloud, DrawsAndSeesPixelsAtExactlyItsRadii) {
   EXPECT_EQ(splat.run.count(), static_cast<int>(seen));
 }
 
-// A call goes on by something, however little is left of its budget.
+// A call always makes progress, even if its budget is spent.
 TEST(SplatCloud, ClearsWithoutABudget) {
   Splat splat({Vector3f(0, 0, 1)});
   ASSERT_EQ(splat.start(), Reason::none);
@@ -267,7 +266,7 @@ TEST(SplatCloud, KeepsTheFirstOfDiscsInOnePlace) {
   for (const std::int32_t number : splat.number) EXPECT_LE(number, 0);
 }
 
-// A disc that fills the picture: each pixel of the raster is seen, and no other.
+// One disc fills the image: every pixel of the raster is visible, and no other.
 TEST(SplatCloud, GathersThePixelsOfTheRasterInTheirOrder) {
   for (const int raster : {-1, 0, 1, 2, 3, 5, 7, 9, 12, 19, 20, 21, 23, 24, 30}) {
     Splat splat({Vector3f(0, 0, 1)});
@@ -286,7 +285,7 @@ TEST(SplatCloud, GathersThePixelsOfTheRasterInTheirOrder) {
       ASSERT_EQ(splat.run.count(), static_cast<int>(count)) << raster;
       for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(splat.seen[i].pixel, expected[i]);
       EXPECT_EQ(splat.seen[room].pixel, -7) << "behind the room";
-      // Where there is no room left, one pixel more is looked at.
+      // If the output is full, one more pixel is read.
       const int more = room > 0 && room < all ? k_splat_pixel_steps : 0;
       EXPECT_EQ(
           steps,
@@ -296,7 +295,7 @@ TEST(SplatCloud, GathersThePixelsOfTheRasterInTheirOrder) {
   }
 }
 
-// 12 x 12 pixels suffice for 4,096 points of nine tests each.
+// 12 x 12 pixels are sufficient for 4,096 points of nine tests each.
 TEST(SplatCloud, DrawsWhatItsTestsSufficeForAndNoPointMore) {
   const Vector3f left(-0.35f, -0.35f, 1), right(0.35f, 0.35f, 1);
   for (const std::size_t points : {4'096, 4'097}) {

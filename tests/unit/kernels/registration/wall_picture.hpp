@@ -1,4 +1,4 @@
-// A small picture to render into, and a wall that leans.
+// A small depth image to render into, and a tilted wall.
 #pragma once
 
 #include <vector>
@@ -20,7 +20,7 @@ struct Picture {
   [[nodiscard]] std::size_t at(int x, int y) const { return static_cast<std::size_t>(y * 64 + x); }
 };
 
-// A wall that leans: z = 1 + x / 2.
+// Tilted wall: z = 1 + x / 2.
 inline const std::vector<Vector3f> k_wall = {
     {-1, -2, 0.5f}, {1, -2, 1.5f}, {1, 2, 1.5f}, {-1, 2, 0.5f}};
 inline const std::vector<Face> k_two = {{0, 1, 2}, {0, 2, 3}};
