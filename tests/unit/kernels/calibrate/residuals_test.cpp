@@ -21,7 +21,7 @@ using Extended = long double;
 const Quaternion k_turn = from_rotation_vector({0.3, -0.7, 1.1});
 const Vector3 k_point(0.1, -0.2, 0.3);
 
-// A body that shifts evenly and turns evenly about z, around second 1.
+// A body with constant velocity and constant angular rate about z, around t = 1 s.
 MotionPiece even_piece() {
   MotionPiece piece;
   for (int i = 0; i < 4; ++i) {
@@ -90,7 +90,7 @@ TEST(Residuals, AlignTwoTrackersThroughFrameLeverArmAndOffset) {
   AlignSample sample{0.9, T_x.inverse() * body * T_y.inverse(), even_piece(), 0.001, 0.01};
   AlignResidual<double> residual = align_residual<double>(sample, x, y, 0.102);
   EXPECT_LT(residual.position.norm() + residual.rotation.norm(), 1e-10);
-  residual = align_residual<double>(sample, x, y, 0.103);  // a millisecond later
+  residual = align_residual<double>(sample, x, y, 0.103);  // 1 ms later
   EXPECT_NEAR(residual.position.x(), -1, 1e-9);
   EXPECT_NEAR(residual.position.y(), -2, 1e-9);
 }
@@ -125,7 +125,7 @@ TEST(Residuals, StateARangeAsASensorWithABiasDoes) {
   sample.per_x = 250 * sample.ray.unitOrthogonal();
   sample.per_y = 250 * sample.ray.cross(sample.ray.unitOrthogonal());
   const double surface = centre.norm() - 0.006;
-  double stated = surface;  // range = surface + bias(range), step by step
+  double stated = surface;  // fixed-point iteration of range = surface + bias(range)
   for (int i = 0; i < 20; ++i) {
     stated = surface + DepthBias{bias[0], bias[1], bias[2], 0.01, 10}.at(stated, 2000);
   }
@@ -133,13 +133,13 @@ TEST(Residuals, StateARangeAsASensorWithABiasDoes) {
   EXPECT_LT(depth_residual<double>(sample, k_turn, at, bias).norm(), 1e-9);
   sample.surface_range_m = stated + 0.002;
   EXPECT_NEAR(depth_residual<double>(sample, k_turn, at, bias).z(), -1, 1e-9);
-  const Vector3 aside = at + 0.001 * sample.per_y / 250;  // a millimetre across the ray
+  const Vector3 aside = at + 0.001 * sample.per_y / 250;  // 1 mm across the ray
   EXPECT_NEAR(depth_residual<double>(sample, k_turn, aside, bias).y(), 0.25 / centre.norm() / 0.2,
               1e-6);
 }
 
-// Each part by its own sigma, along each axis; the sign is that of what is modelled less what was
-// measured.
+// Each component is divided by its own standard deviation, along each axis; the sign is model minus
+// measurement.
 TEST(Residuals, AreModelLessMeasurementInSigmasAlongEachAxis) {
   const Vector3 off(0.003, -0.002, 0.001), lever(0.01, 0.02, -0.15), post(1, 2, 3);
   const Quaternion turned = from_rotation_vector({0.01, -0.02, 0.03});
@@ -159,7 +159,7 @@ TEST(Residuals, AlignARotationByItsSigmaWhicheverOfItsQuaternionsStandsForIt) {
   const PoseOf<double> seen = blended_pose<double>(even_piece(), 1.002);
   const Quaternion off = from_rotation_vector({0.01, -0.02, 0.03});
   const Vector3 shift(0.003, -0.002, 0.001);
-  // The reference stands for the body, turned by `off` in the body's frame.
+  // The reference's orientation differs from the body's by `off`, in the body's frame.
   const Pose T_x{x.rotation, x.translation}, T_y{y.rotation, y.translation};
   const Pose body{(seen.rotation * off.conjugate()).normalized(), seen.translation + shift};
   AlignSample sample{0.9, T_x.inverse() * body * T_y.inverse(), even_piece(), 0.004, 0.02};
@@ -171,7 +171,7 @@ TEST(Residuals, AlignARotationByItsSigmaWhicheverOfItsQuaternionsStandsForIt) {
   }
 }
 
-// The pixel of the marker less the measured one, along both axes of the picture.
+// Marker pixel minus measured pixel, along both axes of the image.
 TEST(Residuals, StateAPixelAcrossTheRayByItsSigmas) {
   DepthSample sample;
   sample.marker_m = k_point;
@@ -204,11 +204,11 @@ TEST(Residuals, ProjectAsTheBrownLensDoesAndMissByAPixelsDistance) {
 }
 
 TEST(Residuals, StayFiniteAtTheirWorst) {
-  // Nothing moved, nothing turned, all in one place.
+  // No translation, no rotation, all samples at one position.
   MotionPiece piece = even_piece();
   for (Vector3& position : piece.position_m) position.setZero();
   piece.rotation[0] = piece.rotation[1] = Quaternion::Identity();
-  const PoseOf<double> pose = blended_pose<double>(piece, 5.0);  // far beyond its samples
+  const PoseOf<double> pose = blended_pose<double>(piece, 5.0);  // far outside its samples
   EXPECT_TRUE(pose.translation.allFinite());
   EXPECT_TRUE(pose.rotation.coeffs().allFinite());
   EXPECT_TRUE(pivot_residual<double>({}, Quaternion(0, 1, 0, 0), Vector3::Zero(), Vector3::Zero())
