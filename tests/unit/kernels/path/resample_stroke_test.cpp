@@ -34,7 +34,7 @@ UncertainPose at(double seconds, const Vector3& place) {
   return at(seconds, place, Quaternion::Identity());
 }
 
-// A ring of 60 mm drawn at this speed while the pen nods, as it is without noise.
+// Ground truth: a circle of 60 mm radius drawn at this speed while the pen's tilt oscillates.
 UncertainPose on_a_ring(double seconds, double speed_m_s) {
   const double radius = 0.06, angle = seconds * speed_m_s / radius;
   const SineCosine s = sine_cosine(angle);
@@ -71,7 +71,7 @@ TEST(ResampleStroke, PutsPointsTheDeclaredSpacingApartAlongALine) {
   std::vector<UncertainPose> line;
   for (int i = 0; i <= 250; ++i) line.push_back(at(0.004 * i, Vector3(0.0004 * i, 0, 0.3)));
   const auto points = resampled(line, {.spacing_m = 0.003});
-  ASSERT_EQ(points.size(), 34u);  // 0, 3, .. 96 mm, and the end at 100 mm in the place of 99
+  ASSERT_EQ(points.size(), 34u);  // 0, 3, .. 96 mm; the end at 100 mm replaces 99
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     EXPECT_NEAR(points[i].pose.translation.x(), 0.003 * static_cast<double>(i), 1e-12);
     EXPECT_NEAR(static_cast<double>(points[i].time.nanoseconds), 3e7 * static_cast<double>(i), 1);
@@ -101,7 +101,7 @@ TEST(ResampleStroke, KeepsAPointForEachTurnOnTheSpot) {
   }
 }
 
-// Standing still adds nothing, however long the pen trembles there.
+// A static tip adds no points, however long it jitters.
 TEST(ResampleStroke, DoesNotGrowWhileTheTipTrembles) {
   test::Random random(3);
   std::vector<UncertainPose> still;
@@ -113,12 +113,12 @@ TEST(ResampleStroke, LetsANearEndTakeTheLastPointsPlace) {
   std::vector<UncertainPose> line;
   for (int i = 0; i <= 24; ++i) line.push_back(at(0.01 * i, Vector3(0.0001 * i, 0, 0)));
   const auto points = resampled(line, {.spacing_m = 0.001});
-  ASSERT_EQ(points.size(), 3u);  // 0, 1, and 2.4 mm in the place of 2
+  ASSERT_EQ(points.size(), 3u);  // 0 and 1 mm; the end at 2.4 mm replaces 2
   EXPECT_EQ(points.back().pose.translation.x(), line.back().pose.translation.x());
 }
 
-// Mean of the squared errors by the stated covariance, which is 6 where it holds, of points against
-// the true pose at their time.
+// Mean squared Mahalanobis distance of the points from the ground truth at their time, by the
+// stated covariance; 6 if it is consistent.
 enum class Noise { white, common, filtered };
 double normalised_error(double speed_m_s, Noise noise) {
   test::Random random(17);
@@ -158,12 +158,12 @@ double normalised_error(double speed_m_s, Noise noise) {
 
 TEST(ResampleStroke, ComesBackWithinItsCovarianceHoweverTheNoiseIsCorrelated) {
   for (const double speed : {0.01, 0.05, 0.2, 0.8}) {
-    // One error for the whole stroke: what a covariance of (1 - u) Ca + u Cb is exact for.
-    // Standard deviation of the mean of 100 chi-squares: 0.35.
+    // One error for the whole stroke: the covariance (1 - u) Ca + u Cb is exact. Standard deviation
+    // of the mean of 100 chi-squares: 0.35.
     EXPECT_NEAR(normalised_error(speed, Noise::common), 6, test::repetitions(11, 22) / 10.0)
         << speed;
     EXPECT_LT(normalised_error(speed, Noise::filtered), 6.5) << speed;
-    // A point between two samples of white noise is better than it says, at best by half.
+    // For white noise the covariance between two samples is conservative, at most by a factor of 2.
     const double white = normalised_error(speed, Noise::white);
     EXPECT_LT(white, 6) << speed;
     EXPECT_GT(white, 3) << speed;
@@ -271,10 +271,10 @@ TEST(ResampleStroke, TakesASampleUpToEachLimitAndNotBeyond) {
   }
 }
 
-// Half way between two samples, along each axis and about each.
+// Halfway between two samples, along and about each axis.
 TEST(ResampleStroke, AddsAHandsAccelerationAlongAndAboutEachAxis) {
   std::vector<UncertainPose> apart = {at(0, {0, 0, 0}), at(0.09, {0.004, 0, 0})};
-  ++apart[1].time.nanoseconds;  // half of which is rounded up
+  ++apart[1].time.nanoseconds;  // half of it is rounded up
   apart[1].covariance = 3 * declared_noise();
   const auto points = resampled(
       apart, {.spacing_m = 0.002, .acceleration_m_s2 = 3, .turn_acceleration_rad_s2 = 20});
@@ -289,7 +289,7 @@ TEST(ResampleStroke, AddsAHandsAccelerationAlongAndAboutEachAxis) {
   EXPECT_LT((points[1].covariance - expected).norm(), 1e-12 * expected.norm());
 }
 
-// A stroke left in its midst, and one that ended.
+// After a stroke that was interrupted, and one that ended.
 TEST(ResampleStroke, BegunAgainGivesThePointsOfANewOne) {
   StrokeResampler used, fresh;
   ASSERT_EQ(fresh.begin({}), Reason::none);
@@ -327,7 +327,7 @@ TEST(ResampleStroke, BegunAgainGivesThePointsOfANewOne) {
   }
 }
 
-// An end is a point of its own where it lies half a spacing or half a turn beyond the last.
+// The end is a separate point if it is half a spacing or half a rotation step beyond the last one.
 TEST(ResampleStroke, EndsWithAPointWhereItIsFarEnoughFromTheLast) {
   const auto count = [](double way, double turn) {
     std::vector<UncertainPose> line;
@@ -340,7 +340,7 @@ TEST(ResampleStroke, EndsWithAPointWhereItIsFarEnoughFromTheLast) {
     EXPECT_EQ(points.back().pose.translation, line.back().pose.translation);
     return points.size();
   };
-  EXPECT_EQ(count(0.0248, 0), 3u);  // 0, 10, and the end in the place of 20 mm
+  EXPECT_EQ(count(0.0248, 0), 3u);  // 0, 10 mm; the end replaces 20 mm
   EXPECT_EQ(count(0.0252, 0), 4u);
   EXPECT_EQ(count(0.021, 0.248 - 0.2), 3u);
   EXPECT_EQ(count(0, 0.245), 3u);
@@ -348,7 +348,7 @@ TEST(ResampleStroke, EndsWithAPointWhereItIsFarEnoughFromTheLast) {
   EXPECT_EQ(count(0.0052, 0), 2u) << "the end alone, beside the first";
 }
 
-// Its beginning alone, which a near end does not replace.
+// Only its first point, which an end nearby does not replace.
 TEST(ResampleStroke, OfAStrokeThatGoesNowhereIsItsBeginning) {
   for (const double way : {0.0, 0.0004, 0.0009}) {
     std::vector<UncertainPose> line;
