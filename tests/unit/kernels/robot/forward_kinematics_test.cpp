@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-JointTree two_bars() {  // a metre along x, turning about z, then one more with a slide at its end
+JointTree two_bars() {  // 1 m along x, revolute about z; the same again, with a slide at its end
   JointTree tree;
   tree.joint_count = 3;
   tree.input_count = 2;
@@ -32,7 +32,7 @@ TEST(ForwardKinematics, FollowsBarsThatTurnAndSlide) {
   ASSERT_EQ(forward_kinematics(two_bars(), values, poses), Reason::none);
   ASSERT_EQ(poses.count, 4);
   EXPECT_LT((poses.T_root_link[2].translation - Vector3(0, 1, 0)).norm(), 1e-14);
-  // The second turn takes the first back: the slide, half of -pi/2 and a quarter, is along y again.
+  // The second rotation cancels the first: the slide, half of -pi/2 plus 0.25, is along y again.
   EXPECT_LT((poses.T_root_link[3].translation - Vector3(1, 1 - M_PI / 4 + 0.25, 0)).norm(), 1e-14);
 }
 
@@ -41,7 +41,7 @@ TEST(ForwardKinematics, HoldsAJointWithoutInputAtItsOffset) {
   tree.joints[2].input = -1;
   LinkPoses poses, not_moved;
   const std::vector<double> values{1e300, 0.4, -0.3};
-  const auto given = std::span(values).subspan(1);  // what lies in front is none of them
+  const auto given = std::span(values).subspan(1);  // the value in front is not part of it
   ASSERT_EQ(forward_kinematics(tree, given, poses), Reason::none);
   tree.joints[2].offset = 0;
   ASSERT_EQ(forward_kinematics(tree, given, not_moved), Reason::none);
@@ -82,7 +82,7 @@ TEST(ForwardKinematics, StaysRigidOverTheLongestChain) {
                                                 0};
   }
   LinkPoses poses;
-  // A full turn in all: a regular polygon closes.
+  // One full rotation in total: a regular polygon closes.
   const std::vector<double> value{2 * M_PI / k_robot_joints_max};
   ASSERT_EQ(forward_kinematics(tree, value, poses), Reason::none);
   const Pose& last = poses.T_root_link[k_robot_joints_max];
@@ -90,7 +90,7 @@ TEST(ForwardKinematics, StaysRigidOverTheLongestChain) {
   EXPECT_NEAR(last.rotation.norm(), 1, 1e-14);
 }
 
-// Each kind of joint, on a branch of its own.
+// Each kind of joint, on a separate branch.
 TEST(ForwardKinematics, MovesEachKindOfJointByItsPosition) {
   const Pose at{Quaternion(Eigen::AngleAxisd(0.5, Vector3(1, 1, 0).normalized())), {0.1, 0.2, 0.3}};
   const Vector3 axis = Vector3(2, -1, 3).normalized();
