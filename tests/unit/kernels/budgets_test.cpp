@@ -1,4 +1,4 @@
-// How much of a task a call may do, and what several takers share.
+// Budgets: items and steps of a slice, and a step budget shared by several consumers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ TEST(SliceSize, IsAtLeastOneItemAndOneStep) {
   EXPECT_EQ(SliceSize(5).steps, SliceSize::k_steps_max);
 }
 
-// As many whole items as the steps allow, at most those asked for, at least one.
+// As many items as the steps allow, at most those requested, at least one.
 TEST(SliceSize, HoldsTheItemsThatItsStepsAllow) {
   for (int items = 1; items <= 6; ++items) {
     for (int steps = 1; steps <= 30; ++steps) {
@@ -40,13 +40,13 @@ TEST(StepBudget, IsSpentWhenNothingIsLeft) {
   EXPECT_FALSE(budget.spent());
   budget.take(1);
   EXPECT_TRUE(budget.spent());
-  budget.take(2);  // the last item goes beyond it
+  budget.take(2);  // the last item exceeds the budget
   EXPECT_EQ(budget.left(), -2);
   EXPECT_TRUE(budget.spent());
   EXPECT_EQ(StepBudget().left(), SliceSize::k_steps_max);
 }
 
-// Slices of one budget each do all items, each once, and take what each of them takes.
+// Slices of one budget each process every item once, and spend the steps of each item.
 TEST(StepBudget, EndsAStretchWhereItsStepsEnd) {
   constexpr int k_from = 10, k_end = 25;
   for (int steps = 1; steps <= 50; ++steps) {
@@ -68,7 +68,7 @@ TEST(StepBudget, EndsAStretchWhereItsStepsEnd) {
 }
 
 TEST(SharedBudget, KeepsAShareForEachThatIsStillToCome) {
-  SharedBudget budget(10, 4, 3);  // a share for each of four, of whom three come
+  SharedBudget budget(10, 4, 3);  // a share for each of four consumers; three are present
   EXPECT_EQ(budget.left(), 40);
   EXPECT_EQ(budget.most_for_next(), 20);
   budget.spend(5);
@@ -88,7 +88,7 @@ TEST(SharedBudget, GivesEachAtLeastItsShareWhateverTheOthersSpend) {
     for (int taker = 0; taker < takers; ++taker) {
       const int most = budget.most_for_next();
       EXPECT_GE(most, k_share);
-      budget.spend(most);  // all that it may have
+      budget.spend(most);  // all that it may spend
       spent += most;
     }
     EXPECT_EQ(spent, k_share * k_takers_max);

@@ -20,7 +20,7 @@ double units_in_last_place(double found, double expected) {
   return std::abs(found - expected) / (std::nextafter(size, k_infinity) - size);
 }
 
-// 10^low to 10^high, either sign.
+// A magnitude from 10^low to 10^high, of either sign.
 double of_any_size(test::Random& random, double low, double high) {
   const double size = std::pow(10.0, random.within(low, high));
   return random.below(2) == 0 ? size : -size;
@@ -115,7 +115,7 @@ TEST(Elementary, NeverAnswersWithANumberThatIsNotFinite) {
   }
 }
 
-// Outside its range a value counts as the range's end, and NaN as zero.
+// A value outside the range counts as the range's end, NaN as zero.
 TEST(Elementary, ClampsItsArguments) {
   for (const double sign : {1.0, -1.0}) {
     for (const double beyond : {1e5 + 0.75, 1e6, k_infinity}) {
@@ -147,11 +147,11 @@ TEST(Elementary, TakesALogarithmFromTheSmallestToTheLargestNumber) {
     EXPECT_EQ(logarithm(too_small), logarithm(smallest)) << too_small;
   EXPECT_EQ(logarithm(k_infinity), logarithm(largest));
   EXPECT_LE(units_in_last_place(logarithm(largest), std::log(largest)), 2.0);
-  for (double x = smallest; x < 1e-300; x *= 3)  // without a leading bit below 2^-1022
+  for (double x = smallest; x < 1e-300; x *= 3)  // subnormal numbers, below 2^-1022
     EXPECT_LE(units_in_last_place(logarithm(x), std::log(x)), 2.0) << x;
 }
 
-// Each of two functions undoes the other.
+// Each function is the other's inverse.
 TEST(Elementary, AgreesWithItsInverse) {
   for (int i = -1000; i <= 1000; ++i) {
     const double x = i * 0.003;

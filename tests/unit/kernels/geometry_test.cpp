@@ -1,4 +1,4 @@
-// Poses against 4x4 matrices, turns between directions, times, and names of reasons.
+// Poses compared with 4x4 matrices, rotations between directions, times, and names of reasons.
 #include "kernels/geometry.hpp"
 
 #include <gtest/gtest.h>

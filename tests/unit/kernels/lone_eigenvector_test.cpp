@@ -1,4 +1,4 @@
-// The eigenvector that lies alone, against Eigen's iterative solver, and directions across one.
+// Most isolated eigenvector compared with Eigen's iterative solver; directions orthogonal to it.
 #include "kernels/lone_eigenvector.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ Matrix3 turned(test::Random& random, const Vector3& values) {
   return rotation * values.asDiagonal() * rotation.transpose();
 }
 
-// The root of x^3 - 3 x = 2 h beyond sqrt(3), by the trigonometric solution of the cubic.
+// The root of x^3 - 3 x = 2 h above sqrt(3), by the trigonometric solution of the cubic.
 TEST(LoneEigenvalue, IsTheTrigonometricSolutionOfItsCubic) {
   for (int i = -1000; i <= 1000; ++i) {
     const double h = i * 1e-3;
@@ -51,7 +51,7 @@ TEST(LoneEigenvector, IsThatOfTheEigenvalueFartherFromTheMiddleOne) {
   }
 }
 
-// Each axis alone, above and below the two others, so that each pair of rows is once the one used.
+// Each axis isolated, above and below the other two, so that each pair of rows is selected once.
 TEST(LoneEigenvector, IsTheAxisThatDiffersOfADiagonalMatrix) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const double value : {5.0, 0.25}) {
@@ -64,7 +64,7 @@ TEST(LoneEigenvector, IsTheAxisThatDiffersOfADiagonalMatrix) {
   }
 }
 
-// Where the middle eigenvalue lies half way, the largest one counts as alone.
+// If the middle eigenvalue is halfway, the largest one counts as the isolated one.
 TEST(LoneEigenvector, IsTheLargestWhereBothGapsAreEqual) {
   for (int axis = 0; axis < 3; ++axis) {
     Vector3 diagonal = Vector3::Zero();

@@ -1,4 +1,4 @@
-// The two sorts: every number of values, equal keys, and what lies behind the values.
+// Merge sort and sorting networks: every count, equal keys, and the memory behind the values.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace glint::sorts_test {
 namespace {
 
-// Compared by its key alone: a lost or doubled entry shows in its number.
+// Compared by key only; a lost or duplicated entry shows in `number`.
 struct Entry {
   int key = 0;
   int number = 0;
@@ -49,8 +49,8 @@ TEST(MergeSort, LosesAndDoublesNoEntryWhereKeysAreEqual) {
   }
 }
 
-// A network of exchanges sorts everything if it sorts all sequences of zeros and ones.
-// Knuth, vol. 3, section 5.3.4, theorem Z.
+// 0-1 principle: a sorting network is correct if it sorts all sequences of zeros and ones. Knuth,
+// vol. 3, section 5.3.4, theorem Z.
 TEST(SortFour, SortsAllSequencesOfZerosAndOnesAndOfFourNumbers) {
   for (int bits = 0; bits < 16; ++bits) {
     std::array<int, 4> values{bits & 1, bits >> 1 & 1, bits >> 2 & 1, bits >> 3 & 1};
@@ -65,7 +65,7 @@ TEST(SortFour, SortsAllSequencesOfZerosAndOnesAndOfFourNumbers) {
   } while (std::next_permutation(order.begin(), order.end()));
 }
 
-// Of few values all sequences, of more those with the ones in a stretch: each must come out sorted.
+// All 0-1 sequences of up to ten values; for more values, those with the ones in one block.
 TEST(SortPairs, SortsZerosAndOnesOfEveryNumberOfValues) {
   for (int count = 0; count <= k_sort_pairs_max; ++count) {
     const auto check = [count](const auto& is_one) {
@@ -92,7 +92,7 @@ TEST(SortPairs, SortsZerosAndOnesOfEveryNumberOfValues) {
   }
 }
 
-// Up to which place it fills up: 8, 16, 32 or 64 values.
+// The values are padded to 8, 16, 32 or 64; entries behind the padding stay unchanged.
 TEST(SortPairs, ChangesNothingBehindThePlacesThatItFillsUp) {
   constexpr double k_mark = -7;
   for (int count = 0; count <= k_sort_pairs_max; ++count) {
@@ -128,7 +128,7 @@ TEST(TwoDoubles, WorkOnEachLaneByItself) {
   EXPECT_EQ(stored, (std::array<double, 2>{1.5, 4}));
 }
 
-// Also those with the machine's own lanes: of two zeros, which are equal, both give the second.
+// Also with SIMD lanes: the two zeros are equal, and both functions return the second one.
 TEST(TwoDoubles, GiveTheSecondOfTwoThatAreEqual) {
   for (const double sign : {1.0, -1.0}) {
     const TwoDoubles a = both(sign * 0.0), b = both(-sign * 0.0);
