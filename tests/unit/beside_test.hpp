@@ -1,5 +1,5 @@
-// Files of the build folder, found beside the running test: a path in a compile definition would
-// make the object code depend on where the checkout is.
+// Path of a build folder file next to the running test. A path in a compile definition would make
+// the object code depend on the location of the checkout.
 #pragma once
 
 #include <filesystem>

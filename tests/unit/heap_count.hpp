@@ -1,6 +1,6 @@
-// How often the calling thread asked for memory while this object lived. The test's executable
-// links glint_allocation_counter, or its cases fail. A sanitizer owns malloc: there the count stays
-// 0, and a test checks memory alone.
+// Counts the heap allocations of the calling thread during this object's lifetime. Requires that
+// the test's executable links glint_allocation_counter; otherwise its cases fail. A sanitizer owns
+// malloc: the count then stays 0, and a test checks memory only.
 #pragma once
 
 #include <gtest/gtest.h>

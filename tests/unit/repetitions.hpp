@@ -1,6 +1,6 @@
-// How often a test repeats what it judges by many cases. A sanitized or emulated build runs fewer
-// of them (GLINT_FEW_REPETITIONS, set by tests/CMakeLists.txt): it checks memory and bits, the
-// release build the figures.
+// Number of repetitions of a test over many random cases. A sanitized or emulated build runs fewer
+// (GLINT_FEW_REPETITIONS, set by tests/CMakeLists.txt): it checks memory and bits, the release
+// build the figures.
 #pragma once
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// A file's bytes; none where it cannot be read.
+// Reads a file's bytes; returns an empty string if it cannot be read.
 #pragma once
 
 #include <filesystem>
