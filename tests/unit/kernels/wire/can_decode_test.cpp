@@ -1,4 +1,4 @@
-// Which frames a reader takes, and every field of those that it does.
+// Decoders of classic CAN frames: which frames they accept, and each field of an accepted frame.
 #include "kernels/wire/can_decode.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace glint::can_decode_test {
 namespace {
 
-// A protected frame of these eight bytes; their checksum and counter are overwritten.
+// Returns a P01-protected frame with these eight bytes; protection overwrites checksum and counter.
 CanFrame classic(std::uint64_t word, std::uint8_t length = 8) {
   CanFrame frame;
   frame.identifier = 0x1A0;
@@ -41,7 +41,7 @@ bool is_taken_by_all(const CanFrame& frame) {
   return taken;
 }
 
-// Each frame's own checksum holds: its kind alone is wrong.
+// Each frame's checksum is valid; only its kind (length, flags) is wrong.
 TEST(CanDecode, TakesEightBytesOfAClassicFrameWithAnElevenBitIdentifier) {
   EXPECT_TRUE(is_taken_by_all(classic(0)));
   for (std::uint8_t length = 2; length <= 12; ++length)
@@ -77,7 +77,8 @@ TEST(CanDecode, GivesTheCounterOfEachFrame) {
   EXPECT_EQ(decode_fd_pose(fd()).value.quality.counter, 200);
 }
 
-// One field at a time at its limits, all others zero: a field shows in its own value alone.
+// One field at a time is at its limit, and all others are zero: a wrong bit position changes the
+// value.
 TEST(CanDecode, ReadsEachSignedFieldFromItsOwnBits) {
   for (int axis = 0; axis < 3; ++axis) {
     const Vector3 unit = Vector3::Unit(axis);
@@ -136,7 +137,7 @@ TEST(CanDecode, ReadsTheStateFromTheLastTwoBits) {
   }
 }
 
-// Without a pose the three components mean nothing.
+// Without a pose the three components of the quaternion are undefined.
 TEST(CanDecode, GivesNoRotationWithoutAPose) {
   const std::uint64_t packed = bits_at(2, 12, 2) | bits_at(5000, 14, 16) |
                                bits_at(static_cast<std::uint64_t>(-9000), 30, 16) |

@@ -15,7 +15,7 @@ namespace glint::can_frames_test {
 namespace {
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double k_half = 0.5 + 1e-6;  // nearest: half a step, and the doubles' own rounding
+constexpr double k_half = 0.5 + 1e-6;  // half a step plus rounding of doubles
 
 CanFrames packed(const PoseSample& sample, const CanPacking& packing = {}) {
   CanFrames frames;
@@ -153,7 +153,7 @@ TEST(CanFrames, SendUncertaintyBeyondItsFieldAsUnknown) {
   EXPECT_EQ(q.sigma_orientation_rad, -1);
   EXPECT_EQ(q.registration_rms_m, -1);
   EXPECT_EQ(q.age_s, -1);
-  s.measurement = s.tick + milliseconds(1);  // a clock gone wrong
+  s.measurement = s.tick + milliseconds(1);  // measured after its tick: a clock error
   EXPECT_EQ(decode_quality(packed(s).items[4]).value.age_s, -1);
 }
 

@@ -26,7 +26,7 @@ TEST(Crc, ContinuesWhereAnEarlierCallEnded) {
   }
 }
 
-// The definition, bit by bit, beside the table.
+// Bitwise polynomial division, the definition, against the table.
 TEST(Crc, EqualsPolynomialDivision) {
   for (unsigned first = 0; first < 256; ++first) {
     const std::uint8_t bytes[] = {static_cast<std::uint8_t>(first), 0x5A};
@@ -40,7 +40,7 @@ TEST(Crc, EqualsPolynomialDivision) {
   }
 }
 
-// Bytes with their remainder behind them divide without one.
+// A message followed by its CRC has remainder zero.
 TEST(Crc, OfBytesFollowedByTheirRemainderIsZero) {
   const auto text = bytes_of_text("glint");
   for (std::size_t length = 0; length <= text.size(); ++length) {

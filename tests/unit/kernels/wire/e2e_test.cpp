@@ -83,7 +83,7 @@ TEST(EndToEnd, NeverSendsCounterFifteenInProfileOneAndRejectsIt) {
   std::vector<std::uint8_t> frame(8);
   protect_p01(frame, 0x1A0, P01Mode::both, 15);
   EXPECT_EQ(frame[1] & 0xF, 0);
-  // The checksum of a frame whose counter is 15, found by trying all of them.
+  // Exhaustive search for the checksum of a frame whose counter is 15.
   frame[1] = 15;
   for (int crc = 0; crc < 256; ++crc) {
     frame[0] = static_cast<std::uint8_t>(crc);
@@ -91,8 +91,8 @@ TEST(EndToEnd, NeverSendsCounterFifteenInProfileOneAndRejectsIt) {
   }
 }
 
-// An 8-bit checksum cannot tell 2048 identifiers apart, but it does tell apart all that one base
-// gives to tools and frames with the same upper byte, and the tools' own frames of one kind.
+// An 8-bit checksum cannot distinguish all 2048 identifiers. It does distinguish the identifiers of
+// one base with the same upper byte, and frames of one kind from different tools.
 TEST(EndToEnd, RejectsAnotherToolsFrame) {
   for (std::uint16_t own = 0x1A0; own <= 0x1A4; ++own) {
     std::vector<std::uint8_t> frame(8, 0x11);
@@ -130,7 +130,7 @@ TEST(EndToEnd, AlternatesTheBytesOfTheIdentifierByTheCounter) {
   }
 }
 
-// Whatever the checksum is: bits 4..7 of byte 1 must be the identifier's.
+// Bits 4..7 of byte 1 must hold the identifier's nibble, for any checksum.
 TEST(EndToEnd, ChecksTheNibbleOfTheIdentifierThatTravels) {
   std::vector<std::uint8_t> frame(8);
   protect_p01(frame, 0x0700, P01Mode::nibble, 4);
@@ -160,7 +160,7 @@ TEST(EndToEnd, CountsModuloItsCountersAndKeepsTheUpperNibble) {
   }
 }
 
-// Two bytes hold a checksum of 8 bits and a counter, three one of 16 bits and a counter.
+// Two bytes hold an 8-bit checksum and a counter; three bytes hold a 16-bit checksum and a counter.
 TEST(EndToEnd, ProtectsTheShortestFrameAndRefusesEveryShorterOne) {
   std::vector<std::uint8_t> two(2), three(3);
   protect_p01(two, 0x1A0, P01Mode::both, 3);
@@ -174,7 +174,7 @@ TEST(EndToEnd, ProtectsTheShortestFrameAndRefusesEveryShorterOne) {
     EXPECT_FALSE(check_p01(one, 0x1A0, P01Mode::both)) << byte;
     EXPECT_FALSE(check_p02(one, {})) << byte;
   }
-  // The checksum of no data at all, of the identifier alone.
+  // The checksum of an empty payload covers the identifier alone.
   const std::uint16_t crc = crc16_ccitt_false(std::vector<std::uint8_t>{0xA0, 0x01});
   std::vector<std::uint8_t> empty{static_cast<std::uint8_t>(crc & 0xFFU),
                                   static_cast<std::uint8_t>(crc >> 8)};

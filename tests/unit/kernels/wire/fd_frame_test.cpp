@@ -57,7 +57,8 @@ TEST(FdFrame, ComesBackWithinHalfAStep) {
   }
 }
 
-// Worked by hand from the table in can_frames.hpp; the checksum from an independent CRC.
+// Bytes worked out by hand from the table in can_frames.hpp; the checksum is from an independent
+// CRC.
 TEST(FdFrame, HasItsDocumentedBytes) {
   PoseSample s;
   s.state = TrackState::measured;
@@ -151,7 +152,7 @@ TEST(FdFrame, SendsTheLastTimeThatAnInt64Holds) {
   EXPECT_EQ(decode_fd_pose(packed(s, 1)).value.unix_measurement_ns, 1);
 }
 
-// A rotation that is none, though each of its components would fit.
+// The quaternion is not of unit length, but each of its components fits its field.
 TEST(FdFrame, SendsWhatIsNoUnitQuaternionWithStateNone) {
   std::mt19937 random(24);
   PoseSample s = random_sample(random);
@@ -181,7 +182,7 @@ TEST(FdFrame, SendsALostToolWithoutAPoseAndItsFiguresAsUnknown) {
   EXPECT_NEAR(pose.quality.registration_rms_m, s.registration_rms_m, k_half * k_can_rms_step_m);
 }
 
-// All ones mean "this or more": the value before is the last that is sent as itself.
+// All ones mean "this or more"; the value below is the largest that is encoded exactly.
 TEST(FdFrame, SendsFiguresBeyondTheirFieldsAsUnknown) {
   std::mt19937 random(26);
   for (const bool beyond : {false, true}) {

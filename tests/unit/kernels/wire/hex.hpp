@@ -1,4 +1,4 @@
-// Frames and bytes as text, the way that published vectors are written.
+// Hexadecimal text of frames and bytes, in the format of published test vectors.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ inline std::vector<std::uint8_t> bytes_of_text(std::string_view text) {
   return {text.begin(), text.end()};
 }
 
-// The frame with one of its bits flipped.
+// Returns the frame with one bit flipped.
 inline CanFrame flipped(CanFrame frame, int bit) {
   auto& byte = frame.data[static_cast<std::size_t>(bit / 8)];
   byte = static_cast<std::uint8_t>(byte ^ 1U << bit % 8);

@@ -29,7 +29,7 @@ TEST(NodeFrames, TellAnEmergencyAndItsEnd) {
   EXPECT_EQ(hex_of(emergency_frame(32, sample).bytes()), "0000000202000100");
 }
 
-// The reader's side of CanTSyn's check.
+// Receiver's CRC check of a CanTSyn frame.
 bool check(const CanFrame& frame, const TimeSync& sync) {
   std::vector<std::uint8_t> covered(frame.data.begin() + 2, frame.data.begin() + 8);
   covered.push_back(sync.data_ids[frame.data[2] & 0xFU]);
@@ -75,7 +75,7 @@ TEST(NodeFrames, RefuseTimesThatDoNotFit) {
   EXPECT_FALSE(time_follow_up_frame(sync, 0, 1'000'000'000, 999'999'999));
 }
 
-// Each limit alone: the first and the last time of each field, and one beyond.
+// The first and the last time of each field, and one beyond each.
 TEST(NodeFrames, TakeTimesFrom1970ToTheLastThatTheFieldsHold) {
   const TimeSync sync;
   EXPECT_TRUE(time_sync_frame(sync, 0, 0));

@@ -101,7 +101,7 @@ TEST(OutputRecord, ShowsEveryFieldAndOverwritesEveryByte) {
   encode(s, ones);
   EXPECT_EQ(zeros, ones);
 
-  // A change anywhere in a record is a change of the decoded sample, so no field is left out.
+  // Changing any byte of a record changes the decoded sample, so decode() reads every field.
   for (std::size_t at = 0; at < k_output_record_bytes; ++at) {
     Record changed = zeros;
     changed[at] ^= 1;
@@ -156,7 +156,7 @@ TEST(OutputRecord, RefusesANumberThatIsNotFiniteInAnyPlace) {
   }
 }
 
-// A size goes with one layout alone.
+// Each record size belongs to exactly one layout.
 TEST(OutputRecord, RefusesALayoutOfTheOtherSize) {
   const Record newest = encoded(PoseSample{});
   for (const std::size_t size : {k_output_record_bytes, k_output_record_bytes_1}) {
@@ -170,7 +170,7 @@ TEST(OutputRecord, RefusesALayoutOfTheOtherSize) {
   }
 }
 
-// The last value of each list is taken, the next one is not.
+// The decoder accepts the last value of each enumeration and rejects the next one.
 TEST(OutputRecord, TakesEveryValueOfItsListsAndNoOther) {
   const Record good = encoded(PoseSample{});
   const std::pair<std::size_t, int> lists[] = {

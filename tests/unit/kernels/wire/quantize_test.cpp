@@ -18,7 +18,7 @@ TEST(Quantize, RoundsToTheNearestAndHalvesAwayFromZero) {
   EXPECT_EQ(rounded(2.5), 3);
   EXPECT_EQ(rounded(-2.5), -3);
   EXPECT_EQ(rounded(2.4999999), 2);
-  EXPECT_EQ(rounded(0.49999999999999994), 0);  // + 0.5 would give 1
+  EXPECT_EQ(rounded(0.49999999999999994), 0);  // floor(x + 0.5) gives 1
   EXPECT_EQ(rounded(-0.0), 0);
 }
 

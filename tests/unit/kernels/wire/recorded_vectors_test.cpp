@@ -1,4 +1,5 @@
-// Check values of an independent implementation, where they are at hand.
+// Wire formats against recorded check values of an independent implementation, if they are
+// available.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -21,7 +22,7 @@ std::vector<Row> rows_of(const std::string& name) {
   if (folder == nullptr) return rows;
   std::ifstream file(std::string(folder) + "/can/" + name);
   std::string line;
-  std::getline(file, line);  // names of the columns
+  std::getline(file, line);  // column names
   while (std::getline(file, line)) {
     Row row;
     std::istringstream cells(line);

@@ -7,7 +7,7 @@
 
 namespace glint {
 
-// Random, with every field in the range of every format.
+// Returns a random sample; every field is inside the range of every format.
 inline PoseSample random_sample(std::mt19937& random) {
   std::uniform_real_distribution<double> unit(-1, 1);
   const auto vector = [&](double size) {

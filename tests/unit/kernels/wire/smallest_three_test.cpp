@@ -27,7 +27,7 @@ TEST(SmallestThree, ComesBackWithinFourThousandthsOfADegree) {
     worst = std::max(worst, degrees_between(q, from_smallest_three(packed)));
   }
   EXPECT_LT(worst, 0.0038);
-  EXPECT_GT(worst, 0.002);  // else the measure itself is wrong
+  EXPECT_GT(worst, 0.002);  // a smaller value means that the test measures wrongly
 }
 
 TEST(SmallestThree, LeavesOutTheLargestAndMakesItPositive) {
@@ -53,7 +53,7 @@ TEST(SmallestThree, RefusesWhatIsNoRotation) {
       to_smallest_three(Quaternion(std::numeric_limits<double>::quiet_NaN(), 0, 0, 1)).valid);
 }
 
-// A length within a thousandth of one is divided out.
+// to_smallest_three() normalises a quaternion whose length is within 1e-3 of one.
 TEST(SmallestThree, TakesAQuaternionOfAlmostUnitLengthAsOfUnitLength) {
   const Quaternion unit = Quaternion(0.3, -0.2, 0.8, 0.4).normalized();
   const SmallestThree expected = to_smallest_three(unit);
@@ -67,7 +67,7 @@ TEST(SmallestThree, TakesAQuaternionOfAlmostUnitLengthAsOfUnitLength) {
   }
 }
 
-// The component left out is none of the three: each place of the largest, of either sign.
+// The largest component is the omitted one: each index of it, with either sign.
 TEST(SmallestThree, GivesBackTheLargestComponentAtEachPlace) {
   for (int place = 0; place < 4; ++place) {
     for (const double sign : {1.0, -1.0}) {
