@@ -1,5 +1,5 @@
-// What find_blobs copies into a blob, which blobs stay, and what a second frame leaves of the
-// first.
+// find_blobs: every field of a blob, selection under a blob limit, and independence of the previous
+// frame.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,19 +36,19 @@ struct Finder {
   }
 };
 
-// Single dots, `count` of them, 20 in a row.
+// Returns an image of `count` isolated pixels above the threshold, 20 a row.
 Picture dots(int count) {
   Picture p(80, 80);
   for (int i = 0; i < count; ++i) p(i % 20 * 4 + 1, i / 20 * 4 + 1) = 1000;
   return p;
 }
 
-// Each field of a blob, all different, from its component and its centroid.
+// All fields of a blob have different values, from its component and its centroid.
 TEST(Blobs, HaveTheirComponentsBoxAndTheirCentroidsFigures) {
   Picture p(60, 50, 50);
   for (int y = 20; y < 26; ++y)
     for (int x = 11; x < 19; ++x) p(x, y) = static_cast<std::uint16_t>(3000 + 17 * x + 5 * y);
-  p(11, 20) = 60;  // not of the blob: its area is not the box's
+  p(11, 20) = 60;  // outside the blob: the area differs from the box's
   p(14, 22) = 7777;
   Finder find;
   find.settings.noise = {20, 0.5, 0.02};
@@ -70,7 +70,8 @@ TEST(Blobs, HaveTheirComponentsBoxAndTheirCentroidsFigures) {
   EXPECT_NE(blob.variance_px2[0], blob.variance_px2[1]);
 }
 
-// An uneven blob, a cut one and one that is both: their own variance and their shape's.
+// A partially occluded blob, a cut one and one that is both: variance is the centroid's plus the
+// shape's.
 TEST(Blobs, AddTheirShapesVarianceAlongEachAxis) {
   struct Case {
     int x0, y0, width, height;
@@ -117,7 +118,7 @@ TEST(Blobs, AreThoseOfAFreshFinderWhateverTheFrameBeforeHad) {
     EXPECT_EQ(used.blobs->items[i].centroid_px, fresh.blobs->items[i].centroid_px);
 }
 
-// Of the bands one is full: whichever it is, blobs may be missing.
+// One band's run buffer is full: either band's overflow flags the blobs as incomplete.
 TEST(Blobs, MissWhatAnyBandLost) {
   const Picture p = dots(40);
   const Frame frame = p.frame();
@@ -137,7 +138,7 @@ TEST(Blobs, MissWhatAnyBandLost) {
   }
 }
 
-// Dots and discs by what is predicted and by how they fit, against a plain sort of all of them.
+// Selected dots and discs against a full sort by distance to the predictions and misfit.
 TEST(Blobs, KeepThoseOfAPlainSortByDistanceAndMisfit) {
   std::mt19937 random(8);
   for (int round = 0; round < 20; ++round) {
@@ -148,7 +149,7 @@ TEST(Blobs, KeepThoseOfAPlainSortByDistanceAndMisfit) {
                      9000);
     for (int i = 0; i < 40; ++i)
       p(static_cast<int>(random() % 200), static_cast<int>(random() % 200)) = 700;
-    p(0, 0) = 700;  // the first and the last component, which fit no marker
+    p(0, 0) = 700;  // first and last component; fit no marker
     p(199, 199) = 700;
     Finder find;
     find.settings.sizes = marker_sizes({0.0055, 0.0055, 0.8, 253, 0.15, 1.0, 0.001, 4090});

@@ -1,4 +1,4 @@
-// What find_blobs counts as work, and what its limits allow.
+// Work counts of find_blobs and their limits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ struct Finder {
   }
 };
 
-// Single dots, `count` of them, 20 in a row.
+// Returns an image of `count` isolated pixels above the threshold, 20 a row.
 Picture dots(int count) {
   Picture p(80, 80);
   for (int i = 0; i < count; ++i) p(i % 20 * 4 + 1, i / 20 * 4 + 1) = 1000;
@@ -49,7 +49,7 @@ TEST(BlobWork, CountsRunsBlobsAndTheGrownBoxesPixels) {
   EXPECT_EQ(work.runs, 5);
   EXPECT_EQ(work.blobs, 2);
   EXPECT_EQ(work.distances, 0);
-  // 9 columns are two times eight, and a row's masks cost as much as another eight.
+  // 9 columns count as two groups of eight; the masks of a row cost as much as one more group.
   EXPECT_EQ(work.pixels, 8 * 8 * 3 + 8 * 5 * 2);
 }
 
@@ -99,7 +99,7 @@ TEST(BlobWork, CountsFourDistancesAPredictionAndTheFocusOnlyWhereThereAreTooMany
   EXPECT_EQ(find(dots(13)).distances, 4);
 }
 
-// One tool of two markers: what else is predicted is not looked at.
+// One tool of two markers: find_blobs ignores further predictions.
 TEST(BlobWork, LooksAtNoMorePredictionsThanTheCellsToolsHaveMarkers) {
   Finder find;
   find.limits.blobs = 8;
@@ -123,7 +123,7 @@ TEST(BlobWork, KeepsAsManyAsTheLimitAndNeverMoreThanThereIsRoomFor) {
   }
 }
 
-// A box that costs just its share has the grown centroid, with a pixel less the plain mean.
+// A box that costs exactly its share has the grown centroid; with one pixel less, the plain mean.
 TEST(BlobWork, PaysForABoxThatCostsJustWhatIsLeft) {
   Picture p(40, 40);
   for (int y = 10; y < 14; ++y)

@@ -57,7 +57,7 @@ TEST(Blobs, JoinsTheTwoLegsOfAU) {
 
 TEST(Blobs, AreTheSameInOneBandAndInTwo) {
   Picture p(100, 60);
-  test::add_disc(p, 30.3, 29.8, 5, 9000);  // across the border at row 30
+  test::add_disc(p, 30.3, 29.8, 5, 9000);  // across the band border at row 30
   test::add_disc(p, 70.1, 12.4, 3, 9000);
   test::add_disc(p, 60.1, 50.4, 3, 9000);
   Finder one, two;
@@ -72,7 +72,7 @@ TEST(Blobs, AreTheSameInOneBandAndInTwo) {
   }
 }
 
-// A flood fill knows nothing of runs.
+// Flood fill: a reference that does not use runs.
 std::vector<int> areas_by_flood(Picture p) {
   std::vector<int> areas;
   for (int y = 0; y < p.height; ++y) {
@@ -129,7 +129,7 @@ TEST(Blobs, DropsAndCountsWhatIsOutsideTheSizeGate) {
   EXPECT_EQ(blobs.reason, Reason::none);
 }
 
-// 400 single dots in a grid, 20 in a row.
+// Returns an image of 400 isolated pixels in a grid, 20 a row.
 Picture dots() {
   Picture p(80, 80);
   for (int i = 0; i < 400; ++i) p(i % 20 * 4 + 1, i / 20 * 4 + 1) = 1000;
@@ -159,7 +159,8 @@ TEST(Blobs, KeepsOthersInAnotherFrameWhenFullAndNothingIsPredicted) {
   EXPECT_EQ(std::count(was_kept.begin(), was_kept.end(), 0), 0);
 }
 
-// As many single pixels as a bad sensor has, and five markers: the pixels fit no marker by size.
+// Five markers and 1000 single pixels, as of a bad sensor; single pixels do not fit a marker's
+// size.
 TEST(Blobs, KeepsMarkersAmongAThousandSinglePixels) {
   std::mt19937 random(4);
   Picture p(512, 512);
@@ -180,12 +181,12 @@ TEST(Blobs, KeepsMarkersAmongAThousandSinglePixels) {
 
 TEST(Blobs, KeepsTheBlobsNearestAPredictionWhenFull) {
   Finder find;
-  find.predicted = {{77.5, 77.5}, {NAN, 0}, {1e300, -1e300}};  // the last dot; then nonsense
+  find.predicted = {{77.5, 77.5}, {NAN, 0}, {1e300, -1e300}};  // the last dot; then invalid
   const Blobs& blobs = find(dots());
   ASSERT_EQ(blobs.count, k_blobs_max);
   EXPECT_EQ(blobs.items[k_blobs_max - 1].x0, 77);
   EXPECT_EQ(blobs.items[k_blobs_max - 1].y0, 77);
-  EXPECT_GT(blobs.items[0].x0 + blobs.items[0].y0, 8);  // the far corner went
+  EXPECT_GT(blobs.items[0].x0 + blobs.items[0].y0, 8);  // dots in the far corner are discarded
   const auto distance = [](const Blob& b) { return std::hypot(b.x0 - 77.0, b.y0 - 77.0); };
   double farthest = 0;
   for (const Blob& blob : blobs.items) farthest = std::max(farthest, distance(blob));
@@ -199,7 +200,7 @@ TEST(Blobs, KeepsTheBlobsNearestAPredictionWhenFull) {
 TEST(Blobs, KeepsTheSizeGateBeforeAnyPrediction) {
   Picture p = dots();
   for (int y = 40; y < 80; ++y) {
-    for (int x = 0; x < 80; ++x) p(x, y) = 1000;  // a hand, right where a marker is predicted
+    for (int x = 0; x < 80; ++x) p(x, y) = 1000;  // a hand at the predicted marker
   }
   Finder find;
   find.settings.max_area_px = 20;
@@ -236,7 +237,7 @@ TEST(Blobs, FlagsTheBorderAndSaturation) {
   EXPECT_EQ(blobs.items[2].flags, k_blob_touches_edge);
 }
 
-// The blob and its variance along the axis that the border cuts, border by border.
+// Flags, and variance along the axis that the border cuts, at each of the four borders.
 TEST(Blobs, TouchEachOfTheFourBordersOnlyInItsOutermostPixel) {
   constexpr int k_width = 21, k_height = 15, k_side = 3;
   const auto blob_at = [&](int x0, int y0) {
@@ -264,7 +265,7 @@ TEST(Blobs, TouchEachOfTheFourBordersOnlyInItsOutermostPixel) {
 
 TEST(Blobs, ComeByRowsThenFromLeft) {
   Finder find;
-  // The second component's first run is left of the first one's, but its box begins further right.
+  // Blobs are in the order of their boxes' (y0, x0).
   const Blobs& blobs = find(picture_of({"...#.#", "#..#..", "##..#."}));
   for (int i = 1; i < blobs.count; ++i) {
     const Blob& a = blobs.items[static_cast<std::size_t>(i - 1)];
@@ -274,7 +275,7 @@ TEST(Blobs, ComeByRowsThenFromLeft) {
   EXPECT_EQ(find(Picture(8, 8)).count, 0);
 }
 
-// The second component begins further right in its first row, but its box further left.
+// The second component begins further right in its first row, but its box begins further left.
 TEST(Blobs, ComeByTheirBoxesCornersNotByTheirFirstRuns) {
   Finder find;
   const Blobs& blobs = find(picture_of({"..#..#", ".....#", "#####.", "......", "#....."}));
@@ -286,7 +287,7 @@ TEST(Blobs, ComeByTheirBoxesCornersNotByTheirFirstRuns) {
   EXPECT_EQ(blobs.items[2].y0, 4);
 }
 
-// Of the largest frame: each corner, and what lies beside and beneath the middle.
+// Largest frame: its corners, and pixels beside and below its centre.
 TEST(Blobs, ComeByRowsThenFromLeftInTheLargestFrame) {
   Finder find;
   find.bands = 2;
@@ -339,7 +340,7 @@ TEST(Blobs, HaveALargerVarianceWhereTheyAreCutOrMerged) {
   EXPECT_EQ(at(20).flags, 0);
   EXPECT_LT(at(20).variance_px2[0], 0.01F);
   EXPECT_EQ(at(53).flags, k_blob_uneven);
-  EXPECT_GE(at(53).variance_px2[0], 9.0F);  // either's middle is three pixels away
+  EXPECT_GE(at(53).variance_px2[0], 9.0F);  // each disc's centre is three pixels away
   EXPECT_NE(at(89).flags & k_blob_touches_edge, 0);
   EXPECT_GT(at(89).variance_px2[0], 1.0F);
   EXPECT_GT(at(89).variance_px2[0], at(89).variance_px2[1] + 0.9F);
@@ -348,7 +349,7 @@ TEST(Blobs, HaveALargerVarianceWhereTheyAreCutOrMerged) {
 TEST(Blobs, HaveThePlainMeanWhereThePixelsAreUsedUp) {
   Picture picture(20, 9);
   for (int i = 0; i < 12; ++i) picture(3 + i % 4, 3 + i / 4) = 600;
-  picture(3, 3) = 5000;  // weighs more in any other mean
+  picture(3, 3) = 5000;  // has the largest weight in any weighted mean
   Finder find;
   EXPECT_LT(find(picture).items[0].centroid_px.x(), 4.9);
   find.limits.blobs = 1;

@@ -11,10 +11,10 @@ namespace {
 struct Box {
   GrownBox box;
   std::vector<RowMasks> masks;
-  std::vector<std::uint16_t> pixels;  // 64 a row, whatever the box needs
+  std::vector<std::uint16_t> pixels;  // 64 a row, for any box
 };
 
-// Pixel by pixel: what the faster one is compared with.
+// Per-pixel reference.
 GrownSums plain_sums(const Box& from, std::uint16_t threshold) {
   GrownSums out;
   for (int row = 0; row < from.box.bottom - from.box.top; ++row) {
@@ -83,7 +83,7 @@ TEST(BoxSums, AreThoseOfAPlainLoop) {
   }
 }
 
-// One bright pixel in the rim, in each column and the last row.
+// One bright pixel in the last row of the rim, in each column.
 TEST(BoxSums, SeeASingleBrightPixelOfTheRim) {
   for (int column = 0; column < 64; ++column) {
     for (const int brighter : {0, 1}) {
@@ -98,7 +98,7 @@ TEST(BoxSums, SeeASingleBrightPixelOfTheRim) {
   }
 }
 
-// Every lane at its largest, as high and as low as can be.
+// Every lane at its maximum or minimum.
 TEST(BoxSums, DoNotOverflow) {
   for (const std::uint16_t value : {0, 0xFFFF}) {
     for (const bool rim : {false, true}) {

@@ -1,5 +1,5 @@
-// Every figure of a centroid, by its definition, and where the grown one gives way to the plain
-// mean.
+// Every field of a centroid against its definition, and the fall-back of the grown centroid to the
+// plain mean.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using test::Picture;
 
 constexpr std::uint16_t k_threshold = 1280;
 
-// The first component of the picture.
+// First component of the image.
 struct Found {
   std::unique_ptr<BlobScratch> scratch = std::make_unique<BlobScratch>();
 
@@ -37,7 +37,7 @@ Centroid grown(const Picture& picture, std::uint16_t threshold = k_threshold) {
   return grown_centroid(frame, *found.scratch, found.component(), threshold);
 }
 
-// Whether a pixel is within `reach` of a bright one; all that is bright is one blob.
+// Returns whether a pixel is within `reach` of a bright one. All bright pixels belong to one blob.
 bool is_near(Picture& p, int x, int y, int reach) {
   for (int dy = -reach; dy <= reach; ++dy) {
     for (int dx = -reach; dx <= reach; ++dx) {
@@ -101,7 +101,7 @@ TEST(CentroidFigures, OfAGrownBlobAreThoseOfTheDefinition) {
   }
 }
 
-// As wide as a box may be, in frames that end just where its 64 columns do, or sooner or later.
+// Boxes of the maximum width, in frames whose width is below, at and above the box's 64 columns.
 TEST(CentroidFigures, OfTheWidestBoxesAreThoseOfTheDefinitionAtEitherBorder) {
   std::mt19937 random(15);
   for (int width = 60; width <= 68; ++width) {
@@ -118,8 +118,8 @@ TEST(CentroidFigures, OfTheWidestBoxesAreThoseOfTheDefinitionAtEitherBorder) {
   }
 }
 
-// A dark pixel beside the blob pulls the middle away: to the box's border it counts, beyond it the
-// plain mean does.
+// A dark pixel beside the blob shifts the centroid. Up to the box's border the grown centroid is
+// used, beyond it the plain mean.
 TEST(CentroidFigures, FallBackWhereTheMiddleLeavesTheBoxOnAnySide) {
   for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
     for (const int contrast : {2, 3, 4}) {
@@ -127,7 +127,8 @@ TEST(CentroidFigures, FallBackWhereTheMiddleLeavesTheBoxOnAnySide) {
       p(4, 4) = static_cast<std::uint16_t>(1280 + contrast);
       p(4 + dx, 4 + dy) = 1279;
       const Centroid found = grown(p);
-      // (contrast * middle - 1 * beside) / (contrast - 1): beside the middle by 1 / (contrast - 1).
+      // (contrast * centre - 1 * neighbour) / (contrast - 1): 1 / (contrast - 1) away from the
+      // centre.
       const Vector2 off = Vector2(-dx, -dy) / (contrast - 1);
       const bool inside = contrast > 2;
       EXPECT_LT((found.position_px - Vector2(4.5, 4.5) - (inside ? off : Vector2(0, 0))).norm(),
@@ -142,7 +143,7 @@ TEST(CentroidFigures, FallBackWhereTheMiddleLeavesTheBoxOnAnySide) {
   }
 }
 
-// No light is left, and a little less than none.
+// The sum of weights is zero, and slightly negative.
 TEST(CentroidFigures, FallBackWhereTheBlobIsNoBrighterThanItsSurroundings) {
   for (const int darker : {1279, 1278}) {
     Picture p(9, 9, 1280);
@@ -159,7 +160,7 @@ TEST(CentroidFigures, KeepPeakAndNeighbourWhereTheyFallBack) {
   Picture p(16, 9, 1280);
   p(4, 4) = 1281;
   p(3, 3) = 0;
-  p(6, 4) = 1290;  // another blob, two pixels beside it
+  p(6, 4) = 1290;  // another blob, two pixels away
   const Centroid found = grown(p);
   EXPECT_EQ(found.pixels, 0);
   EXPECT_TRUE(found.beside_bright);
@@ -197,7 +198,7 @@ TEST(CentroidFigures, OfTheWeightedMeanAreThoseOfItsDefinition) {
   }
 }
 
-// The threshold is the blob's own level, or above it.
+// The threshold equals the blob's level or is above it.
 TEST(CentroidFigures, OfTheWeightedMeanAreNoneWithoutWeight) {
   Picture p(9, 9);
   p(3, 3) = p(4, 3) = 1000;
@@ -212,7 +213,7 @@ TEST(CentroidFigures, OfTheWeightedMeanAreNoneWithoutWeight) {
             Vector2(4, 3.5));
 }
 
-// Of a run its ends and its middle are looked at for the peak.
+// The peak of a run is searched at its ends and its centre.
 TEST(CentroidFigures, OfThePlainMeanAreTheMeanAndTheBrightestOfEachRunsEndsAndMiddle) {
   for (const int brightest : {0, 1, 2, 3, 4, 5, 6, 7, 8}) {
     Picture p(40, 20);
@@ -242,7 +243,7 @@ TEST(CentroidFigures, OfThePlainMeanAreTheSameFromEightBits) {
   EXPECT_EQ(wide.peak, 180);
 }
 
-// A box that is too large one way only.
+// A box that is too large along one axis only.
 TEST(CentroidFigures, OfATallOrWideBoxAreThePlainMeans) {
   for (const bool tall : {false, true}) {
     Picture p(100, 100, 100);

@@ -1,4 +1,4 @@
-// Each share of a centroid's variance by its own closed form, the others taken off.
+// Each term of a centroid's variance against its closed form, with the other terms subtracted.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace glint::centroid_shares_test {
 namespace {
 
-// A blob of 9 x 6 pixels' box whose pixels all weigh the same, over a background.
+// A blob with a box of 9 x 6 pixels and equal weights, over a background.
 struct Blot {
   Centroid centroid;
   Component component;
@@ -36,7 +36,7 @@ struct Blot {
   [[nodiscard]] double size(int axis) const { return axis == 0 ? 9 : 6; }
 };
 
-// What a pixel's variance of `dark` in the background and `bright` in all of the light make.
+// Variance from a pixel variance of `dark` in the background and `bright` in the sum of the light.
 double by_noise(const Blot& blot, int axis, double dark, double bright) {
   const double own = std::pow(blot.size(axis) / 4, 2),
                grown = std::pow((blot.size(axis) + 2) / 4, 2);
@@ -70,7 +70,7 @@ TEST(CentroidShares, OfANeighbourIsThreePixelsBelowTheThresholdOnOneSide) {
     blot.centroid.beside_bright = true;
     const double pulled = 3 * (300 - 100) * (0.5 * blot.size(axis) + 1) / (40 * 2000.0);
     EXPECT_NEAR((blot.along(axis) - alone) / (pulled * pulled), 1, 1e-4);
-    blot.settings.threshold = 100;  // no higher than the background: nothing is left below it
+    blot.settings.threshold = 100;  // equal to the background: no light below the threshold
     const double level = blot.along(axis);
     blot.settings.threshold = 20;
     EXPECT_EQ(blot.along(axis), level);
@@ -83,18 +83,17 @@ constexpr double k_rim_miss = (1.0 / 120 - 1.0 / 144);  // half of four rim pixe
 constexpr double k_rim_clip = 0.63 / 24;
 double diameter_of(double area_px) { return std::sqrt(4 * area_px / std::numbers::pi); }
 
-// The area above the threshold of a blot whose rim is so wide.
+// Area above the threshold of a blob with a rim of this width.
 double area_with_rim(double lit_px, double width_px, double share) {
   return lit_px + 2 * diameter_of(lit_px) * width_px * (1 - 2 * share);
 }
 
-// Without noise: a rim r wide misses by the r^3-rd part of what a sharp one does, half a pixel at
-// least.
+// Without noise: a rim of width r (at least 0.5 px) has the variance of a sharp rim divided by r^3.
 TEST(CentroidShares, OfARimFallWithTheCubeOfItsWidth) {
   for (const double share : {0.0, 0.1, 0.2}) {
     for (const double width : {0.1, 0.3, 0.45, 0.6, 1.0, 1.5, 3.0}) {
       Blot blot;
-      // An area in whole pixels: the width that it stands for.
+      // The area is rounded to whole pixels; `wide` is the rim width that it stands for.
       blot.component.area_px = static_cast<unsigned>(std::lround(area_with_rim(400, width, share)));
       blot.centroid.light = 400 * 2000.0;
       blot.settings.threshold = static_cast<std::uint16_t>(100 + 2000 * share);
@@ -108,7 +107,7 @@ TEST(CentroidShares, OfARimFallWithTheCubeOfItsWidth) {
   }
 }
 
-// Clipped, by the part of the rim that is full: a third at least, all of it at most.
+// A clipped rim: the share of full pixels is at least a third and at most one.
 TEST(CentroidShares, OfAClippedRimGrowWithThePartThatIsFull) {
   for (const double width : {-0.5, 0.0, 0.2, 0.5, 0.66, 0.7, 2.0}) {
     Blot blot;
@@ -125,8 +124,8 @@ TEST(CentroidShares, OfAClippedRimGrowWithThePartThatIsFull) {
   }
 }
 
-// From a quarter of the signal on the threshold leaves too little of the rim: it counts as one
-// pixel wide, or as full.
+// From a quarter of the signal on, the threshold leaves too little of the rim to measure. The rim
+// then counts as one pixel wide, or as full if clipped.
 TEST(CentroidShares, OfARimBelowAHighThresholdAreThoseOfOnePixel) {
   Blot blot;
   blot.centroid.light = 400 * 2000.0;
@@ -142,7 +141,7 @@ TEST(CentroidShares, OfARimBelowAHighThresholdAreThoseOfOnePixel) {
   EXPECT_NEAR(blot.along(0) / clipped, 1, 1e-5);
 }
 
-// A signal below one count is one, an area below one pixel is one.
+// A signal below one count is set to one, an area below one pixel to one.
 TEST(CentroidShares, HaveASignalAndAnAreaOfOneAtLeast) {
   Blot blot;
   blot.centroid.peak = 100;
@@ -158,7 +157,7 @@ TEST(CentroidShares, HaveASignalAndAnAreaOfOneAtLeast) {
   EXPECT_NEAR(blot.along(0) / (k_rim_miss * diameter_of(1) * 8), 1, 1e-5);
 }
 
-// The plain mean's: of the component's area, as full as can be.
+// The variance of the plain mean is that of the component's area with a full rim.
 TEST(CentroidShares, OfThePlainMeanIsThatOfItsAreaClipped) {
   Blot blot;
   blot.centroid.pixels = 0;

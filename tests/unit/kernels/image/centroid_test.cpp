@@ -15,7 +15,7 @@ using test::Picture;
 
 constexpr std::uint16_t k_threshold = 1280;
 
-// The first component of the picture.
+// First component of the image.
 struct Found {
   std::unique_ptr<BlobScratch> scratch = std::make_unique<BlobScratch>();
   const Component& component() const { return scratch->components[0]; }
@@ -32,7 +32,7 @@ struct Errors {
   double grown = 0, weighted = 0, binary = 0;  // rms an axis, pixels
 };
 
-// Discs at random places on an even background with a little noise.
+// Errors for discs at random positions on a uniform background with little noise.
 Errors errors_of(double diameter, double brightness, int rounds) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> part(0, 1);
@@ -80,7 +80,7 @@ TEST(Centroids, OfASymmetricBlobAreItsMiddleExactly) {
             Vector2(4.5, 4.5));
 }
 
-// Only what lies beside the blob changes, not the blob.
+// The background changes, the blob does not.
 TEST(Centroids, DoNotMoveWithTheBackground) {
   std::vector<Vector2> positions;
   for (const std::uint16_t background : {0, 500, 1000}) {
@@ -143,7 +143,7 @@ TEST(Centroids, OfTheLargestGrownBoxAreRight) {
             Vector2(33, 33));
 }
 
-// By the definition, pixel by pixel: all that is bright is one blob.
+// The definition, pixel by pixel. All bright pixels belong to one blob.
 Vector2 plain_grown_centroid(Picture& p) {
   const auto near = [&](int x, int y, int reach) {
     for (int dy = -reach; dy <= reach; ++dy) {
@@ -194,7 +194,7 @@ TEST(Centroids, AreThoseOfTheDefinitionInFramesOfAnyWidth) {
   }
 }
 
-// A blob whose surroundings are as bright as itself: no weight is left.
+// The surroundings are as bright as the blob: the sum of weights is zero.
 TEST(Centroids, FallBackToThePlainMeanWithoutContrast) {
   Picture p(9, 9, 1280);
   p(4, 4) = 1281;

@@ -15,7 +15,7 @@ namespace {
 
 using test::Picture;
 
-// A disc of 6 px: 28 pixels of 10,000 counts over 100.
+// A disc of 6 px: 28 pixels of 10,000 counts over a background of 100.
 Centroid disc_of_light(double signal = 10'000) {
   Centroid c;
   c.position_px = {20, 20};
@@ -36,7 +36,7 @@ Component box_of_disc(int width = 7, int height = 7) {
 }
 const BlobSettings k_settings{2, 4096, 1000, 0xFFFF, {6, 0.35, 0.01}};
 
-// By the noise alone: the rim's share is of 6e-5 px^2, this of 0.02.
+// Noise dominates: the rim's variance is 6e-5 px^2, that of the noise 0.02 px^2.
 TEST(CentroidVariance, OfDarkNoiseIsThatOfTheFirstMoment) {
   BlobSettings settings = k_settings;
   settings.noise = {400, 0, 0};
@@ -74,11 +74,11 @@ TEST(CentroidVariance, GrowsWhereTheRimIsClipped) {
   const auto unclipped_variance =
       centroid_variance(disc_of_light(60'000), box_of_disc(), k_settings);
   const auto least = centroid_variance(clipped, box_of_disc(), k_settings);
-  clipped.light = 37 * 65'435.0;  // of 38 pixels nearly all are full
+  clipped.light = 37 * 65'435.0;  // nearly all of 38 pixels are full
   const auto most = centroid_variance(clipped, box_of_disc(), k_settings);
   EXPECT_GT(least[0], 20 * unclipped_variance[0]);
   EXPECT_GT(most[0], 3 * least[0]);
-  EXPECT_NEAR(std::sqrt(most[0]), 0.08, 0.01);  // of a full one: 0.2 / sqrt(D)
+  EXPECT_NEAR(std::sqrt(most[0]), 0.08, 0.01);  // all full: 0.2 / sqrt(D)
 }
 
 TEST(CentroidVariance, HoldsTheLightOfANeighbour) {
@@ -98,8 +98,8 @@ TEST(CentroidVariance, OfThePlainMeanIsThatOfAFullRim) {
 
 TEST(CentroidVariance, KnowsABoxThatIsNoDiscs) {
   EXPECT_FALSE(is_uneven(box_of_disc(7, 7)));
-  EXPECT_FALSE(is_uneven(box_of_disc(7, 5)));   // 4 px, smeared by 2
-  EXPECT_FALSE(is_uneven(box_of_disc(12, 8)));  // 7 px, smeared by 4
+  EXPECT_FALSE(is_uneven(box_of_disc(7, 5)));   // 4 px, motion blur of 2
+  EXPECT_FALSE(is_uneven(box_of_disc(12, 8)));  // 7 px, motion blur of 4
   EXPECT_TRUE(is_uneven(box_of_disc(9, 5)));    // two of 4 px
   EXPECT_TRUE(is_uneven(box_of_disc(7, 13)));
   const auto merged = shape_variance(box_of_disc(13, 7), false, false);
@@ -109,7 +109,7 @@ TEST(CentroidVariance, KnowsABoxThatIsNoDiscs) {
   EXPECT_EQ(cut[1], 1.0F);
 }
 
-// The largest and smallest of everything: no infinity, no NaN, nothing below zero.
+// Extreme inputs: the variance is finite and not negative.
 TEST(CentroidVariance, IsANumberForAnyBlob) {
   std::mt19937_64 random(3);
   for (int round = 0; round < 20'000; ++round) {
@@ -135,7 +135,7 @@ TEST(CentroidVariance, IsANumberForAnyBlob) {
   }
 }
 
-// As g++ -O3 and clang++ -O1 on x86-64 and g++ on arm64 have them.
+// Bits of g++ -O3 and clang++ -O1 on x86-64 and of g++ on arm64.
 TEST(CentroidVariance, HasTheSameBitsEverywhere) {
   Centroid c = disc_of_light(4321.5);
   c.lever_px = {3.25, -1.5};
@@ -144,8 +144,8 @@ TEST(CentroidVariance, HasTheSameBitsEverywhere) {
   EXPECT_EQ(variance[1], 0x1.06639ep-15F);
 }
 
-// Discs with the noise that is declared, through all of find_blobs: the stated sigma is the
-// error's.
+// Discs with noise as declared, through all of find_blobs: the stated variance matches the mean
+// squared error.
 TEST(CentroidVariance, IsTheSquaredErrorsMean) {
   for (const double noise : {150.0, 600.0}) {
     auto runs = std::make_unique<Runs>();
@@ -159,7 +159,7 @@ TEST(CentroidVariance, IsTheSquaredErrorsMean) {
       Picture p(40, 40, 1000);
       const Vector2 truth{18 + part(random), 18 + part(random)};
       test::add_disc(p, truth.x(), truth.y(), 2.5 + part(random), 8000);
-      for (auto& value : p.wide) {  // the mean of twelve even numbers is normal enough
+      for (auto& value : p.wide) {  // a mean of twelve uniform numbers is nearly Gaussian
         double sum = -6;
         for (int i = 0; i < 12; ++i) sum += part(random);
         value = static_cast<std::uint16_t>(std::max(value + noise * sum + 0.5, 0.0));

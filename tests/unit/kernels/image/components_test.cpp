@@ -34,7 +34,7 @@ struct Found {
   }
 };
 
-// One component's pixels, by a flood fill that knows no runs; left, top, right, bottom, area.
+// Flood fill, a reference without runs: left, top, right, bottom and area of each component.
 std::vector<std::array<int, 5>> boxes_by_flood(Picture p) {
   std::vector<std::array<int, 5>> boxes;
   for (int y = 0; y < p.height; ++y) {
@@ -61,7 +61,7 @@ std::vector<std::array<int, 5>> boxes_by_flood(Picture p) {
   return boxes;
 }
 
-// In the order of their first pixels, with each run in just one chain.
+// Components are in the order of their first pixels, and each run is in exactly one chain.
 TEST(Components, HaveTheBoxesAreasAndRunsOfAFloodFill) {
   std::mt19937 random(11);
   Found found;
@@ -95,7 +95,7 @@ TEST(Components, ReadNoMoreBandsAndRunsThanThereAre) {
   for (int y = 0; y < 10; y += 2)
     for (int x = 0; x < 9; x += 2) p(x, y) = 1000;
   Found found;
-  found.find(p, k_row_bands + 1);  // a band has two rows, of which one has five dots
+  found.find(p, k_row_bands + 1);  // a band has two rows, one of them with five dots
   EXPECT_EQ(found.scratch->run_count, k_row_bands * 5);
   EXPECT_EQ(found.scratch->component_count, k_row_bands * 5);
   found.find(p, 2, 3);
@@ -113,7 +113,7 @@ TEST(Components, ReadNoMoreBandsAndRunsThanThereAre) {
   EXPECT_EQ(found.scratch->component_count, 0);
 }
 
-// Two pixels around the blob, inside the frame, in whole eights of columns.
+// Two pixels around the blob, inside the frame, with a width that is a multiple of eight columns.
 TEST(GrownBox, HoldsTheBlobAndTwoPixelsAroundIt) {
   std::mt19937 random(12);
   for (int round = 0; round < 2000; ++round) {

@@ -72,7 +72,8 @@ TEST(ImageLimits, TurnTooManyRoisIntoTheWholeFrame) {
   EXPECT_EQ(runs->items[0].x0, 60);
 }
 
-// Every blob of its share has the same centroid as without a limit; larger ones the plain mean.
+// A blob within its share of the pixel budget has the same centroid as without a limit. Larger
+// blobs fall back to the plain mean.
 TEST(ImageLimits, LeaveSmallBlobsTheirCentroidsWhenLargeOnesComeFirst) {
   Picture p(512, 512, 100);
   for (int i = 0; i < 8; ++i) test::add_disc(p, 60.3 * i + 40, 40.2, 12, 9000);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double k_focal_px = 253, k_radius_m = 0.0055;
 
-// A component in a frame whose pixels all have one level and one depth.
+// A component in a frame of uniform level and uniform depth.
 struct Scene {
   std::vector<std::uint16_t> level = std::vector<std::uint16_t>(64 * 64, 20'000);
   std::vector<std::uint16_t> depth = std::vector<std::uint16_t>(64 * 64, 500);
@@ -23,7 +23,7 @@ struct Scene {
   Scene() {
     settings.sizes =
         marker_sizes({k_radius_m, k_radius_m, 0.8, k_focal_px, 0.15, 1.0, 0.001, 4090});
-    of(24, 6, 6);  // a ball of 11 mm at half a metre: 24 pixels
+    of(24, 6, 6);  // a ball of 11 mm at 0.5 m: 24 pixels
   }
   void of(std::uint32_t area_px, int width, int height) {
     component.area_px = area_px;
@@ -42,7 +42,7 @@ struct Scene {
 TEST(MarkerMisfit, IsNoneOfAWholeMarker) {
   Scene scene;
   EXPECT_EQ(scene.misfit(), 0);
-  scene.of(45, 8, 8);  // by its halo
+  scene.of(45, 8, 8);  // with its halo
   EXPECT_EQ(scene.misfit(), 0);
 }
 
@@ -62,7 +62,7 @@ TEST(MarkerMisfit, GrowsWithEachFactorOfTwoInSize) {
 
 TEST(MarkerMisfit, ComparesWithTheSizeAtItsOwnDepth) {
   Scene scene;
-  scene.of(6, 3, 2);  // at a metre a marker has so many
+  scene.of(6, 3, 2);  // area of a marker at 1 m
   EXPECT_GE(scene.misfit(), 2);
   scene.depth.assign(scene.depth.size(), 980);
   EXPECT_EQ(scene.misfit(), 0);
@@ -82,7 +82,7 @@ TEST(MarkerMisfit, TakesTheRimsDepthWhereTheMiddleIsSaturated) {
   scene.of(6, 3, 2);
   const auto at = [](int x, int y) { return static_cast<std::size_t>(64 * y + x); };
   scene.depth.assign(scene.depth.size(), 980);
-  scene.depth[at(21, 20)] = 0;  // the middle
+  scene.depth[at(21, 20)] = 0;  // the centre
   EXPECT_EQ(scene.misfit(), 0);
   scene.of(24, 6, 6);
   scene.depth.assign(scene.depth.size(), 0);
@@ -115,7 +115,7 @@ TEST(MarkerMisfit, NeverExceedsItsMaximumAndIgnoresUnknownSizes) {
   EXPECT_EQ(scene.misfit(), 2) << "shape and contrast";
 }
 
-// Sizes that are exact: at this depth 16 to 64 pixels, at all others 1 to 4096.
+// Exact area limits: 16 to 64 pixels in this depth bin, 1 to 4096 in all others.
 MarkerSizes sizes_at(int bin) {
   MarkerSizes sizes;
   sizes.known = true;
@@ -134,19 +134,18 @@ TEST(MarkerMisfit, IsAStepForEachFactorOfTwoBeyondTheSizesUpToThree) {
                                                {3, 3},   {1, 3},   {64, 0},  {65, 1},  {128, 1},
                                                {129, 2}, {256, 2}, {257, 3}, {4000, 3}};
   for (const auto& [area, steps] : expected) {
-    scene.of(area, 1, 1);  // no shape to judge
+    scene.of(area, 1, 1);  // no shape criterion
     EXPECT_EQ(scene.misfit(), steps) << area;
   }
 }
 
-// Of the five pixels that may have a depth the first that has one counts: the middle, then left,
-// right, top and bottom.
+// Depth is the first valid one of five pixels: centre, left, right, top, bottom.
 TEST(MarkerMisfit, TakesTheFirstDepthOfMiddleLeftRightTopAndBottom) {
   const std::array<std::pair<int, int>, 5> places = {
       {{22, 23}, {20, 23}, {25, 23}, {22, 20}, {22, 26}}};
   Scene scene;
   scene.settings.sizes = sizes_at(500 >> 4);
-  scene.of(8, 6, 7);  // too small at that depth, by a step, and too little of its box
+  scene.of(8, 6, 7);  // one step too small at that depth, and too small a share of its box
   const auto at = [](const std::pair<int, int>& place) {
     return static_cast<std::size_t>(64 * place.second + place.first);
   };
@@ -157,7 +156,7 @@ TEST(MarkerMisfit, TakesTheFirstDepthOfMiddleLeftRightTopAndBottom) {
       scene.depth.assign(scene.depth.size(), none);
       scene.depth[at(places[first])] = 500;
       EXPECT_EQ(scene.misfit(), 2) << first;
-      // What comes later, at another depth, does not count; what comes before does, however small.
+      // A later depth with another value is ignored; an earlier one is used, however small.
       for (std::size_t later = first + 1; later < places.size(); ++later)
         scene.depth[at(places[later])] = 1;
       EXPECT_EQ(scene.misfit(), 2) << first;
@@ -192,7 +191,7 @@ TEST(MarkerMisfit, IsThatWithoutDepthWhereTheFrameHasNone) {
   EXPECT_EQ(scene.misfit(), 0);
 }
 
-// A box of which half is filled, and not quite.
+// A box that is half full, and one pixel less.
 TEST(MarkerMisfit, CountsABoxThatIsLessThanHalfFull) {
   Scene scene;
   scene.settings.sizes.known = false;
@@ -202,13 +201,13 @@ TEST(MarkerMisfit, CountsABoxThatIsLessThanHalfFull) {
   EXPECT_EQ(scene.misfit(), 1);
 }
 
-// The level of the middle pixel alone, of both kinds of frame.
+// Contrast is the level of the centre pixel alone, for 16-bit and for 8-bit frames.
 TEST(MarkerMisfit, ReadsTheContrastInTheMiddle) {
   for (const bool dim : {false, true}) {
     Scene scene;
     scene.settings.sizes.known = false;
     scene.settings.threshold = 100;
-    scene.of(40, 6, 7);  // its middle is column 22, row 23
+    scene.of(40, 6, 7);  // centre: column 22, row 23
     const std::uint16_t middle = dim ? 199 : 200, around = dim ? 200 : 199;
     scene.level.assign(scene.level.size(), around);
     scene.level[static_cast<std::size_t>(64 * 23 + 22)] = middle;

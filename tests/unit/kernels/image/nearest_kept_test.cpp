@@ -46,8 +46,9 @@ struct Candidates {
     return {0.5 * (c.x0 + c.x1), 0.5 * (c.y0 + c.y1)};
   }
 
-  // A plain sort by the distance of the box's middle in whole half pixels, alike beyond 2^23 - 1
-  // squared, doubled by each step of misfit, then by place.
+  // Reference: a stable sort by distance between box centre and prediction, in half pixels. Squared
+  // distances saturate at 2^23 - 1. Each step of misfit doubles the distance; ties keep the index
+  // order.
   [[nodiscard]] std::vector<int> sorted(const std::vector<Vector2>& predicted_px, int kept) const {
     std::vector<long> distance;
     for (int i = 0; i < count; ++i) {
@@ -77,7 +78,7 @@ TEST(NearestKept, AreThoseOfAPlainSort) {
   const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
   for (int round = 0; round < 300; ++round) {
     Candidates candidates;
-    // A small one has many equal distances, a large one some that are alike.
+    // A small field has many equal distances, a large one has distances that saturate.
     const int field = round % 3 == 0 ? 20 : round % 3 == 1 ? 500 : 1010;
     const int count = 2 + below(600);
     for (int i = 0; i < count; ++i) {
@@ -103,7 +104,7 @@ TEST(NearestKept, AreTheFirstOnesAmongEquals) {
   EXPECT_EQ(near_last.keep({{300, 50}}, 4), (std::vector<int>{0, 1, 7, 8}));
 }
 
-// The whole order of a plain sort, twice: half of the budget by the predictions, then the focus.
+// Reference by full sorts: half of the budget by the predictions, the rest by the focus.
 TEST(NearestKept, ShareTheBudgetBetweenPredictionsAndTheFocus) {
   std::mt19937 random(6);
   const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
@@ -121,7 +122,7 @@ TEST(NearestKept, ShareTheBudgetBetweenPredictionsAndTheFocus) {
     const int share = std::max(kept / 2, static_cast<int>(predicted.size()));
     std::vector<int> expected = candidates.sorted(predicted, share);
     for (const int i : expected) ASSERT_LT(i, count);
-    // The rest by the focus: as many of its order as are new.
+    // The rest by the focus: candidates in order of distance that are not kept already.
     const std::vector<int> near = expected;
     for (int n = 1; static_cast<int>(expected.size()) < kept; ++n) {
       expected = near;
@@ -133,28 +134,28 @@ TEST(NearestKept, ShareTheBudgetBetweenPredictionsAndTheFocus) {
   }
 }
 
-// Without a prediction, too: a tool that was never found.
+// Also without a prediction, for a tool that was never found.
 TEST(NearestKept, HaveEveryCandidateInTheMiddleWithinTwiceAsManyTurns) {
   for (const int count : {65, 205, 1000, 1001}) {
     Candidates candidates;
     for (int i = 0; i < count; ++i) candidates.add(5 * (i % 100), 20 * (i / 100));
     std::vector<int> was_kept(static_cast<std::size_t>(count), 0);
     for (std::uint32_t turn = 7; turn < 7 + 2u * static_cast<unsigned>(count); ++turn) {
-      // Of one place the focus alone is left.
+      // A budget of one keeps only the focus.
       ++was_kept[static_cast<std::size_t>(candidates.keep(BlobSearch{{}, false, turn}, 1).front())];
     }
     EXPECT_EQ(std::count(was_kept.begin(), was_kept.end(), 0), 0) << count;
   }
 }
 
-// A second of frames at 45 Hz, whatever the first one's number.
+// One second of frames at 45 Hz, from any frame number.
 TEST(NearestKept, HoldAllMarkersOfAToolInOneOf45Turns) {
   std::mt19937 random(7);
   const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
   for (int round = 0; round < 100; ++round) {
     Candidates candidates;
     const int strays = round % 2 == 0 ? 200 : 500;
-    std::vector<std::pair<int, int>> places;  // by rows, as components come
+    std::vector<std::pair<int, int>> places;  // sorted by rows, as components are
     const int x = 40 + below(430), y = 40 + below(430);
     for (int i = 0; i < strays; ++i) places.emplace_back(below(512), below(512));
     for (int i = 0; i < 5; ++i) places.emplace_back(y + below(80) - 40, x + below(80) - 40);
@@ -182,7 +183,7 @@ TEST(NearestKept, CountNonsenseAsNoPrediction) {
   EXPECT_EQ(keep_nearest({}, *candidates.scratch, candidates.count, 3), (30 + 3) / 4);
 }
 
-// At the corner opposite to a prediction that lies outside the frame.
+// The corner opposite to a prediction outside the frame.
 TEST(NearestKept, AreInOrderAtTheLargestDistance) {
   Candidates candidates;
   for (int i = 0; i < 6; ++i) candidates.add(511 - i, 511);

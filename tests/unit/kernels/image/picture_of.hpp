@@ -1,4 +1,4 @@
-// Frames for the tests of this folder, from text or from rendered discs.
+// Test images from text or from rendered discs.
 #pragma once
 
 #include <algorithm>
@@ -12,11 +12,11 @@
 
 namespace glint::test {
 
-// Owns what its frame() borrows.
+// Owns the pixels that frame() refers to.
 struct Picture {
   int width = 0, height = 0;
   std::vector<std::uint16_t> wide;
-  std::vector<std::uint8_t> narrow;  // used when not empty
+  std::vector<std::uint8_t> narrow;  // used if not empty
 
   Picture(int w, int h, std::uint16_t value = 0)
       : width(w),
@@ -39,7 +39,7 @@ struct Picture {
     return out;
   }
 
-  // The same picture with 8 bits, clipped.
+  // Returns the same image with 8 bits; values are clipped.
   [[nodiscard]] Picture with_8_bits() const {
     Picture out = *this;
     for (const std::uint16_t value : wide) {
@@ -49,7 +49,7 @@ struct Picture {
   }
 };
 
-// '#' is 1000, anything else 0.
+// '#' is 1000, any other character 0.
 inline Picture picture_of(const std::vector<std::string>& rows) {
   Picture out(static_cast<int>(rows.front().size()), static_cast<int>(rows.size()));
   for (int y = 0; y < out.height; ++y) {
@@ -60,7 +60,7 @@ inline Picture picture_of(const std::vector<std::string>& rows) {
   return out;
 }
 
-// Adds a disc of even brightness, its edge the mean of 8 x 8 samples a pixel.
+// Adds a disc of uniform brightness; an edge pixel is the mean of 8 x 8 samples.
 inline void add_disc(Picture& picture, double cx, double cy, double radius, double brightness) {
   const int x0 = std::max(static_cast<int>(cx - radius) - 2, 0);
   const int y0 = std::max(static_cast<int>(cy - radius) - 2, 0);

@@ -37,7 +37,8 @@ TEST(SizeGate, IsWideOpenForNonsense) {
   }
 }
 
-// 0.3 of the disc at the far end; 1.5 of the disc a pixel wider at the near one, and one more.
+// Minimum: 0.3 of the disc's area at the far range. Maximum: 1.5 of the area at the near range with
+// a radius larger by one pixel, plus one pixel.
 TEST(SizeGate, IsThePartOfTheDiscAtEachEnd) {
   for (const double radius : {0.002, 0.006, 0.02}) {
     for (const double near : {0.15, 0.4, 1.0}) {
@@ -100,7 +101,7 @@ TEST(MarkerSizes, AreUnknownForEachFigureThatIsNone) {
   EXPECT_FALSE(marker_sizes(alike).known);
 }
 
-// Of each depth: the smallest marker at the far end of its bin, the largest at the near one.
+// For each depth: the smallest marker at the far end of its bin, the largest at the near end.
 TEST(MarkerSizes, AreThoseOfTheBinsEndsWithinTheRanges) {
   const MarkerOptics o = optics();
   const MarkerSizes sizes = marker_sizes(o);

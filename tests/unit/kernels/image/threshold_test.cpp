@@ -100,7 +100,7 @@ TEST(Threshold, KeepsTheFirstRunsOfACheckerboardAndSaysThatThereAreMore) {
   EXPECT_EQ(runs->items[k_runs_per_band_max - 1].x0, 511);
 }
 
-// The third run ends where the first ROI does, and goes on in the second.
+// The third run reaches the end of the first ROI and continues in the second.
 TEST(Threshold, IsNotFullBeforeOneRunTooManyBegins) {
   Rois rois;
   rois.items[0] = {0, 0, 6, 1};
@@ -128,8 +128,8 @@ TEST(Threshold, IgnoresFramesAndBandsThatMakeNoSense) {
   EXPECT_TRUE(runs_of(p.frame(), whole_frame(p.frame()), 0, {0, 0}).empty());
 }
 
-// Widths that are no multiple of a block, ROIs at any place, thresholds in both halves of the
-// range.
+// Widths that are not a multiple of a block, ROIs at random positions, thresholds in both halves of
+// the range.
 TEST(Threshold, EqualsThePlainVersionOnRandomFrames) {
   std::mt19937 random(7);
   auto fast = std::make_unique<Runs>(), plain = std::make_unique<Runs>();

@@ -1,5 +1,5 @@
-// What the threshold counts as work, and the frames, bands and ROIs that it takes. The plain
-// version is held to the same expectations.
+// Work counts of the run-length threshold, and the frames, bands and ROIs that it accepts. The
+// reference version must meet the same expectations.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ ThresholdWork work_of(const Picture& picture, const Rois& rois, RowBand band = {
   return work;
 }
 
-// Both versions' number of runs, which must agree.
+// Returns the number of runs; both versions must agree.
 int runs_of(const Picture& picture, const Rois& rois, RowBand band = {},
             const Limits& limits = {}) {
   auto fast = std::make_unique<Runs>(), plain = std::make_unique<Runs>();
@@ -57,7 +57,7 @@ TEST(ThresholdWork, IsAStretchARoiAndRowAndABlockEach64Bytes) {
   }
 }
 
-// Where ROIs overlap a pixel is looked at once, in whatever order they are listed.
+// Pixels in overlapping ROIs are read once, in any order of the ROIs.
 TEST(ThresholdWork, CountsAnOverlapOnceInAnyOrder) {
   const Picture picture(200, 4);
   std::vector<Roi> rois = {{0, 0, 40, 4}, {0, 1, 150, 3}, {100, 0, 180, 2}, {160, 2, 190, 4}};
@@ -90,7 +90,7 @@ TEST(ThresholdWork, AddsUpOverTheBands) {
   }
 }
 
-// Row 2 has the third run, in the second of three blocks.
+// Row 2 has the third run, in the second of its three blocks.
 TEST(ThresholdWork, EndsWithTheBlockThatFindsTheBufferFull) {
   Picture picture(96, 6);
   picture(5, 0) = picture(5, 1) = picture(40, 2) = picture(90, 2) = picture(5, 3) = 500;
@@ -100,7 +100,7 @@ TEST(ThresholdWork, EndsWithTheBlockThatFindsTheBufferFull) {
   EXPECT_EQ(work.stretches, 3);
   EXPECT_EQ(work.blocks, 3 + 3 + 3);
   EXPECT_EQ(work.runs, 2);
-  // Of the lower half of the rows the full buffer's row is the first.
+  // In the lower half of the rows the first row meets the full buffer.
   limits.runs_per_band = 0;
   const ThresholdWork lower = work_of(picture, whole_frame(picture.frame()), {1, 2}, limits);
   EXPECT_EQ(lower.stretches, 1);
@@ -145,10 +145,10 @@ TEST(ThresholdWork, MaximumFollowsTheLimits) {
   EXPECT_EQ(half.runs, 70);
   limits.runs_per_band = 1000;
   EXPECT_EQ(threshold_work_max(limits, 2).runs, 5 * 51);
-  limits.tools = 0;  // the whole frame as one
+  limits.tools = 0;  // the frame as one ROI
   EXPECT_EQ(threshold_work_max(limits, 1).stretches, 9);
   limits.tools = 16;
-  limits.width = 5;  // no more ROIs than columns
+  limits.width = 5;  // at most as many ROIs as columns
   EXPECT_EQ(threshold_work_max(limits, 1).stretches, 9 * 5);
 }
 
@@ -172,7 +172,7 @@ TEST(ThresholdLimits, TakeAFrameAtEachAndNoneBeyond) {
   EXPECT_EQ(found(narrow, 40, 29, 1), 0);
 }
 
-// Runs hold columns and rows up to these, whatever a cell's limits say.
+// Hard limits of columns and rows in a run, for any cell limits.
 TEST(ThresholdLimits, NeverExceedTheLargestFrame) {
   Limits limits;
   limits.width = limits.height = 5000;
@@ -194,7 +194,7 @@ TEST(ThresholdLimits, TakeEachBandOfAllAndNoOther) {
     EXPECT_EQ(runs_of(picture, all, band), 0) << band.index << " of " << band.count;
 }
 
-// One ROI more than tools stands for the frame; no limit of tools is below one or above the array.
+// More ROIs than tools are replaced by the frame. The tool limit is clamped to 1 .. k_tools_max.
 TEST(ThresholdLimits, TakeAsManyRoisAsTools) {
   const Picture picture(64, 1, 500);
   const auto pixels = [&](int tools, int count) {
@@ -221,7 +221,7 @@ TEST(ThresholdLimits, TakeAsManyRoisAsTools) {
   EXPECT_EQ(pixels(3, -1), 0);
 }
 
-// Too many ROIs are one, also in what they cost.
+// Too many ROIs are replaced by the frame, also in the work counts.
 TEST(ThresholdWork, OfTooManyRoisIsThatOfTheFrame) {
   const Picture picture(70, 6);
   Limits limits;
@@ -232,7 +232,7 @@ TEST(ThresholdWork, OfTooManyRoisIsThatOfTheFrame) {
   EXPECT_EQ(work.blocks, 3 * blocks_of(70, 32));
 }
 
-// ROIs that hold no pixel of the frame take no work either.
+// ROIs without a pixel of the frame cause no work.
 TEST(ThresholdWork, SkipsRoisWithoutAPixelOfTheBand) {
   const Picture picture(64, 8, 500);
   const Roi empty[] = {{5, 1, 5, 3},   {6, 1, 5, 3},  {5, 3, 9, 3},  {5, 4, 9, 3},
