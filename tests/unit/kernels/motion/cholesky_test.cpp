@@ -46,7 +46,7 @@ TEST(Cholesky, ReadsTheLowerHalfAlone) {
 TEST(Cholesky, RefusesWhatIsNotPositive) {
   EXPECT_FALSE(Cholesky<3>(Matrix3::Zero()).positive);
   EXPECT_FALSE(Cholesky<3>(-Matrix3::Identity()).positive);
-  Matrix3 matrix = Matrix3::Ones();  // of rank 1
+  Matrix3 matrix = Matrix3::Ones();  // rank 1
   EXPECT_FALSE(Cholesky<3>(matrix).positive);
   matrix = Matrix3::Identity();
   for (const double bad :

@@ -8,7 +8,7 @@
 namespace glint {
 namespace {
 
-// Means of many samples of the autocovariance e^(-|t|/T), summed one by one.
+// Mean of the autocovariance e^(-|t|/T) over two windows, by a numerical double sum.
 double autocovariance_sum(double from_s, double to_s, double window_s, double correlation_s) {
   constexpr int k_samples = 600;
   double sum = 0;
@@ -45,8 +45,8 @@ TEST(CorrelatedErrors, OfAMeanAreTheIntegralOfTheirAutocovariance) {
   }
 }
 
-// The integrals of e^(-|t|/T) solved: of a mean over x = t/T it is 2 (x - 1 + e^-x) / x^2, of two
-// neighbouring means' product ((1 - e^-x) / x)^2.
+// Closed-form integrals of e^(-|t|/T), x = t/T: 2 (x - 1 + e^-x) / x^2 for one mean, ((1 - e^-x) /
+// x)^2 for the product of two neighbouring means.
 TEST(CorrelatedErrors, AreTheirClosedFormsEachByItsOwnTime) {
   const auto of_one = [](double x) { return 2 * (x - 1 + std::exp(-x)) / (x * x); };
   const auto of_two = [](double x) { return std::pow((1 - std::exp(-x)) / x, 2); };
@@ -62,7 +62,8 @@ TEST(CorrelatedErrors, AreTheirClosedFormsEachByItsOwnTime) {
   }
 }
 
-// Beyond 600 correlation times a mean is as good as there; a time that is none averages nothing.
+// Beyond 600 correlation times the result is that of 600. A correlation time or window that is not
+// positive averages nothing.
 TEST(CorrelatedErrors, EndAtALongWindowAndBeginAtNone) {
   const double last = of_mean(errors(1, 0), {1, 1}, 600)(0, 0);
   EXPECT_NEAR(last, 2.0 / 600 * (1 - 1.0 / 600), 1e-12);
@@ -86,7 +87,7 @@ TEST(CorrelatedErrors, AreWholeInNoTimeAndGoneAfterALongOne) {
   EXPECT_TRUE(of_mean({}, k_times, 1).isZero());
 }
 
-// The closed forms and their series meet.
+// The closed forms and their series are continuous where they meet.
 TEST(CorrelatedErrors, HaveNoStepBetweenShortAndLongWindows) {
   for (const double window : {0.99e-3, 1.01e-3, 2e-3}) {
     EXPECT_NEAR(of_mean(errors(1, 0), {1, 1}, window)(0, 0), 1 - window / 3, 1e-6);

@@ -14,7 +14,8 @@ namespace {
 constexpr double k_frame_s = 1.0 / 45;
 constexpr double k_body_shift_sigma = 0.0003, k_body_turn_sigma = 0.004;
 
-// A headset whose error walks as declared, about a pivot ahead of it, before a body.
+// A headset in front of a body; its localisation error follows the declared process about a pivot
+// ahead of the camera.
 class Headset {
  public:
   Headset(const HeadNoise& noise, std::uint64_t seed) : noise_(noise), random_(seed) {
@@ -47,12 +48,13 @@ class Headset {
  private:
   HeadNoise noise_;
   test::Random random_;
-  Pose body_;  // the camera rests at the world's origin
+  Pose body_;  // the camera is at the world's origin
   Vector3 shift_, turn_, jump_ = Vector3::Zero();
   int frame_ = 0;
 };
 
-// How far the corrected head puts a point that is seen exactly from where it put it at the start.
+// Displacement since the start of an exactly measured point that the corrected head maps to the
+// world.
 TEST(HeadAnchor, KeepsTheWorldToTheBodyWhereTheHeadsetWanders) {
   HeadNoise noise;
   noise.rest_position_m = 0.004;
@@ -82,7 +84,7 @@ TEST(HeadAnchor, KeepsTheWorldToTheBodyWhereTheHeadsetWanders) {
   EXPECT_LT(std::sqrt(held / count), 0.0012);
 }
 
-// NEES of the corrected world, in view and half a second after it was hidden.
+// NEES of the corrected world, with the body visible and half a second after it was hidden.
 TEST(HeadAnchor, KnowsHowSureItIs) {
   const HeadNoise noise;
   double seen = 0, hidden = 0;
@@ -91,7 +93,8 @@ TEST(HeadAnchor, KnowsHowSureItIs) {
     Headset headset(noise, 100 + static_cast<std::uint64_t>(run));
     HeadAnchor anchor;
     const auto nees = [&](const AnchoredHead& out) {
-      // The body as it is, put into the world by the corrected head, against where it was defined.
+      // The true body pose, mapped to the world by the corrected head, against the pose at
+      // definition.
       const Pose placed = out.head.T_world_camera * headset.body_truth();
       const Vector6 error = pose_difference(placed, anchor.T_world_body());
       const Matrix6 covariance = out.fresh + out.lasting;
@@ -110,14 +113,14 @@ TEST(HeadAnchor, KnowsHowSureItIs) {
     }
     hidden += nees(out) / runs;
   }
-  // What its first second of sights was off by moves the whole world, and is in no covariance.
+  // The error of the first second of measurements moves the whole world and is in no covariance.
   EXPECT_GT(seen / 6, 0.7);
   EXPECT_LT(seen / 6, 1.9);
   EXPECT_GT(hidden / 6, 0.7);
   EXPECT_LT(hidden / 6, 1.7);
 }
 
-// Its error is 20 times what is declared, then what is declared.
+// The headset's error is 20 times the declared one, then as declared.
 TEST(HeadAnchor, HoldsTheWorldOfAHeadsetThatDriftsMoreThanDeclared) {
   const HeadNoise declared;
   HeadNoise wide = declared;
@@ -140,7 +143,7 @@ TEST(HeadAnchor, HoldsTheWorldOfAHeadsetThatDriftsMoreThanDeclared) {
         nees += Cholesky<6>(Matrix6(out.fresh + out.lasting)).squared_length(error) / 6;
         ++count;
       }
-      // Its jitter counts as speed, too, by which the declared error grows.
+      // The error's jitter also raises the estimated speed, and with it the declared error.
       EXPECT_EQ(anchor.drift_factor() > 1, drifts) << seed;
     }
     EXPECT_LT(std::sqrt(errors / count), 0.0012) << drifts;
@@ -163,7 +166,7 @@ TEST(HeadAnchor, WithoutABodySaysWhatTheHeadsetDeclares) {
   const Matrix6 there = out.lasting_at(pivot);
   EXPECT_NEAR(there(0, 0), 1e-6, 1e-12);
   EXPECT_NEAR(there(5, 5), 4e-6, 1e-12);
-  // 0.5 m beside it the angle's 2 mrad are another 1 mm.
+  // 0.5 m away the angle of 2 mrad adds 1 mm.
   const Matrix6 beside = out.lasting_at(pivot + Vector3(0.5, 0, 0));
   EXPECT_NEAR(beside(1, 1), 2e-6, 1e-12);
 }
@@ -206,7 +209,8 @@ TEST(HeadAnchor, MovesWhatIsKnownAlongWhenTheBodyComesBack) {
   }
 }
 
-// Against the frame before the world has moved by what the headset's error did, hidden or back.
+// The step of the world against the previous frame is the change of the headset's error, while the
+// body is hidden and when it is visible again.
 TEST(HeadAnchor, KnowsByHowMuchTheWorldStepsWhileTheBodyIsHidden) {
   HeadNoise noise;
   noise.rest_position_m = 0.01;
@@ -254,11 +258,11 @@ TEST(HeadAnchor, TakesItsErrorsJitterForNoSpeed) {
     (void)anchor.update(headset.given(), nullptr, noise);
     variance += anchor.uncorrected_at({0, 0, noise.pivot_m})(0, 0) / k_frames;
   }
-  // It jitters by 0.1 m/s from frame to frame: taken for speed, 0.1 m of error.
+  // The jitter is 0.1 m/s from frame to frame. If it counted as speed, the error would be 0.1 m.
   EXPECT_LT(std::sqrt(variance), 0.035);
 }
 
-// 40 mm to and fro, once a second: 0.16 m/s on average, and nowhere else after a second.
+// 40 mm back and forth once a second: 0.16 m/s on average, zero displacement after a second.
 TEST(HeadAnchor, CountsTheSpeedOfAHeadThatMovesToAndFro) {
   HeadNoise noise;
   noise.rest_position_m = noise.rest_angle_rad = 0;

@@ -1,4 +1,4 @@
-// The headset's error where it is so simple that every figure has a closed form.
+// Drift correction of the headset's localisation in special cases with closed-form results.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,8 +44,8 @@ Matrix6 spread(double position_m, double angle_rad) {
   return covariance;
 }
 
-// A head that starts to move at frame 5: its velocity is followed in 0.1 s, the velocity's length
-// as its error is.
+// A head that starts to move at frame 5: its velocity is smoothed over 0.1 s, and its speed over
+// the correlation time of its error.
 TEST(HeadWalkForm, SmoothsVelocityThenSpeedAndAddsWhatBothDeclare) {
   const HeadNoise n = noise();
   HeadWalk walk;
@@ -71,7 +71,7 @@ TEST(HeadWalkForm, SmoothsVelocityThenSpeedAndAddsWhatBothDeclare) {
     const double share = moving.trace() / (moving + resting).trace();
     EXPECT_NEAR(walked.kept, share * std::exp(-0.3 / 0.5) + (1 - share) * std::exp(-0.3 / 8),
                 1e-12);
-    // Beside the pivot both turn the point along, and the shares shift.
+    // Beside the pivot both rotations move the point, which changes the shares of the variance.
     const Vector3 lever(0.2, -0.3, 0.1);
     const Matrix6 beside = walk.over(0.3, pivot + lever, n).at_length;
     EXPECT_LT((beside - moved_covariance(resting + moving, lever)).norm(), 1e-12);
@@ -79,7 +79,8 @@ TEST(HeadWalkForm, SmoothsVelocityThenSpeedAndAddsWhatBothDeclare) {
   EXPECT_GT(speed, 0.3);
 }
 
-// Where motion is declared to last less than the jitter, the velocity is followed as fast as that.
+// If motion's correlation time is shorter than the jitter's, the velocity is smoothed over the
+// shorter.
 TEST(HeadWalkForm, SmoothsNoLongerThanTheMotionLasts) {
   HeadNoise n = noise();
   n.motion_correlation_s = 0.05;
@@ -90,7 +91,7 @@ TEST(HeadWalkForm, SmoothsNoLongerThanTheMotionLasts) {
   const double moving_m = 0.04 * step * step * 0.5;
   const Matrix6 found = walk.over(1, {0.01, 0, n.pivot_m}, n).at_length;
   EXPECT_NEAR(found(0, 0), 0.003 * 0.003 + moving_m * moving_m, 1e-12);
-  n.motion_correlation_s = 0;  // no correlation: what is new counts alone
+  n.motion_correlation_s = 0;  // no correlation: only the newest counts
   EXPECT_NEAR(
       walk.over(1, {0.01, 0, n.pivot_m}, n).kept,
       (1 - spread(moving_m, 0.05 * step * step * 0.5).trace() /
@@ -116,7 +117,7 @@ UncertainPose body_at(const Vector3& place, const Vector3& turn, double shift_m,
   return {Time{}, {from_rotation_vector(turn), place}, spread(shift_m, turn_rad)};
 }
 
-// A head at rest, with a rest's noise alone.
+// Noise of a static head: terms per speed are zero.
 HeadNoise resting() {
   HeadNoise out = noise();
   out.position_per_speed_s = out.position_per_turn_m = 0;
@@ -124,7 +125,7 @@ HeadNoise resting() {
   return out;
 }
 
-// The body's place is the mean of its first sights; until then the head is corrected by nothing.
+// The body's position is the mean of its first measurements; until then the head is not corrected.
 TEST(HeadAnchorForm, DefinesTheBodyByTheMeanOfItsFirstSights) {
   HeadAnchor anchor;
   test::Random random(1);
@@ -148,8 +149,8 @@ TEST(HeadAnchorForm, DefinesTheBodyByTheMeanOfItsFirstSights) {
   }
 }
 
-// The body lies at the headset's pivot, its sights' covariance is diagonal: each number is filtered
-// for itself.
+// The body is at the headset's pivot and its measurement covariance is diagonal, so each component
+// is a scalar Kalman filter.
 class HeldHead {
  public:
   explicit HeldHead(const HeadNoise& noise = resting()) : noise_(noise) {
@@ -158,7 +159,7 @@ class HeldHead {
       (void)anchor.update(head_at(frame_, {0, 0, 0}, {0, 0, 0}), &body, noise_);
     }
   }
-  // A frame in which the headset is off by so much; `hidden`: the body is.
+  // One frame with this error of the headset; `hidden`: without a measurement of the body.
   AnchoredHead see(const Vector3& off_m, bool hidden) {
     const HeadPose head = head_at(frame_++, off_m, {0, 0, 0});
     const UncertainPose body = body_at(k_body, {0, 0, 0}, 0.001, 0.002);
@@ -177,7 +178,7 @@ TEST(HeadAnchorForm, CorrectsByEachSightsShareAndSplitsWhatIsLeft) {
   const double kept = std::exp(-k_frame_s / 8);
   double error = 0, place = 0, turn = 0;
   for (int frame = 0; frame < 40; ++frame) {
-    const double off = 0.0001 * frame;  // beside the pivot, which leaves x as it is
+    const double off = 0.0001 * frame;  // beside the pivot, which does not change x
     const AnchoredHead out = head.see({off, 0, 0}, false);
     ASSERT_EQ(head.anchor.drift_factor(), 1);
     error *= kept;
@@ -198,13 +199,13 @@ TEST(HeadAnchorForm, CorrectsByEachSightsShareAndSplitsWhatIsLeft) {
     EXPECT_FALSE(out.in_gap);
     EXPECT_TRUE(out.stepped.isZero());
     EXPECT_EQ(head.anchor.jumps(), 0);
-    // What the correction is, for any pose of the head.
+    // The correction applies to any pose of the head.
     const Pose any{from_rotation_vector({0.1, 0.2, 0.3}), {1, 2, 3}};
     EXPECT_NEAR(head.anchor.corrected(any).translation.x(), 1 - error, 1e-9);
   }
 }
 
-// Hidden: the correction fades, what it is unsure of grows, and each frame adds a step.
+// Body hidden: the correction decays, its covariance grows, and each frame adds a step.
 TEST(HeadAnchorForm, FadesWhileTheBodyIsHiddenAndMovesAlongWhenItIsBack) {
   HeldHead head;
   for (int frame = 0; frame < 30; ++frame) (void)head.see({0.002, 0, 0}, false);
@@ -212,7 +213,7 @@ TEST(HeadAnchorForm, FadesWhileTheBodyIsHiddenAndMovesAlongWhenItIsBack) {
   AnchoredHead out = head.see({0.002, 0, 0}, false);
   double error = 0.002 - out.head.T_world_camera.translation.x();
   double place = out.lasting(0, 0) + out.fresh(0, 0);
-  // About the body, which lies 2 mm beside the headset's pivot.
+  // About the body, which is 2 mm from the headset's pivot.
   const Matrix6 at_length = moved_covariance(spread(0.003, 0.005), {-0.002, 0, 0});
   for (int frame = 0; frame < 50; ++frame) {
     out = head.see({0.002, 0, 0}, true);
@@ -229,7 +230,7 @@ TEST(HeadAnchorForm, FadesWhileTheBodyIsHiddenAndMovesAlongWhenItIsBack) {
   const double before = error * kept;
   out = head.see({0.002, 0, 0}, false);
   EXPECT_TRUE(out.corrected && out.moved_along && out.in_gap);
-  // Poses of before the gap's end lie where the new correction has them.
+  // `moved` maps poses from before the end of the gap to the new correction.
   const double after = 0.002 - out.head.T_world_camera.translation.x();
   EXPECT_NEAR(out.moved.translation.x(), before - after, 1e-9);
   EXPECT_GT(std::abs(before - after), 1e-5);
@@ -251,7 +252,7 @@ TEST(HeadAnchorForm, MovesItsCovariancesToAPoint) {
   EXPECT_FALSE(head.fresh_at(point).isApprox(head.fresh));
 }
 
-// A head without a pose passes through, and changes nothing.
+// A head without a valid pose passes through unchanged and does not change the filter.
 TEST(HeadAnchorForm, LeavesAHeadWithoutAPoseAlone) {
   HeldHead head, same;
   HeadPose none = head_at(77, {9, 9, 9}, {1, 0, 0});
@@ -265,14 +266,15 @@ TEST(HeadAnchorForm, LeavesAHeadWithoutAPoseAlone) {
             same.see({0.001, 0, 0}, false).head.T_world_camera.translation);
 }
 
-// A sight that nothing explains is left out; the ninth in a row is believed, exactly.
+// A measurement that fails the chi-square test is rejected. The ninth in a row is accepted and
+// resets the error exactly.
 TEST(HeadAnchorForm, BelievesTheBodyAfterNineRefusedSights) {
   HeadNoise sure = resting();
   sure.rest_position_m = 0.0005;
   HeldHead head(sure);
   for (int frame = 0; frame < 20; ++frame) (void)head.see({0, 0, 0}, false);
   for (int round = 0; round < 3; ++round) {
-    const double place = round % 2 == 0 ? 0.3 : -0.3;  // which no factor explains
+    const double place = round % 2 == 0 ? 0.3 : -0.3;  // fails at every drift factor
     for (int refused = 1; refused <= k_anchor_refused_max; ++refused) {
       const AnchoredHead out = head.see({place, 0, 0}, false);
       const bool last = refused == k_anchor_refused_max;
@@ -287,7 +289,7 @@ TEST(HeadAnchorForm, BelievesTheBodyAfterNineRefusedSights) {
     }
     EXPECT_TRUE(head.see({place, 0, 0}, false).corrected);
   }
-  // Interrupted by one that is explained the count begins anew.
+  // A measurement that passes the test resets the count of rejections.
   for (int refused = 0; refused < 8; ++refused)
     EXPECT_FALSE(head.see({-0.3, 0, 0}, false).corrected);
   EXPECT_TRUE(head.see({0.3, 0, 0}, false).corrected);

@@ -27,7 +27,7 @@ HeadWalk moving(double speed_m_s, double turn_rad_s) {
   return walk;
 }
 
-// At the pivot a rotation about it moves nothing.
+// At the pivot a rotation about it causes no translation.
 TEST(HeadWalk, AtRestIsAsDeclared) {
   const HeadNoise noise;
   const HeadWalk walk = moving(0, 0);
@@ -53,7 +53,7 @@ TEST(HeadWalk, InMotionIsWiderAndFaster) {
   EXPECT_GT(walked.kept, std::exp(-0.1 / noise.motion_correlation_s));
 }
 
-// The first head's error is any of those declared; so it is where stamps begin anew.
+// The first head pose, and the first after restart_clock(), are independent of any earlier error.
 TEST(HeadWalk, BeginsBeyondEveryCorrelation) {
   HeadWalk walk;
   EXPECT_GT(walk.observe(head_at(5, 0, 0), {}), 1e5);

@@ -17,8 +17,8 @@
 namespace glint {
 namespace {
 
-// The equations once more, accelerations and all, by another hand and in another form: a quaternion
-// product, and damping as feedback.
+// Independent implementation of the equations of motion in another form: accelerations are states,
+// rotation is a quaternion product, damping is feedback.
 int equations(double, N_Vector y, N_Vector out, void*) {
   const MotionSettings settings;
   const double* s = NV_DATA_S(y);
@@ -97,7 +97,7 @@ TEST(IntegrateMotion, AgreesWithTheClosedFormAboutOneAxis) {
   EXPECT_LT(pose_difference(later.value.pose, closed.pose).norm(), 1e-5);
 }
 
-// Each operation, against SUNDIALS' own serial vector of the same numbers.
+// Each operation against SUNDIALS' own serial vector with the same values.
 TEST(StateVector, ComputesWhatSundialsOwnDoes) {
   constexpr int k_count = 4, k_vectors = 3;
   using Vector = StateVector<k_count>;
@@ -147,7 +147,7 @@ TEST(StateVector, ComputesWhatSundialsOwnDoes) {
   N_VConst(9, clone);
   EXPECT_EQ(Vector::of(ours[1]), values[1]) << "a place of its own";
   N_VDestroy(clone);
-  // Of one vector alone, and into the first of its own.
+  // A linear combination of one vector alone, and one written into its own first input.
   same("one of a combination",
        [&](N_Vector* x, N_Vector z) { EXPECT_EQ(N_VLinearCombination(1, factors, x, z), 0); });
   EXPECT_EQ(N_VLinearCombination(k_vectors, factors, ours, ours[0]), 0);
@@ -204,7 +204,7 @@ TEST(IntegrateMotion, AsksForNoMemoryOncePrepared) {
   EXPECT_EQ(heap.count(), 0u);
 }
 
-// Bytes that are in use. A sanitizer's own heap shows none, and finds what is lost itself.
+// Heap bytes in use. With a sanitizer the count is zero, and the sanitizer detects leaks itself.
 std::size_t bytes_in_use() {
 #if defined(__GLIBC__) && __GLIBC_PREREQ(2, 33)
   const struct mallinfo2 info = mallinfo2();

@@ -13,7 +13,7 @@ namespace {
 using Vector18 = Eigen::Matrix<double, 18, 1>;
 constexpr double k_difference = 1e-6;
 
-// By coefficients: Eigen's blocked product takes a second to compile for each pair of sizes.
+// Coefficient-wise: Eigen's blocked product takes a second to compile for each pair of sizes.
 template <class A, class B>
 Eigen::Matrix<double, A::RowsAtCompileTime, B::ColsAtCompileTime> product(const A& a, const B& b) {
   return a.lazyProduct(b);
@@ -42,7 +42,7 @@ TEST(MotionFilter, CarriesItsCovarianceAsItsMeanCarriesErrors) {
       propagate(later, Time{ms * 1'000'000LL}, {}, {0, 0});
       const MotionCovariance f = transition_by_differences(state, later.time);
       const MotionCovariance expected = product(product(f, state.covariance), f.transpose());
-      // The left Jacobian of a turn is taken as that of half of it.
+      // propagate() takes the left Jacobian of half the rotation for that of the rotation.
       const double tolerance = ms < 100 ? 2e-3 : 3e-2;
       EXPECT_LT((later.covariance - expected).norm(), tolerance * expected.norm()) << ms;
       EXPECT_EQ(later.covariance, MotionCovariance(later.covariance.transpose()));
@@ -103,7 +103,7 @@ TEST(MotionFilter, CorrectsByAPoseAsTheTextbookDoes) {
   }
 }
 
-// The second derivatives of where a marker is, an axis each, by the errors of rotation.
+// Second derivatives of a marker's position, one matrix an axis, by the errors of rotation.
 std::array<Matrix3, 3> marker_hessians(const MotionState& state, const Vector3& model_m) {
   constexpr double k_step = 1e-3;
   const auto at = [&](const Vector3& turn) {
@@ -161,7 +161,7 @@ TEST(MotionFilter, CorrectsByAPointAsItsFirstAndSecondDerivativesSay) {
     EXPECT_EQ(correction.angular_chi_square, 0);
     EXPECT_EQ(correction.linear_whitened, Vector3(0, 0, 0));
     EXPECT_LT((test::error_between(after, before) - product(gain, innovation)).norm(), 1e-8);
-    // The errors' axes have turned with the tool.
+    // The axes of the errors have rotated with the tool.
     const Matrix3 by = (after.pose.rotation * before.pose.rotation.conjugate()).toRotationMatrix();
     MotionCovariance axes = MotionCovariance::Zero();
     for (int i = 0; i < k_motion_size; i += 3) axes.block<3, 3>(i, i) = by;
@@ -172,7 +172,8 @@ TEST(MotionFilter, CorrectsByAPointAsItsFirstAndSecondDerivativesSay) {
   }
 }
 
-// What a first pose says, and of all that it does not what a hand may be doing.
+// The first pose sets pose and covariance. Velocities and accelerations start with the declared
+// standard deviations of a hand.
 TEST(MotionFilter, StartsWithThePosesCovarianceAndWhatAHandMayDo) {
   test::Random random(6);
   UncertainPose first{
@@ -200,7 +201,7 @@ TEST(MotionFilter, StartsWithThePosesCovarianceAndWhatAHandMayDo) {
   EXPECT_LT((rest - MotionCovariance(diagonal.asDiagonal())).norm(), 1e-12);
 }
 
-// The acceleration's variance is the one at which damping takes as much as the noise adds.
+// The acceleration's variance is stationary: damping removes as much as the process noise adds.
 TEST(MotionFilter, KeepsTheVarianceOfTheAccelerationsThatItStartsWith) {
   MotionState state = start_motion({Time{}, {}, 1e-6 * Matrix6::Identity()}, {});
   const double linear = state.covariance(k_acceleration, k_acceleration);
@@ -210,7 +211,7 @@ TEST(MotionFilter, KeepsTheVarianceOfTheAccelerationsThatItStartsWith) {
   EXPECT_NEAR(state.covariance(k_angular_acceleration, k_angular_acceleration) / angular, 1, 1e-4);
 }
 
-// All that is given in a frame turns with it; what the tool itself does stays.
+// Vectors given in the frame rotate with it; the tool's own motion is unchanged.
 TEST(MotionFilter, MovesAStateAsItsFrameMoves) {
   test::Random random(7);
   for (int trial = 0; trial < 20; ++trial) {
@@ -226,7 +227,7 @@ TEST(MotionFilter, MovesAStateAsItsFrameMoves) {
     EXPECT_LT((there.angular_acceleration_rad_s2 - by.rotation * state.angular_acceleration_rad_s2)
                   .norm(),
               1e-13);
-    // An error moved along is as likely as it was.
+    // The transformed error has the same variance.
     Vector18 error, moved;
     for (int i = 0; i < k_motion_size; i += 3) {
       error.segment<3>(i) = random.vector(1);
@@ -296,8 +297,8 @@ TEST(MotionFilter, LeavesTheStateWhereACovarianceIsNone) {
   EXPECT_EQ(state.covariance, before.covariance);
 }
 
-// The place is known, one marker is far off: the tool turns to it. How it lies about the line to
-// the marker no sight of it tells, wherever that line has turned to.
+// Position known, one marker measured far away: the tool rotates towards it. Rotation about the
+// line from the tool to the marker stays unobservable, also after the line has rotated.
 TEST(MotionFilter, LearnsNothingOfTurnsAboutTheLineToItsOnlyMarker) {
   const double sigma = 0.3;
   MotionState state;
@@ -333,7 +334,8 @@ TEST(MotionFilter, GivesTheSameBitsEverywhere) {
   EXPECT_EQ(hash.value(), 11979747156868678879u);
 }
 
-// To first order a marker turns about its middle on a straight line; its arc is of second order.
+// To first order a marker rotates about its centre along a straight line; the arc is of second
+// order.
 TEST(MotionFilter, ExpectsOneMarkerWhereALooselyHeldToolCanHaveTurnedIt) {
   test::Random random(11);
   constexpr double k_turn_sigma = 0.15, k_marker_sigma_m = 0.0002;

@@ -24,7 +24,7 @@ inline MotionState random_state(Random& random) {
   return state;
 }
 
-// The state moved by small errors, in the order of its covariance.
+// The state displaced by small errors, in the order of its covariance.
 inline MotionState moved(const MotionState& state, const Eigen::Matrix<double, 18, 1>& error) {
   MotionState result = state;
   result.pose.translation += error.segment<3>(k_position);
@@ -37,7 +37,7 @@ inline MotionState moved(const MotionState& state, const Eigen::Matrix<double, 1
   return result;
 }
 
-// What moves `from` to `to`.
+// The error that displaces `from` to `to`.
 inline Eigen::Matrix<double, 18, 1> error_between(const MotionState& to, const MotionState& from) {
   Eigen::Matrix<double, 18, 1> error;
   error << to.pose.translation - from.pose.translation, to.velocity_m_s - from.velocity_m_s,
@@ -48,7 +48,7 @@ inline Eigen::Matrix<double, 18, 1> error_between(const MotionState& to, const M
   return error;
 }
 
-// A pose measured with this noise, of a truth.
+// A measurement of the true pose with this noise.
 inline UncertainPose measured_pose(const Pose& truth, Time time, double position_sigma_m,
                                    double rotation_sigma_rad, Random& random) {
   UncertainPose measured;

@@ -1,4 +1,4 @@
-// The rest window against a plain version that keeps all poses, frame by frame.
+// Static detector against a reference that stores all poses, frame by frame.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using test::Random;
 
-// Every frame that may belong to the rest, oldest first, and the rules of the header.
+// All frames of the possible static window, oldest first; rules as in rest_window.hpp.
 class PlainWindow {
  public:
   int add(const UncertainPose& measured, const CorrelatedErrors& correlated,
@@ -34,7 +34,7 @@ class PlainWindow {
     kept_.push_back(measured);
     if (kept_.size() > k_rest_frames_max) kept_.erase(kept_.begin());
     const int n = static_cast<int>(kept_.size());
-    // The newest n, 3/4 n, 1/2 n, 3/8 n .. frames, from the shortest on.
+    // Windows of the newest n, 3/4 n, 1/2 n, 3/8 n .. frames, the shortest first.
     std::vector<int> lengths;
     for (int level = 0; level < k_rest_levels; ++level) {
       const int power = 1 << level / 2;
@@ -99,7 +99,7 @@ class PlainWindow {
   }
 
  private:
-  // Of so many frames that end `behind` the newest one.
+  // Mean over `frames` frames, the newest of which is `behind` frames before the last.
   [[nodiscard]] Vector6 mean(int frames, int behind) const {
     Vector6 sum = Vector6::Zero();
     for (int i = 0; i < frames; ++i)
@@ -119,7 +119,8 @@ class PlainWindow {
   CorrelatedErrors correlated_;
 };
 
-// Rests of all lengths, drifts, strokes, gaps and jumps, with settings and errors that vary.
+// Static phases of all lengths, drifts, movements, gaps and jumps, with varying settings and
+// errors.
 TEST(RestWindow, IsThatOfThePlainVersionFrameByFrame) {
   Random random(31);
   int resting = 0, drifting = 0, full = 0;
@@ -176,11 +177,11 @@ TEST(RestWindow, IsThatOfThePlainVersionFrameByFrame) {
 
 UncertainPose pose_at(const Vector3& place, const Vector3& turn, Time time) {
   UncertainPose pose{time, {from_rotation_vector(turn), place}, Matrix6::Zero()};
-  pose.covariance.diagonal().setConstant(1);  // so wide that no halves differ
+  pose.covariance.diagonal().setConstant(1);  // large enough that no halves differ
   return pose;
 }
 
-// At the limit a frame still belongs to the rest; just beyond it begins anew.
+// A frame at the limit continues the static window; just beyond it starts a new one.
 TEST(RestWindow, EndsBeyondEachLimitAlone) {
   const Time second = Time{} + RestSettings{}.gap_max;
   const auto frames_after = [](const UncertainPose& next) {
@@ -198,7 +199,7 @@ TEST(RestWindow, EndsBeyondEachLimitAlone) {
   EXPECT_EQ(frames_after(pose_at({0, 0, 0}, {0, 1.0001 * k_anchor_rad, 0}, second)), 1);
 }
 
-// The window goes on where its frame moved, as if all its poses had been given there.
+// After move() the window equals one whose poses were all measured in the moved frame.
 TEST(RestWindow, MovesAlongWithItsFrame) {
   Random random(32);
   const Pose truth{random.rotation(), random.vector(0.1)};

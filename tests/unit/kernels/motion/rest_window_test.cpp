@@ -13,7 +13,7 @@ namespace {
 
 constexpr double k_shift_sigma = 0.0005, k_turn_sigma = 0.005;
 
-// The window with its sums.
+// A static window with its own sums.
 struct Window {
   RestWindow at;
   RestSums sums;
@@ -156,13 +156,13 @@ TEST(RestWindow, StaysFiniteForDegenerateCovariances) {
   UncertainPose measured;
   for (int frame = 0; frame < 300; ++frame) {
     measured.time = test::frame_time(frame);
-    window->add(measured);  // no covariance at all
+    window->add(measured);  // zero covariance
     EXPECT_LE(window->frames(), 1);
   }
 }
 
-// What an abandoned frame wrote must not be seen in the next: of every frame another is tried
-// first.
+// State written by an undone frame has no effect on the next: each frame is preceded by another one
+// that is undone.
 TEST(RestWindow, HoldsAfterAFrameThatIsUndone) {
   test::Random random(9), other(10);
   const Pose truth{random.rotation(), random.vector(0.3)};
@@ -172,7 +172,7 @@ TEST(RestWindow, HoldsAfterAFrameThatIsUndone) {
     const UncertainPose measured = seen(drifted(truth, {moved, 0, 0}), frame, random);
     plain->add(measured);
     const RestWindow before = undone->at;
-    const Vector3 aside(frame % 2 == 0 ? 0.5 : 0.003, 0, 0);  // begins a new window, or ends one
+    const Vector3 aside(frame % 2 == 0 ? 0.5 : 0.003, 0, 0);  // starts or ends a window
     undone->add(seen(drifted(truth, aside), frame, other));
     undone->at = before;
     undone->add(measured);

@@ -36,7 +36,7 @@ TEST(Singer, WithoutDampingIsConstantAcceleration) {
 }
 
 TEST(Singer, OfTwoHalvesIsTheWhole) {
-  // The quadrature's error, by damping * time.
+  // Error of the quadrature, by damping * time.
   const std::pair<double, double> k_limits[] = {
       {0.0, 1e-14}, {1e-3, 1e-13}, {2.4, 1e-9}, {24.0, 1e-5}, {125.0, 1e-2}};
   for (const auto& [damping, limit] : k_limits) {

@@ -15,7 +15,8 @@ TEST(Strokes, SpreadAlongTheMotionAlone) {
   EXPECT_EQ(stroke_spread(Vector3::Zero(), 2, 0.2), Matrix3(Matrix3::Zero()));
 }
 
-// Slow, the share of recorded hands; fast, what stops the hand within its reach.
+// Slow: the share measured on recorded hands. Fast: the deceleration that stops a hand within its
+// reach.
 TEST(Strokes, EndWithinAHandsReach) {
   EXPECT_NEAR(linear_stroke_1_s(Vector3(0, 0.05, 0)), k_linear_stroke_1_s, 0.003);
   const Vector3 fast(2.7, 0, 0);
@@ -23,7 +24,7 @@ TEST(Strokes, EndWithinAHandsReach) {
   EXPECT_NEAR(linear_stroke_1_s(fast) * 2.7, std::hypot(stopping_m_s2, 0.9 * 2.7), 1e-12);
 }
 
-// Carried by hand between the steps: place by speed.
+// The test propagates between the steps: rotation by angular velocity.
 TEST(Strokes, OfSingleStepsAddUpToTheWholesSpeed) {
   const Vector3 velocity(0, 0, 1.5);
   const int steps = 90;
@@ -40,7 +41,7 @@ TEST(Strokes, OfSingleStepsAddUpToTheWholesSpeed) {
   const double whole = stroke_spread(velocity, 0.5, 0.9)(2, 2);
   EXPECT_NEAR(sum(k_rotation + 2, k_rotation + 2), 2 * whole / 3, 1e-3 * whole);
   sum.block<6, 6>(k_rotation, k_rotation).setZero();
-  EXPECT_NEAR(sum.norm(), 0, 1e-12);  // what moves the place is left alone
+  EXPECT_NEAR(sum.norm(), 0, 1e-12);  // the other blocks are unchanged
 }
 
 }  // namespace

@@ -88,8 +88,8 @@ TEST(ToolMotion, RefusesWhatIsNoPose) {
   EXPECT_EQ(tool.motion->estimate().covariance, before.covariance);
 }
 
-// The rms error of a prediction one frame ahead of a tool that swings, in a world that jitters by
-// `jitter_m` a frame; declared: 10 mm.
+// Rms error of a one-frame prediction of a swinging tool, in a world that jitters by `jitter_m` a
+// frame. The declared jitter is 10 mm.
 double foretold_within(double jitter_m, bool loosened) {
   Followed tool;
   constexpr double k_declared_m = 0.01, k_rad_s = 6;
@@ -121,7 +121,7 @@ double foretold_within(double jitter_m, bool loosened) {
 TEST(ToolMotion, LearnsHowMuchOfADeclaredJitterThereIs) {
   const double quiet = foretold_within(0, false);
   EXPECT_LT(foretold_within(0, true), 1.6 * quiet);
-  const double least = std::sqrt(3.0) * 0.01;  // the newest step is foretold by none
+  const double least = std::sqrt(3.0) * 0.01;  // no filter can predict the newest step
   EXPECT_LT(foretold_within(0.01, true), 1.2 * least);
   EXPECT_GT(foretold_within(0.01, false), 1.25 * least);
 }
@@ -161,7 +161,7 @@ TEST(ToolMotion, GoesOnWithOneMarkerButNeedsAPoseFirst) {
             Reason::too_few_markers);
 }
 
-// A marker on the axis shows nothing of a turn about it.
+// A marker on the axis of rotation does not observe that rotation.
 TEST(ToolMotion, GrowsUnsureAlongATurnThatOneMarkerDoesNotShow) {
   Followed tool;
   tool.truth.rotation = Quaternion::Identity();
@@ -179,7 +179,7 @@ TEST(ToolMotion, GrowsUnsureAlongATurnThatOneMarkerDoesNotShow) {
     const MeasuredPoint point{model, tool.truth * model, 9e-8 * Matrix3::Identity()};
     ASSERT_EQ(tool.motion->update(test::frame_time(tool.frame++), {&point, 1}), Reason::none);
   }
-  const double stroke = k_angular_stroke_1_s * 2 * 0.2 * 0.2;  // rad, twice the place's
+  const double stroke = k_angular_stroke_1_s * 2 * 0.2 * 0.2;  // rad, twice the angle error
   EXPECT_GT(tool.motion->estimate().covariance(k_rotation + 2, k_rotation + 2),
             0.9 * stroke * stroke / 6);
 }
@@ -241,8 +241,8 @@ TEST(ToolMotion, GivesTheSameBitsEverywhere) {
   EXPECT_EQ(hash.value(), 17619910082872484812u);
 }
 
-// Poses at rest whose errors are correlated for 0.5 s and for 20 s: 40 rests of 30 s at 5 Hz. Rest
-// is found, and errors are as large as the stated covariance with its correlated part; without that
+// Static poses with errors correlated over 0.5 s and over 20 s: 40 runs of 30 s at 5 Hz. The
+// detector fires, and errors match the stated covariance with its correlated part. Without that
 // part they are many times as large.
 TEST(ToolMotion, StatesCorrelatedErrorsBesideItsCovariance) {
   constexpr double k_fast_m = 0.0004, k_slow_m = 0.0003, k_period_s = 0.2;

@@ -1,5 +1,5 @@
-// How a track's noise follows its innovations, step by step by the formulas, and what a track
-// takes.
+// Adaptation of a motion track's process noise to its innovations against the formulas, step by
+// step; updates by poses and by single markers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ struct Track {
   std::unique_ptr<RestSums> sums = std::make_unique<RestSums>();
   ToolMotionSettings settings;
 
-  // Without rests: the filter alone answers.
+  // Without static detection: the estimate is the filter's.
   static Track restless() {
     Track track;
     track.settings.rest.frames_min = 1000;
@@ -47,8 +47,8 @@ double clamped(double scale, const AdaptationSettings& settings) {
   return std::min(std::max(scale, settings.floor), settings.ceiling);
 }
 
-// A tool that swings, rests and is seen at uneven times: each factor moves by its own chi-square,
-// by as many frames as have passed, four at most.
+// A tool that swings, is static and is measured at irregular times. Each factor follows its own
+// chi-square, by the number of frames elapsed, at most four.
 TEST(TrackAdaptation, MovesEachFactorByItsChiSquareAndTheTimePassed) {
   Random random(1);
   Track track = Track::restless();
@@ -94,7 +94,8 @@ TEST(TrackAdaptation, MovesEachFactorByItsChiSquareAndTheTimePassed) {
   EXPECT_GT(at_ceiling, 5);
 }
 
-// The filter's own mean and covariance, propagated with the factors before, are what it corrects.
+// Each update propagates the filter's mean and covariance with the previous factors, then corrects
+// them.
 TEST(TrackAdaptation, PropagatesWithItsFactorsAndCorrects) {
   Random random(2);
   Track track = Track::restless();
@@ -115,8 +116,8 @@ TEST(TrackAdaptation, PropagatesWithItsFactorsAndCorrects) {
   }
 }
 
-// Loosened by a covariance of its own each frame: what of it counts follows the correlation of
-// successive innovations, and the linear factor moves by the rest of the innovation alone.
+// A random covariance is added in each frame. Its factor follows the correlation of successive
+// innovations; the linear noise factor follows the remaining share of the innovation.
 TEST(TrackAdaptation, CountsALooseningByTheCorrelationOfInnovations) {
   Random random(3);
   Track track = Track::restless();
@@ -173,8 +174,8 @@ TEST(TrackAdaptation, CountsALooseningByTheCorrelationOfInnovations) {
   EXPECT_GT(most, 1.1);
 }
 
-// One and two markers, after one pose or many: the motion goes on with the noise of the briskest,
-// and with what strokes add since the newest pose.
+// One and two markers after one pose or many: the prediction uses the largest recent process noise
+// plus the process noise during occlusion since the newest pose.
 TEST(TrackAdaptation, FollowsMarkersWithStrokesAndTheBriskestNoise) {
   for (const int poses : {1, 40}) {
     Random random(4);
@@ -201,7 +202,7 @@ TEST(TrackAdaptation, FollowsMarkersWithStrokesAndTheBriskestNoise) {
                   linear_stroke_1_s(expected.velocity_m_s), hidden_s, seconds);
       add_strokes(expected.covariance, k_rotation, expected.angular_velocity_rad_s,
                   k_angular_stroke_1_s, hidden_s, seconds);
-      const std::size_t count = frame % 2 == 0 ? 1 : 3;  // a third one does not count
+      const std::size_t count = frame % 2 == 0 ? 1 : 3;  // a third marker is ignored
       for (std::size_t i = 0; i < std::min<std::size_t>(count, 2); ++i)
         (void)correct_by_point(expected, points[i]);
       ASSERT_EQ(track.update(time, std::span(points).first(count)), Reason::none);

@@ -1,4 +1,4 @@
-// What a track takes, what it forgets, and what it says at rest.
+// Limits of a motion track: accepted measurements, reset after a gap, and the static estimate.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -19,7 +19,7 @@ struct Track {
   std::unique_ptr<RestSums> sums = std::make_unique<RestSums>();
   ToolMotionSettings settings;
 
-  // Without rests: the filter alone answers.
+  // Without static detection: the estimate is the filter's.
   static Track restless() {
     Track track;
     track.settings.rest.frames_min = 1000;
@@ -62,7 +62,8 @@ TEST(TrackLimits, TakeAPoseAtEachAndNoneBeyond) {
   EXPECT_EQ(reason([](UncertainPose& m) { m.covariance(0, 0) = -1; }), bad);
 }
 
-// A silence of just the gap goes on, a longer one starts anew; markers alone need a pose within it.
+// A gap of exactly the limit continues the motion, a longer one restarts it. Single markers need a
+// pose within the gap.
 TEST(TrackLimits, GoOnAfterASilenceOfTheGapAndNoLonger) {
   for (const std::int64_t beyond : {0, 1}) {
     Random random(6);
@@ -89,7 +90,7 @@ TEST(TrackLimits, GoOnAfterASilenceOfTheGapAndNoLonger) {
   }
 }
 
-// Nothing of before is left: each figure is a fresh track's.
+// After a reset each value equals that of a new track.
 TEST(TrackLimits, LeaveNothingOfAForgottenMotion) {
   Random random(7);
   Track used, fresh;
@@ -106,7 +107,7 @@ TEST(TrackLimits, LeaveNothingOfAForgottenMotion) {
   EXPECT_EQ(used.at.noise_scale().linear, 1);
   EXPECT_EQ(used.at.noise_scale().angular, 1);
   EXPECT_EQ(used.at.partial_noise_scale(used.settings).linear, used.settings.partial_noise);
-  for (int frame = 0; frame < 120; ++frame) {  // also stamped before what was forgotten
+  for (int frame = 0; frame < 120; ++frame) {  // time stamps begin before those of the reset motion
     if (frame > 60) truth.translation += random.vector(0.004);
     const UncertainPose measured = seen(truth, test::frame_time(frame), random);
     // Also before the second pose, whose innovation is the first one.
@@ -127,7 +128,8 @@ TEST(TrackLimits, LeaveNothingOfAForgottenMotion) {
   }
 }
 
-// At rest: the window's mean and drift, the filter's accelerations, and nothing between them.
+// Static: mean and drift of the window, the filter's accelerations, and zero covariance between
+// them.
 TEST(TrackAtRest, EstimatesWhatTheWindowSaysAndWhatTheFilterSaysOfAccelerations) {
   Random random(8);
   Track resting, filter = Track::restless();
@@ -186,7 +188,8 @@ TEST(TrackAtRest, EstimatesWhatTheWindowSaysAndWhatTheFilterSaysOfAccelerations)
   EXPECT_GT(drifts, 3);
 }
 
-// From a rest on markers go on where the rest was, with what was loosened since.
+// After a static phase single markers continue from the static estimate, inflated by what loosen()
+// has added since.
 TEST(TrackAtRest, GivesMarkersWhatWasLoosenedSince) {
   Random random(9);
   Track track;
@@ -218,7 +221,7 @@ TEST(TrackAtRest, GivesMarkersWhatWasLoosenedSince) {
   EXPECT_LT((track.estimate().pose.translation - expected.pose.translation).norm(), 1e-12);
 }
 
-// The same track with sums of its own.
+// The same track with its sums stored outside.
 TEST(TrackAtRest, IsThatOfTheToolMotionThatOwnsItsSums) {
   Random random(11);
   Track track;
@@ -244,7 +247,7 @@ TEST(TrackAtRest, IsThatOfTheToolMotionThatOwnsItsSums) {
   EXPECT_EQ(motion->update(seen(truth, test::frame_time(39), random)), Reason::frame_doubled);
 }
 
-// A motion moves with its frame, at rest and not.
+// move() transforms a motion with its frame, static or not.
 TEST(TrackAtRest, MovesWithItsFrame) {
   for (const bool rests : {false, true}) {
     Random random(10);

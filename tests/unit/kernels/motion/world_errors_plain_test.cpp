@@ -1,4 +1,4 @@
-// The filters of the world's errors against the textbook's equations with whole matrices.
+// The world error filters against a textbook Kalman filter with full matrices.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -21,13 +21,14 @@ using Square = Eigen::Matrix<double, k_states, k_states>;
 using Seen = Eigen::Matrix<double, 6, k_states>;
 using Gain = Eigen::Matrix<double, k_states, 6>;
 
-// By coefficients: Eigen's blocked product takes a second to compile for each pair of sizes.
+// Coefficient-wise: Eigen's blocked product takes a second to compile for each pair of sizes.
 template <class A, class B>
 Eigen::Matrix<double, A::RowsAtCompileTime, B::ColsAtCompileTime> product(const A& a, const B& b) {
   return a.lazyProduct(b);
 }
 
-// The state is (e, b, c, t): the headset's error, where the body is, the shared errors.
+// The state is (e, b, c, t): the headset's error, the body's pose, the shared errors, the time
+// offset.
 struct Plain {
   State state = State::Zero();
   Square covariance = Square::Identity();
@@ -122,7 +123,8 @@ BodySight sight_of(const Pose& body, Random& random, double off_m = 0) {
   return sight;
 }
 
-// Sights that are explained, single ones that are not, and nine in a row of another world.
+// Measurements that pass the chi-square test, single ones that fail, and nine in a row after a
+// jump.
 TEST(WorldErrors, AreThoseOfTheTextbooksFilterSightBySight) {
   Random random(5);
   WorldErrors world;
@@ -146,7 +148,7 @@ TEST(WorldErrors, AreThoseOfTheTextbooksFilterSightBySight) {
   EXPECT_EQ(forgotten, 1);
 }
 
-// A sight waits until each factor has had its share; then the next one is taken.
+// add() refuses a measurement while a factor still has to process the previous one.
 TEST(WorldErrors, TakeASightOnlyWhereNoneWaits) {
   Random random(6);
   const Pose body{random.rotation(), Vector3(0.4, 0.1, -0.3)};
@@ -169,7 +171,7 @@ TEST(WorldErrors, TakeASightOnlyWhereNoneWaits) {
   EXPECT_TRUE(world.add(sight_of(body, random)));
 }
 
-// A covariance that is none changes nothing of what was found.
+// A measurement with an invalid covariance does not change the estimates.
 TEST(WorldErrors, LeaveOutASightWithoutACovariance) {
   Random random(7);
   const Pose body{random.rotation(), Vector3(0.4, 0.1, -0.3)};

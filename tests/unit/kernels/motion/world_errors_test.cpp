@@ -28,7 +28,7 @@ Pose moved(const Pose& pose, const Vector6& by) {
           pose.translation + by.head<3>()};
 }
 
-// A body that stands still, before a headset whose error is `drift` times what is declared.
+// A static body; the headset's error is `drift` times the declared one.
 class Body {
  public:
   Body(double drift, const SharedErrors& errors, std::uint64_t seed)
@@ -42,7 +42,8 @@ class Body {
     seen.walked = {first_ ? 0 : k_kept, spread(k_drift_m, k_drift_rad)};
     first_ = false;
     seen.covariance = spread(k_fit_m, k_fit_rad);
-    // As a body that wanders through the picture: a sigma moves it by some millimetres.
+    // As for a body that moves across the image: one standard deviation moves it by some
+    // millimetres.
     for (int error = 0; error < k_shared_errors; ++error)
       seen.by_errors.col(error) << 0.004 * random_.vector(1), 0.002 * random_.vector(1);
     Vector6 noise;
@@ -110,7 +111,7 @@ TEST(WorldErrors, LikeliestFactorIsTheHeadsetsOwn) {
   }
 }
 
-// A sight beside all others, as of a wrong labeling, moves nothing.
+// A single outlier, for example of a wrong labeling, does not change the estimates.
 TEST(WorldErrors, LeaveOutASightThatNothingExplains) {
   SharedErrors errors = SharedErrors::Zero();
   errors(4) = 2;
@@ -124,7 +125,7 @@ TEST(WorldErrors, LeaveOutASightThatNothingExplains) {
   EXPECT_EQ(world.sights(), 61);
 }
 
-// After a jump of the headset's world the body's place is unknown again, what was found stays.
+// After a jump of the headset's world the body's pose is unknown again; the estimated errors stay.
 TEST(WorldErrors, BeginAnewWhereTheWorldJumps) {
   SharedErrors errors = SharedErrors::Zero();
   errors(5) = 3;
