@@ -34,7 +34,7 @@ Vector6 difference(const Pose& a, const Pose& b, const Vector3& at) {
   return out;
 }
 
-// What a filter with this expectation makes of a pose: the mean of both, by their information.
+// Returns the information-weighted mean of the prediction and a measured pose (Kalman update).
 ExpectedPose fused(const ExpectedPose& expected, const Pose& pose, const Matrix6& covariance) {
   const Matrix6 gain =
       expected.covariance * pose_factor(expected.covariance + covariance).value.inverse();
@@ -71,12 +71,11 @@ TEST(AgreedPose, LeadsAFilterToWhereMarkersAndExpectationAgree) {
   }
 }
 
-// Three markers across the sight, one 8 mm beside the line of the others: a turn about it moves
-// that one along its ray, and beside it only by a cosine.
+// Three markers across the line of sight, one of them 8 mm from the line of the others. A rotation
+// about that line moves this marker along its ray; across the ray it moves only with the cosine.
 Tool nearly_straight() { return test::tool_of<3>({{-60, 0, 0}, {10, 8, 0}, {60, 0, 0}}); }
 
-// A still tool, frame after frame, as a filter takes it: the error of the turn about the line in
-// sigmas, squared.
+// Static tool, filtered frame by frame. Returns the NEES of the rotation about the line.
 template <class Reading>
 double honesty(const Reading& reading) {
   constexpr int k_runs = 200, k_frames = 60;
@@ -92,7 +91,7 @@ double honesty(const Reading& reading) {
     known.T_camera_tool.translation =
         truth * mean + 0.001 * noise() - known.T_camera_tool.rotation * mean;
     for (int frame = 0; frame < k_frames; ++frame) {
-      known.covariance += known_to(0.0005, 0.03);  // it might move
+      known.covariance += known_to(0.0005, 0.03);  // process noise
       const auto markers = test::weighted_view(tool, truth, k_usual, 1, random);
       reading(markers, mean, known);
     }
@@ -118,8 +117,8 @@ TEST(AgreedPose, LeadsNoFilterAwayWhereOnlyACosineTellsATurn) {
   EXPECT_GT(alone, 2 * agreed) << "else there is nothing to mend";
 }
 
-// Two sure markers and two that may be anywhere near: all but the turn about the sure ones' line is
-// known. A filter must take the place that goes with the turn from it, though the step turns far.
+// Two precise and two imprecise markers: only the rotation about the precise ones' line is
+// uncertain. The filter's position must match the fit with the prior, also after a large rotation.
 TEST(AgreedPose, ItsReferenceGoesStraightOnHoweverFarTheStepTurns) {
   Random random(4);
   const Tool tool = test::five_marker_pen();
@@ -147,8 +146,8 @@ TEST(AgreedPose, ItsReferenceGoesStraightOnHoweverFarTheStepTurns) {
   EXPECT_GT(most_turn, 0.2) << "else no step turned far";
 }
 
-// Tilted by less than the ranges can show: both minima are some degrees off, and each states the
-// sureness of its own slope.
+// The tilt is smaller than the ranges can resolve. Both minima are some degrees off, and the
+// covariance of each describes its own slope alone.
 TEST(AgreedPose, StatesFaceOnWhatTheRangesShow) {
   Random random(5);
   const Tool tool = test::flat_tool();
@@ -205,7 +204,7 @@ TEST(AgreedPose, StatesItsStepsAndTheChiSquareOfMarkersAndExpectation) {
     ASSERT_EQ(agreed.reason, Reason::none);
     EXPECT_EQ(agreed.steps, fit.steps);
     EXPECT_EQ(agreed.chi_square, fit.chi_square);
-    // From where both agree: the markers' own step, information and chi-square.
+    // At the pose where both agree: the markers' own step, information and chi-square.
     const NearPose near = near_pose(markers, fit.T_camera_tool, reference);
     EXPECT_EQ(agreed.covariance, near.covariance);
     EXPECT_EQ(agreed.T_camera_tool.translation, near.T_camera_tool.translation);

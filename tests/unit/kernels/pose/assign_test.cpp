@@ -66,7 +66,7 @@ TEST(Assign, LetsTheToolThatWasPredictedThereKeepWhatNoiseAloneWouldGiveAway) {
     labeling.predicted_worth_m2 = 2e-5;
     return labelings_of({labeling});
   };
-  // 4 rms^2 may be 2e-5 more than the stranger's 4e-6.
+  // Sums of squares: the owner's 4 rms^2 may exceed the stranger's 4e-6 by 2e-5.
   EXPECT_EQ(outcome_of({stranger, owner(0.0024)}).chosen, (std::vector<int>{-1, 0}));
   EXPECT_EQ(outcome_of({stranger, owner(0.0025)}).chosen, (std::vector<int>{0, -1}));
   const auto more = labelings_of({labeling_of({0, 1, 2, 3, 4}, 0.004)});
@@ -157,7 +157,7 @@ AssignWork work_of(const std::vector<Labelings>& per_tool) {
   return assign_markers(per_tool, chosen, reasons);
 }
 
-// Each waiting tool is looked at once a round, a tool that was served no more.
+// Each round tests every waiting tool once; a tool with a labeling is not tested again.
 TEST(Assign, CountsEachLabelingThatItLooksAt) {
   const auto own = [](std::int16_t first) {
     const auto next = [first](int i) { return static_cast<std::int16_t>(first + i); };
@@ -174,7 +174,7 @@ TEST(Assign, CountsEachLabelingThatItLooksAt) {
   EXPECT_EQ(work_of({own(0), own(0)}).rounds, 1);
 }
 
-// All but the last labeling of each tool hold the marker that goes first.
+// All but the last labeling of each tool contain the marker that is taken first.
 TEST(Assign, LooksAtNoMoreThanItsWorst) {
   for (const int tools : {1, 2, 5, k_tools_max}) {
     std::vector<Labelings> per_tool(static_cast<std::size_t>(tools));
@@ -223,10 +223,10 @@ TEST(Assign, ReadsNoMoreLabelingsThanAreKept) {
   EXPECT_EQ(work_of({first, labelings}).tests, 2 + k_labelings_max);
 }
 
-// The squares' sum is of all markers: fewer rms count more with more of them.
+// The sum of squares is over all markers: a small rms difference counts more with more markers.
 TEST(Assign, ComparesTheSumOfSquaresLessAPredictionsWorth) {
   Labeling worthless = labeling_of({0, 1, 2, 3}, 0.002), worth = labeling_of({0, 1, 2, 3}, 0.003);
-  // 4 x 4e-6 and 4 x 9e-6: 2e-5 more.
+  // 4 x 4e-6 and 4 x 9e-6: a difference of 2e-5.
   for (const double worth_m2 : {1.9e-5, 2.1e-5}) {
     worth.predicted_worth_m2 = worth_m2;
     const bool second = worth_m2 > 2e-5;
@@ -237,8 +237,8 @@ TEST(Assign, ComparesTheSumOfSquaresLessAPredictionsWorth) {
   }
 }
 
-// Those of another number of markers, the chosen one and, behind a rival, those that nothing
-// foretold are passed over without a look.
+// rival_of() skips labelings with another number of markers, the chosen one and, once it has a
+// rival, those that were not predicted.
 TEST(Assign, CountsTheRivalsThatItLooksAt) {
   Labelings labelings = labelings_of(
       {labeling_of({0, 1, 2}, 0.001), labeling_of({0, 1}, 0.001),

@@ -1,5 +1,5 @@
-// A whole frame's markers: each as it is measured alone, what they count as work, and how a range's
-// sigma follows from its samples.
+// Back-projection of a frame's markers: equality with single markers, work counts, and the range's
+// sigma from its samples.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 constexpr int k_side = 128;
 constexpr double k_range_m = 0.6;
 
-// Flat discs that face the camera, everywhere at one range.
+// Flat discs that face the camera; the whole frame has one range.
 struct Scene {
   std::vector<std::uint16_t> bright = std::vector<std::uint16_t>(k_side * k_side, 20000);
   std::vector<std::uint16_t> depth = std::vector<std::uint16_t>(k_side * k_side, 600);
@@ -57,7 +57,7 @@ struct Scene {
                                marker));
     return marker;
   }
-  // Takes the depth of the pixels within this distance away.
+  // Removes the depth of all pixels within this distance.
   void blind(const Vector2& middle, double within_px) {
     for (int y = 0; y < k_side; ++y)
       for (int x = 0; x < k_side; ++x)
@@ -102,7 +102,7 @@ BackProjectWork sum_of(const BackProjectWork& a, const BackProjectWork& b) {
           a.samples + b.samples, a.unwrapped + b.unwrapped};
 }
 
-// Each field of each marker, where a blob without a ray lies between them.
+// Each field of each marker; a blob without a ray is among them.
 TEST(BackProjectFrame, HasEachBlobsMarkerInOrderButThoseWithoutARay) {
   Scene scene;
   scene.camera.lens = Lens::brown;
@@ -110,7 +110,7 @@ TEST(BackProjectFrame, HasEachBlobsMarkerInOrderButThoseWithoutARay) {
   scene.camera.field_tangent_max = 0.3;
   scene.settings.bias = {0.004, 0, 0.001, 0.1, 1};
   scene.add({30.2, 40.7}, 33).flags = k_blob_saturated;
-  scene.add({1, 1}, 30);  // beyond the lens
+  scene.add({1, 1}, 30);  // outside the lens's field
   scene.add({80.1, 90.3}, 41).flags = k_blob_has_neighbour;
   scene.add({60.1, 20.3}, 29).flags = k_blob_uneven;
   scene.blind({60.1, 20.3}, 9);
@@ -131,7 +131,7 @@ TEST(BackProjectFrame, HasEachBlobsMarkerInOrderButThoseWithoutARay) {
   EXPECT_EQ(items[0].flags, k_marker_saturated);
   EXPECT_EQ(items[1].flags, k_marker_has_neighbour);
   EXPECT_EQ(items[2].flags, k_marker_uneven | k_marker_no_depth);
-  // 4 mm, and 1 mm by a thousand counts: 20000 are a twentieth of it.
+  // 4 mm plus 1 mm times 1000 / counts: at 20000 counts a twentieth of it.
   EXPECT_NEAR(items[0].bias_taken_m, 0.00405, 1e-9);
   EXPECT_NEAR(items[0].surface_range_m, k_range_m - 0.00405, 1e-9);
   EXPECT_EQ(items[0].peak, 20000);
@@ -145,10 +145,10 @@ TEST(BackProjectFrame, CountsTheSumOfItsBlobsWork) {
   both.camera.distortion = {-0.1, 0.02};
   both.settings.wrap_range_m = 1.0;
   both.nominal.radius_m = 0.008;
-  both.add({30.2, 40.7}, 35);  // as large as at its range
-  both.add({80.1, 90.3}, 5);   // as one a wrap behind
+  both.add({30.2, 40.7}, 35);  // expected size at its range
+  both.add({80.1, 90.3}, 5);   // expected size one wrap distance behind it
   both.add({64.1, 20.3}, 37);
-  both.blind({64.1, 20.3}, 2.5);  // by its ring
+  both.blind({64.1, 20.3}, 2.5);  // depth in the annulus only
   BackProjectWork sum;
   for (std::size_t i = 0; i < 3; ++i) {
     Scene one;
@@ -168,7 +168,7 @@ TEST(BackProjectFrame, CountsTheSumOfItsBlobsWork) {
   expect_work(both.project(), sum);
   EXPECT_NE(both.markers->items[1].flags & k_marker_wrapped, 0);
   EXPECT_NE(both.markers->items[2].flags & k_marker_ring_depth, 0);
-  // A blob without a ray is looked at, and takes its steps.
+  // A blob without a ray is counted, and so are its lens steps.
   both.camera.field_tangent_max = 0.01;
   const BackProjectWork none = both.project();
   EXPECT_EQ(both.markers->count, 0);
@@ -177,7 +177,7 @@ TEST(BackProjectFrame, CountsTheSumOfItsBlobsWork) {
   EXPECT_EQ(none.pixels, 0);
 }
 
-// The disc of half the area: its pixels are the samples, the square around it is looked at.
+// The samples are the pixels of the disc of half the area; the pixels read are its bounding square.
 TEST(BackProjectFrame, CountsTheSquareAroundTheInnerDiscAndItsPixels) {
   Scene scene;
   const Vector2 middle{30.2, 40.7};
@@ -212,8 +212,8 @@ TEST(BackProjectFrame, LooksAtNoMoreBlobsThanTheLimitAndHasNothingOfAFrameBefore
   EXPECT_EQ(scene.markers->incomplete, Reason::none);
 }
 
-// Large blobs: one alone takes what the others leave, of four each has its share, of samples as of
-// pixels.
+// Large blobs: a single one uses what the others leave, each of four has its share. The same holds
+// for samples and for pixels.
 TEST(BackProjectFrame, LeavesEachBlobItsShare) {
   for (const int count : {1, 4}) {
     for (const bool blind : {false, true}) {
@@ -224,7 +224,7 @@ TEST(BackProjectFrame, LeavesEachBlobItsShare) {
       for (int i = 0; i < count; ++i) {
         const Vector2 middle{i == 0 ? 64.0 : 20.0 + 25 * i, i == 0 ? 64.0 : 20.0};
         scene.add(middle, 2000);
-        if (blind) scene.blind(middle, 5);  // so that the ring is looked for
+        if (blind) scene.blind(middle, 5);  // so that the annulus is read
       }
       const BackProjectWork work = scene.project();
       EXPECT_LE(work.pixels, 90 * 4);
@@ -249,7 +249,8 @@ TEST(BackProjectFrame, MaximumIsTheLimitsForEachBlob) {
   expect_work(back_project_work_max(limits), {7, 42, 770, 91, 91});
 }
 
-// All samples alike: the spread is the sensor's step, and what is declared counts as two more.
+// Equal samples: the spread is the sensor's step, and the declared sigma counts as two more
+// samples.
 TEST(BackProjectFrame, StatesTheMeansErrorByNumberSpreadAndBias) {
   const auto sigma = [](int samples, double declared_m, double bias_m) {
     const double spread = 0.001 / 3;
@@ -267,7 +268,7 @@ TEST(BackProjectFrame, StatesTheMeansErrorByNumberSpreadAndBias) {
       const double radius = std::sqrt(area / std::numbers::pi);
       const int inner = pixels_within(middle, std::max(0.7 * radius, 0.72));
       EXPECT_NEAR(scene.measured(0).range_sigma_m, sigma(inner, 0.007, 0.0001), 1e-8) << area;
-      // By the ring: wider, and wider still where the blob is saturated.
+      // From the annulus the sigma is larger, and larger still if the blob is saturated.
       scene.blind(middle, std::max(0.7 * radius, 0.72));
       const int ring =
           pixels_within(middle, radius + 0.5) - pixels_within(middle, std::max(0.7 * radius, 0.72));
@@ -280,7 +281,7 @@ TEST(BackProjectFrame, StatesTheMeansErrorByNumberSpreadAndBias) {
   }
 }
 
-// With just a quarter of its pixels the inner half still counts.
+// A quarter of the inner disc's pixels is enough for a range from the inner disc.
 TEST(BackProjectFrame, TakesTheRingWhereLessThanAQuarterOfTheInnerPixelsHasDepth) {
   const Vector2 middle{30.2, 40.7};
   const double inner = 0.7 * std::sqrt(60 / std::numbers::pi);
@@ -297,7 +298,7 @@ TEST(BackProjectFrame, TakesTheRingWhereLessThanAQuarterOfTheInnerPixelsHasDepth
   }
 }
 
-// A marker that is merged with another: wider by its own radius, in pixels.
+// Merged with another marker: sigma is larger by its own radius in pixels.
 TEST(BackProjectFrame, WidensABlobThatIsLargerThanAMarkerByItsRadius) {
   const double radius_px = 250 * 0.008 / k_range_m;
   const double limit = 1.5 * std::numbers::pi * (radius_px + 1) * (radius_px + 1);

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double k_wall_m = 0.9;
 
-// One sphere (radius > 0) or a disc that faces the camera before a wall, a ray through each pixel's
-// 4 x 4 parts; where marker and wall mix, the depth is the marker's if it fills half.
+// One sphere (radius > 0) or a disc that faces the camera, in front of a wall; 4 x 4 rays per
+// pixel. Depth of a mixed pixel is the marker's if it fills at least half.
 struct Scene {
   Camera camera = hololens2_ahat();
   Vector3 centre_m{0.05, -0.03, 0.4};
@@ -25,7 +25,7 @@ struct Scene {
   double brightness = 20000;
   double noise_m = 0;
 
-  // Range along a unit ray to the marker, 0 beside it.
+  // Range along a unit ray to the marker; 0 if the ray misses it.
   [[nodiscard]] double range_along(const Vector3& ray) const {
     const double along = ray.dot(centre_m);
     if (shape == MarkerShape::disc) {
@@ -92,7 +92,7 @@ Blobs blobs_of(const Scene& scene, const Frame& frame) {
   return *blobs;
 }
 
-// The frame's one blob, measured.
+// Back-projects the frame's single blob.
 Marker marker_of(const Scene& scene, const FrameBuffer& buffer, const NominalMarker& nominal = {}) {
   const Frame frame = buffer.view({}, {}, 0);
   const Blobs blobs = blobs_of(scene, frame);
@@ -121,7 +121,7 @@ TEST(BackProject, FindsASpheresFrontPoint) {
 
 void blind(const Scene& scene, FrameBuffer& buffer, double within_px, bool saturate);
 
-// 40 degrees off the axis of a pinhole, near: the middle of what is seen lies 0.14 px further out.
+// Near, 40 degrees off the axis of a pinhole: the image centroid is 0.14 px too far from the axis.
 TEST(BackProject, MovesASpheresCentroidToWhereItsCentreProjects) {
   Scene scene;
   scene.camera.model.lens = Lens::pinhole;
@@ -135,12 +135,12 @@ TEST(BackProject, MovesASpheresCentroidToWhereItsCentreProjects) {
   EXPECT_LT((marker.centroid_px - centre).norm(), 0.05);
   EXPECT_LT((marker.ray - unproject(scene.camera.model, marker.centroid_px).value).norm(), 1e-6);
   EXPECT_NEAR(marker.ray.norm(), 1, 1e-15);
-  // A disc is left where it is seen.
+  // The centroid of a disc is not moved.
   EXPECT_EQ(marker_of(scene, buffer, {0.006, MarkerShape::disc}).centroid_px,
             blobs.items[0].centroid_px);
 }
 
-// Where the middle was moved to as where it was left.
+// At the corrected centroid of a sphere as at the unchanged one of a disc.
 TEST(BackProject, SaysHowTheRayTurnsWithThePixel) {
   Scene scene;
   scene.camera.model.lens = Lens::pinhole;
@@ -227,7 +227,7 @@ TEST(BackProject, AveragesTheNoiseOfItsPixels) {
   EXPECT_NEAR(marker_of(scene, scene.render()).surface_range_m, scene.front_m(), 0.003);
 }
 
-// Spoils the depth of pixels within this distance of the marker's middle.
+// Invalidates the depth of pixels within this distance of the marker's centre.
 void blind(const Scene& scene, FrameBuffer& buffer, double within_px, bool saturate) {
   const Vector2 middle = project(scene.camera.model, scene.centre_m).value;
   for (int y = 0; y < buffer.height; ++y) {
@@ -247,7 +247,7 @@ void blind(const Scene& scene, FrameBuffer& buffer, double within_px, bool satur
 TEST(BackProject, TakesTheRingWhereTheCentreHasNoDepth) {
   for (const bool saturate : {false, true}) {
     Scene scene;
-    scene.centre_m = {0.05, -0.03, 0.3};  // 5 px in radius
+    scene.centre_m = {0.05, -0.03, 0.3};  // radius 5 px
     FrameBuffer buffer = scene.render();
     blind(scene, buffer, 3.6, saturate);
     const Marker marker = marker_of(scene, buffer);
@@ -264,7 +264,7 @@ TEST(BackProject, SaysSoWhereThereIsNoDepthAtAll) {
   const Marker blinded = marker_of(scene, buffer);
   EXPECT_EQ(blinded.flags, k_marker_no_depth);
   EXPECT_EQ(blinded.surface_range_m, 0);
-  for (auto& value : buffer.depth) value = 4090;  // from here on invalid
+  for (auto& value : buffer.depth) value = 4090;  // invalid from this value on
   EXPECT_EQ(marker_of(scene, buffer).flags, k_marker_no_depth);
   buffer.depth.clear();
   EXPECT_EQ(marker_of(scene, buffer).flags, k_marker_no_depth);
@@ -296,7 +296,7 @@ TEST(BackProject, FindsAndFlagsAWrappedRange) {
   }
 }
 
-// Of a blob that the border cuts a part is seen: its area shows neither a wrap nor a second marker.
+// The area of a blob cut by the border indicates neither a wrapped range nor a second marker.
 TEST(BackProject, ConcludesNothingFromTheAreaOfABlobThatTheBorderCuts) {
   const auto cut_marker_of = [](const Scene& scene, const NominalMarker& nominal) {
     const FrameBuffer buffer = scene.render();
@@ -330,7 +330,7 @@ TEST(BackProject, ExpectsTheAreaThatASphereCovers) {
   for (const double side : {0.0, 0.3, 0.7}) {
     Scene scene;
     scene.centre_m = {side * 0.25, 0.02, 0.25};
-    scene.camera.threshold = 10200;  // half the brightness: the rim itself
+    scene.camera.threshold = 10200;  // half the brightness: the edge itself
     const Marker marker = marker_of(scene, scene.render());
     const double expected = expected_area_px(scene.camera.model, marker.centroid_px, scene.radius_m,
                                              scene.centre_m.norm());
@@ -352,7 +352,7 @@ TEST(BackProject, RefusesABlobOutsideTheLens) {
                               scene.camera.depth, {}, marker));
 }
 
-// The worst input: as large as a blob gets, at the corner, its centre blind.
+// Worst input: the largest blob, at a corner, without depth at its centre.
 TEST(BackProject, BoundsItsWorkOnAHugeBlob) {
   Scene scene;
   scene.camera.model.lens = Lens::pinhole;

@@ -15,7 +15,7 @@
 namespace glint {
 namespace {
 
-// The same by singular value decomposition, which loops until it has converged.
+// Reference: singular value decomposition, which iterates until it has converged.
 Quaternion by_svd(const Matrix3& c) {
   const Eigen::JacobiSVD<Matrix3> svd(c, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Matrix3 u = svd.matrixU();

@@ -94,7 +94,7 @@ TEST(BiasCorrection, HoldsAtBothEndsOfEachRangeAndNotBeyond) {
   }
 }
 
-// Of a tool beside the axis, turned: the three figures by their angles.
+// A rotated tool beside the axis: range, angle off the axis and tilt against their angles.
 TEST(BiasCorrection, SeesTheRangeTheAngleOffTheAxisAndTheTilt) {
   const SeenFrom seen = seen_from(
       {from_rotation_vector({0.7, 0, 0}), Vector3(0, -std::sin(0.3), std::cos(0.3)) * 0.8});

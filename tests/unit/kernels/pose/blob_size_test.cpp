@@ -27,7 +27,7 @@ struct Drawn {
   Vector2 middle_px = Vector2::Zero();
 };
 
-// Pixels whose middle one of the discs holds, but none beyond `end_px` along x.
+// Pixels whose centre is inside one of the discs, up to `end_px` along x.
 Drawn draw(const std::vector<Disc>& discs, double end_px = 64) {
   Drawn drawn;
   for (int y = 0; y < 64; ++y) {
@@ -60,7 +60,7 @@ double strip_of(std::uint32_t area_px, const Tool& tool, std::uint8_t flags = 0)
   return strip_px(marker, rays, tool, k_range_m);
 }
 
-// An axis's variance that the blob's size adds.
+// Variance of one axis that the blob's size adds.
 double added(double own_strip_px) {
   MarkerVariance variance{0, 0, 0, 1};
   widen(variance, own_strip_px);
@@ -129,7 +129,7 @@ TEST(BlobSize, SaysHowFarAHiddenPartMovesTheMiddle) {
   for (int trial = 0; trial < k_trials; ++trial) {
     const double radius_px = random.within(2.5, 5);
     const Vector2 middle = somewhere(random);
-    const double kept_px = random.within(-0.5, 0.4) * radius_px;  // beyond the middle
+    const double kept_px = random.within(-0.5, 0.4) * radius_px;  // beyond the centre
     const Drawn drawn = draw({{middle, radius_px + k_rim_px}}, middle.x() + kept_px);
     tally.add(0.5 * (drawn.middle_px - middle).squaredNorm(),
               added(strip_of(drawn.area_px, tool_of_radius(radius_px))));
@@ -162,7 +162,7 @@ TEST(BlobSize, BlamesNoMarkerForWhatAllHave) {
   EXPECT_EQ(mixed.beyond(2.0), 2.0);
 }
 
-// The area beyond that of the marker's disc, spread along half its rim.
+// Rim offset: the area in excess of the marker's disc, divided by half its rim.
 TEST(BlobSize, IsTheAreaBeyondTheDiscsAlongHalfItsRim) {
   constexpr double k_pi = std::numbers::pi;
   for (const double radius_px : {1.5, 3.0, 6.0}) {

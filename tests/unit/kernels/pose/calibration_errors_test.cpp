@@ -18,7 +18,7 @@ constexpr MarkerVariance k_variance{0.01, 0, 0.01, 0.0015 * 0.0015};
 constexpr double k_marker_sigma_m = 0.0003;
 constexpr CameraUncertainty k_stated;
 
-// In their stated sigmas.
+// In declared standard deviations.
 struct Errors {
   ErrorVector sigmas = ErrorVector::Zero();
 
@@ -30,7 +30,7 @@ struct Errors {
   }
 };
 
-// A tool as a device with these errors measures it.
+// Measurements of a tool by a device with these errors.
 struct Seen {
   std::vector<WeightedMarker> markers;
   std::vector<LocalRays> rays;
@@ -65,7 +65,7 @@ Pose held_pose(const Tool& tool, Random& random) {
   return {turn, place - turn * test::mean_of_markers(tool)};
 }
 
-// Fits of a hand-held tool; the pose is the true one.
+// Sums over fits of a hand-held tool, each at the true pose.
 CalibrationErrors seen_by(const Tool& tool, const Errors& errors, int fits, Random& random) {
   CalibrationErrors sums;
   for (int n = 0; n < fits; ++n) {
@@ -81,7 +81,7 @@ ErrorMatrix covariance_of(const CalibrationErrors& sums) {
   return matrix.llt().solve(ErrorMatrix::Identity());
 }
 
-// Errors of the stated distributions: the estimate's own lie within its covariance.
+// Errors drawn from the declared distributions: NEES of the estimate.
 TEST(CalibrationErrors, LieWithinTheirCovariance) {
   Random random(7);
   double squares = 0;
@@ -97,12 +97,13 @@ TEST(CalibrationErrors, LieWithinTheirCovariance) {
     const ErrorVector off = covariance * sums.pull - errors.sigmas;
     squares += off.dot(covariance.llt().solve(off)) / (k_common_errors + 3 * tool.marker_count);
   }
-  // What widens the noise is not in these measurements, so that the errors are a little smaller.
+  // These measurements lack the correlated and uncalibrated errors that inflate the stated noise,
+  // so the estimate's errors are a little smaller.
   EXPECT_GT(squares / k_devices, 0.5);
   EXPECT_LT(squares / k_devices, 1.2);
 }
 
-// One error of four sigmas.
+// One error of four standard deviations.
 TEST(CalibrationErrors, FindARangeOffsetAndAMarkerOutOfPlace) {
   Random random(8);
   const Tool tool = test::random_tool(random, 5);
@@ -116,8 +117,8 @@ TEST(CalibrationErrors, FindARangeOffsetAndAMarkerOutOfPlace) {
   const CalibrationErrors of_marker = seen_by(tool, marker, 60, random);
   const ErrorVector moved = covariance_of(of_marker) * of_marker.pull;
   EXPECT_LT(std::abs(moved(0)), 1);
-  // A motion of the whole tool is the pose's, and its size may be the focal length's: the shape is
-  // what shows.
+  // A translation of the whole tool is part of the pose, and its scale may be the focal length's.
+  // Only the shape is observable.
   const auto shape_of = [&tool](const ErrorVector& errors) {
     std::vector<double> distances;
     double sum = 0;
@@ -144,7 +145,7 @@ TEST(CalibrationErrors, FindARangeOffsetAndAMarkerOutOfPlace) {
   EXPECT_GT(largest, 0.006);
 }
 
-// A shift of all markers alike is a shift of the tool.
+// A common translation of all markers is a translation of the tool.
 TEST(CalibrationErrors, LeaveOpenWhatAPoseExplains) {
   Random random(9);
   const Tool tool = test::random_tool(random, 5);
@@ -176,7 +177,7 @@ TEST(CalibrationErrors, AddNothingOfAFitThatIsNotDetermined) {
   EXPECT_TRUE(sums.pull.isZero());
 }
 
-// Two markers that were taken for each other: no stated error, eight times as large, does that.
+// Two swapped markers: no declared error explains the residuals, even eight times as large.
 TEST(CalibrationErrors, AddNothingOfAWrongLabeling) {
   Random random(11);
   const Tool tool = test::random_tool(random, 5);
@@ -192,7 +193,7 @@ TEST(CalibrationErrors, AddNothingOfAWrongLabeling) {
   EXPECT_EQ(sums.fits, 0);
 }
 
-// The optimum from a pose beside it, its covariance, and how each common error moves it.
+// From a nearby pose: the optimum, its covariance and its derivatives by the common errors.
 TEST(CalibrationErrors, GiveTheOptimumAndWhatMovesIt) {
   Random random(12);
   for (int n = 0; n < 10; ++n) {

@@ -1,4 +1,4 @@
-// The sums of calibration errors and the optimum of a fit, by whole matrices.
+// Sums of the calibration errors and a fit's optimum against full matrices.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -22,7 +22,7 @@ constexpr MarkerVariance k_variance{0.01, 0.003, 0.02, 0.0015 * 0.0015};
 constexpr CameraUncertainty k_stated{0.005, 0.02, 2, 0.004, 0.0009, 0.06, 0.6, 0.002};
 constexpr double k_marker_sigma_m = 0.0004;
 
-// A tool with noise on every measurement, its markers in an order of their own.
+// A tool with noise on every measurement; its markers are in reversed order.
 struct Seen {
   std::vector<WeightedMarker> markers;
   std::vector<LocalRays> rays;
@@ -45,7 +45,8 @@ struct Seen {
   }
 };
 
-// The three residuals of marker i, its place in the tool off by `moved` and its pixel by `pixel`.
+// The three residuals of marker i with its model position displaced by `moved` and its pixel by
+// `pixel`.
 Vector3 residuals(const Seen& seen, std::size_t i, const Pose& pose, const Vector3& moved,
                   const Vector2& pixel, double range_off_m) {
   const WeightedMarker& marker = seen.markers[i];
@@ -56,7 +57,8 @@ Vector3 residuals(const Seen& seen, std::size_t i, const Pose& pose, const Vecto
   const Vector3 apart = point / along - turned;
   Vector3 off(marker.across_first.dot(apart), marker.across_second.dot(apart),
               point.norm() - marker.range_m - range_off_m);
-  // What no calibration states widens each: of the pixel both ways, and of the range.
+  // Uncalibrated and correlated errors inflate each residual: both axes of the pixel, and the
+  // range.
   const double slow_px2 = 0.06 * 0.06 + 4 * 0.1 * 0.1;
   const double slow_m2 = 0.0009 * 0.0009 + 16 * 0.001 * 0.001;
   for (int k = 0; k < 2; ++k) {
@@ -68,7 +70,7 @@ Vector3 residuals(const Seen& seen, std::size_t i, const Pose& pose, const Vecto
   return off;
 }
 
-// Of the markers' mean and about it, as the fit's parameters are.
+// Parameters as in the fit: position of the markers' mean, rotation about it.
 Pose nudged(const Pose& pose, const Vector3& mean_m, int parameter, double by) {
   Vector3 turn = Vector3::Zero(), shift = Vector3::Zero();
   (parameter < 3 ? shift : turn)(parameter % 3) = by;
@@ -81,10 +83,10 @@ Pose nudged(const Pose& pose, const Vector3& mean_m, int parameter, double by) {
 struct Whole {
   Column f;
   Poses j;
-  Errors c;  // minus the derivatives by the errors, in sigmas
+  Errors c;  // minus the derivatives by the errors, per declared sigma
 };
 
-// Derivatives by differences of the residuals.
+// Numerical derivatives of the residuals.
 Whole whole_of(const Seen& seen, const Pose& pose) {
   const auto n = static_cast<Eigen::Index>(seen.markers.size());
   const Vector3 mean_m = mean_of(seen.markers), none = Vector3::Zero();
@@ -99,7 +101,7 @@ Whole whole_of(const Seen& seen, const Pose& pose) {
           (residuals(seen, i, nudged(pose, mean_m, p, k_h), none, still, 0) -
            residuals(seen, i, nudged(pose, mean_m, p, -k_h), none, still, 0)) /
           (2 * k_h);
-    // -C: what an error adds to the residuals as they are computed.
+    // -C: an error adds this to the computed residuals.
     const auto by = [&](int error, const Vector3& moved, const Vector2& pixel, double range_m) {
       const auto at = [&](double h) {
         return residuals(seen, i, pose, h * moved, h * pixel, h * range_m);
@@ -111,7 +113,8 @@ Whole whole_of(const Seen& seen, const Pose& pose) {
     by(2, none, {k_stated.principal_point_px, 0}, 0);
     by(3, none, {0, k_stated.principal_point_px}, 0);
     by(4, none, k_stated.focal_scale * (seen.rays[i].pixel - principal), 0);
-    // The marker as it is made lies elsewhere than the tool has it: the model's residual, negative.
+    // A marker's true position differs from the tool file's: the model's residual, with negative
+    // sign.
     for (int axis = 0; axis < 3; ++axis)
       by(k_common_errors + 3 * seen.of_tool[i] + axis, -k_marker_sigma_m * Vector3::Unit(axis),
          still, 0);
@@ -214,7 +217,7 @@ TEST(CalibrationSums, NeedThreeMarkersEachInFrontWithItsRayAndItsPlaceInTheTool)
   EXPECT_EQ(sums.fits, 4) << "nothing was added of the others";
 }
 
-// Of nine markers the first eight count.
+// Of nine markers only the first eight are used.
 TEST(CalibrationSums, TakeNoMoreMarkersThanAToolHas) {
   Random random(4);
   const Tool tool = test::random_tool(random, k_markers_per_tool_max);

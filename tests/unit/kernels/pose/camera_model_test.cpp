@@ -24,12 +24,12 @@ std::vector<double> opencv_distortion(const CameraModel& camera) {
   return {k.begin(), k.end()};
 }
 
-// OpenCV counts from the middle of the first pixel, Glint from its corner.
+// OpenCV's pixel origin is the first pixel's centre, Glint's is its corner.
 cv::Matx33d opencv_matrix(const CameraModel& c) {
   return {c.fx, 0, c.cx - 0.5, 0, c.fy, c.cy - 0.5, 0, 0, 1};
 }
 
-// A point that the lens sees somewhere in the frame.
+// A random point inside the frame and the lens's field.
 Vector3 random_point(const CameraModel& camera, std::mt19937& random) {
   std::uniform_real_distribution<double> part(0, 1);
   while (true) {
@@ -59,7 +59,7 @@ TEST(CameraModel, ProjectsAsOpenCvDoes) {
   }
 }
 
-// No two of its figures are alike, and none of the distortion's is small.
+// All parameters differ, and none of the distortion coefficients is small.
 CameraModel skewed_lens(Lens kind) {
   CameraModel camera;
   camera.lens = kind;
@@ -94,7 +94,7 @@ TEST(CameraModel, ProjectsThroughEveryTermOfTheDistortionAsOpenCvDoes) {
       const Result<Vector3> ray = unproject(camera, pixel.value);
       ASSERT_TRUE(ray);
       EXPECT_LT((ray.value - point.normalized()).norm(), 1e-9);
-      // How the ray turns from there, by differences.
+      // Derivatives of the ray by the pixel, against differences.
       int steps = 0;
       const TurningRay turning =
           unproject_turning(camera, pixel.value, k_ray_steps_max, steps).value;
@@ -107,7 +107,7 @@ TEST(CameraModel, ProjectsThroughEveryTermOfTheDistortionAsOpenCvDoes) {
   }
 }
 
-// The widest angle that the lens maps, and what lies beyond it.
+// The largest angle inside the lens's field, and just beyond it.
 TEST(CameraModel, EndsAtItsField) {
   for (const Lens kind : {Lens::brown, Lens::rational}) {
     CameraModel camera = skewed_lens(kind);
@@ -129,7 +129,7 @@ TEST(CameraModel, EndsAtItsField) {
   }
 }
 
-// A step more than none, and none without: what is taken is added.
+// The search succeeds with exactly the needed steps and fails with one less; counts accumulate.
 TEST(CameraModel, CountsTheStepsOfASearchForARay) {
   const CameraModel camera = skewed_lens(Lens::rational);
   int needed = 100;
@@ -147,10 +147,11 @@ TEST(CameraModel, CountsTheStepsOfASearchForARay) {
   EXPECT_EQ(taken, 2 * needed - 1) << "a pinhole takes none";
 }
 
-// The search begins where a pixel's step moves no ray: it ends at once, whatever steps are left.
+// The initial guess is at a fold of the lens, where the Jacobian is singular: the search ends at
+// once.
 TEST(CameraModel, EndsItsSearchWhereTheLensFolds) {
   CameraModel camera = skewed_lens(Lens::brown);
-  // 1 - 16 r^2 + 15 r^4 is 0 at r = 1, which is four times the distorted place.
+  // 1 - 16 r^2 + 15 r^4 is 0 at r = 1, which is four times the distorted radius.
   camera.distortion = {-16, 15, 0, 0, 0, 0, 0, 0};
   int steps = 0;
   const Vector2 pixel{camera.cx + 0.25 * camera.fx, camera.cy};
@@ -158,7 +159,7 @@ TEST(CameraModel, EndsItsSearchWhereTheLensFolds) {
   EXPECT_EQ(steps, 1);
 }
 
-// Within 45 degrees: further out OpenCV's fixed-point search no longer settles to 1e-6 px.
+// Within 45 degrees: further out OpenCV's fixed-point iteration does not converge to 1e-6 px.
 TEST(CameraModel, UnprojectsAsOpenCvDoes) {
   for (const CameraModel& camera : polynomial_lenses()) {
     std::mt19937 random(2);
@@ -200,8 +201,8 @@ TEST(CameraModel, FindsEveryPixelOfTheFrameAgain) {
   }
 }
 
-// Lenses wider than those that we ship: of a rational one the first guess is far off, the other
-// folds back within the frame.
+// Lenses wider than the presets: for the rational one the initial guess is far off, the other folds
+// back within the frame.
 std::vector<CameraModel> wide_lenses() {
   CameraModel rational;
   rational.lens = Lens::rational;
@@ -237,7 +238,7 @@ TEST(CameraModel, TurnsEveryPixelThatHasARayIntoIt) {
   }
 }
 
-// No step is spent on confirming what the last one found.
+// The search takes no extra step to confirm convergence.
 TEST(CameraModel, TakesAtMostFiveStepsThroughTheLensesThatWeShip) {
   for (const CameraModel& camera : polynomial_lenses()) {
     for (int y = 0; y <= camera.height; y += 2) {
@@ -289,7 +290,7 @@ TEST(CameraModel, RefusesWhatLiesBehindOrOutsideTheLens) {
   EXPECT_EQ(project(ahat, {2, 0, 1}).reason, Reason::out_of_range);  // 63 degrees off the axis
 }
 
-// r - 0.5 r^3 turns back at r = 0.816: a point beyond would fall onto the pixel of one before.
+// r - 0.5 r^3 has its maximum at r = 0.816: a point beyond would share a pixel with a nearer one.
 TEST(CameraModel, RefusesRaysBeyondThePolynomialsTurningPoint) {
   CameraModel camera = hololens1_short_throw().model;
   camera.distortion = {-0.5, 0, 0, 0, 0, 0, 0, 0};
@@ -305,7 +306,7 @@ TEST(CameraModel, RefusesRaysBeyondThePolynomialsTurningPoint) {
   EXPECT_FALSE(unproject(camera, {camera.cx + camera.fx * 0.6, camera.cy}));
 }
 
-// Every machine, compiler and optimisation must give these bits.
+// Bits are equal on every machine, compiler and optimisation level.
 TEST(CameraModel, GivesTheSameBitsEverywhere) {
   std::uint64_t hash = 14695981039346656037u;  // FNV-1a
   for (const CameraModel& camera : polynomial_lenses()) {

@@ -18,7 +18,7 @@ namespace {
 
 using test::Random;
 
-// A disc's marker lies where its surface is, so that ranges are exact.
+// For a disc the marker's centre is at its surface, so ranges are exact.
 Tool disc_tool() {
   Tool tool = test::tool_of<4>({{0, 0, 0}, {60, 0, 0}, {0, 80, 0}, {50, 50, 30}});
   tool.shape = MarkerShape::disc;
@@ -85,8 +85,8 @@ TEST(Candidates, TakeNoneWithoutAPlace) {
   EXPECT_TRUE(s.takes(marker));
 }
 
-// Of a sphere from the image's area by the factor to that area by the factor and a few pixels; of a
-// disc a tilt leaves less.
+// Limits for a sphere: the image's area divided by the factor, and the area times the factor plus a
+// few pixels. A tilt lowers the minimum of a disc.
 TEST(Candidates, TakeEachAreaFromTheLeastToTheLargestAndNoneBeyond) {
   for (const MarkerShape shape : {MarkerShape::sphere, MarkerShape::disc}) {
     Selection s;
@@ -122,7 +122,7 @@ TEST(Candidates, TakeEachAreaFromTheLeastToTheLargestAndNoneBeyond) {
   }
 }
 
-// Of a marker too small to be seen the slack alone is left, and that is taken.
+// For a marker without a visible image only the slack remains, and it is inclusive.
 TEST(Candidates, TakeJustTheSlackOfAMarkerWithoutAnImage) {
   Selection s;
   s.tool.marker_radius_m = 1e-20;
@@ -141,12 +141,12 @@ TEST(Candidates, StateTheNoiseAcrossTheRayByTheFocalLengthOrTheRanges) {
   s.settings.focal_px = 250;
   s.select();
   EXPECT_DOUBLE_EQ(s.candidates->across_variance_m2[0], std::pow(0.8 * 0.2 / 250, 2));
-  s.settings.focal_px = 0.5;  // however short
+  s.settings.focal_px = 0.5;  // any positive focal length
   s.select();
   EXPECT_DOUBLE_EQ(s.candidates->across_variance_m2[0], std::pow(0.8 * 0.2 / 0.5, 2));
 }
 
-// At just the gate's distance from where the first marker is predicted, and no further.
+// At the gate's distance from the first marker's predicted position, and just beyond.
 TEST(Candidates, AreNearAtEachGateAndNotBeyond) {
   Selection s;
   s.tool = test::tool_of<3>({{0, 0, 500}, {8000, 0, 500}, {0, 8000, 500}});
@@ -178,8 +178,8 @@ bool holds(const CandidateSet& set, std::size_t a) {
   return (set.word[a / 64] >> (a % 64) & 1) != 0;
 }
 
-// Against a plain pass over all markers: each that fits stands there once, those near a predicted
-// place first, and each set names just those near its own.
+// Reference: one pass over all markers. Each marker that fits is listed once, those near a
+// predicted position first. Each set contains just those near its own marker.
 TEST(Candidates, AreThoseOfAPlainPassWithThoseNearThePredictionFirst) {
   Random random(1);
   Selection s;
@@ -251,7 +251,7 @@ TEST(Candidates, AreNoneOfNoMarkersAndOfFewerThanNone) {
   }
 }
 
-// The tool's own bias takes the place of the camera's, of what an image gave.
+// The tool's own bias replaces the camera's; only for markers from an image.
 TEST(MarkerRange, IsTheSurfaceLessTheToolsOwnBiasAndARadiusMore) {
   Tool tool = disc_tool();
   Marker marker = marker_at(Vector3::UnitZ(), 0.6);

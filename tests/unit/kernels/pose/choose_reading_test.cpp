@@ -13,7 +13,7 @@ namespace {
 
 const Vector3 k_tip(0, 0, -0.1);
 
-// Turned by so much from the camera's axes.
+// A hypothesis rotated by this angle from the camera's axes.
 PoseReading reading_of(double radians, double chi_square, double surprise) {
   PoseReading reading;
   reading.T_camera_tool.rotation = from_rotation_vector(Vector3(radians, 0, 0));
@@ -36,7 +36,8 @@ TEST(ChooseReading, TakesTheLeastSumAndGivesTheOddsAgainstTheNextThatIsApart) {
 }
 
 TEST(ChooseReading, CountsASurpriseForNoMoreThanTheOddsOfWhatWasFollowed) {
-  // The mirrored pose fits by 3 better in each frame, and is 50 sigma from what is followed.
+  // The mirrored pose has a chi-square lower by 3 in each frame, and is 50 sigma from the followed
+  // one.
   double odds = 10;
   int frames = 0;
   ChosenReading chosen;
@@ -93,7 +94,7 @@ TEST(AreApart, BeginsAtACentimetreOfTheTipOrAnEighthOfARadian) {
   EXPECT_FALSE(are_apart(here, here, k_tip));
   EXPECT_FALSE(shifted(0.0099));
   EXPECT_TRUE(shifted(0.0101));
-  // About the tip, so that it stays where it is.
+  // Rotation about the tip, so that the tip does not move.
   const auto turned = [&](double radians, double sign) {
     Pose there;
     const Quaternion by = from_rotation_vector({0, radians, 0});
@@ -106,19 +107,19 @@ TEST(AreApart, BeginsAtACentimetreOfTheTipOrAnEighthOfARadian) {
     EXPECT_FALSE(turned(0.1295, sign));
     EXPECT_TRUE(turned(0.1305, sign));
   }
-  // A turn about the origin moves a tip that is far from it.
+  // A rotation about the origin moves a tip that is far from it.
   EXPECT_FALSE(are_apart({}, {from_rotation_vector({0.09, 0, 0}), Vector3::Zero()}, k_tip));
   EXPECT_TRUE(are_apart({}, {from_rotation_vector({0.11, 0, 0}), Vector3::Zero()}, k_tip));
 }
 
-// The followed reading is the one with the least surprise, up to the largest that it may have.
+// The followed hypothesis has the least squared Mahalanobis distance, up to an upper limit.
 TEST(ChooseReading, FollowsTheLeastSurpriseUpToItsLimit) {
   EXPECT_TRUE(
       chosen_of({reading_of(0.7, 3, 100), reading_of(0, 90, k_followed_surprise_most)}, 20).turned);
   EXPECT_TRUE(
       chosen_of({reading_of(0.7, 3, 100), reading_of(0, 90, k_followed_surprise_most + 1)}, 20)
           .unexpected);
-  // Of two that may be followed only the nearer one's chi-square is bounded.
+  // Of two that may be followed, only the nearer one's chi-square is bounded.
   PoseReading near = reading_of(0, 90, 4), far = reading_of(0.7, 90, 30);
   near.explained_most = far.explained_most = 20;
   for (const bool swapped : {false, true}) {
@@ -132,7 +133,8 @@ TEST(ChooseReading, FollowsTheLeastSurpriseUpToItsLimit) {
   EXPECT_DOUBLE_EQ(chosen_of({near, far}).odds, 30 - 4) << "less than the noise explains";
 }
 
-// Among equals the first; a surprise at its bound is none that was outweighed.
+// Ties: the first is chosen. A squared Mahalanobis distance at its bound does not count as
+// outweighed.
 TEST(ChooseReading, TakesTheFirstAmongEquals) {
   EXPECT_EQ(chosen_of({reading_of(0, 5, 5), reading_of(0.7, 5, 5), reading_of(1, 4, 6)}).index, 0);
   EXPECT_DOUBLE_EQ(chosen_of({reading_of(0, 5, 5), reading_of(0.7, 5, 5)}).odds, 0);
@@ -147,7 +149,7 @@ TEST(ChooseReading, WithoutAnExpectationComparesChiSquareAlone) {
   EXPECT_EQ(chosen.index, 1);
   EXPECT_DOUBLE_EQ(chosen.odds, 6);
   EXPECT_FALSE(chosen.turned || chosen.unexpected);
-  PoseReading torn = reading_of(0, 300, 0);  // followed by nothing: its chi-square counts whole
+  PoseReading torn = reading_of(0, 300, 0);  // without a prediction chi-square is not bounded
   torn.explained_most = 20;
   EXPECT_EQ(chosen_of({reading_of(0.7, 100, 0), torn}).index, 0);
 }

@@ -1,5 +1,5 @@
-// Five tools of five markers among twenty strays, at more and more noise: what the budgets of a
-// cell cost beside a search that may go on.
+// Correspondence of five tools of five markers among twenty stray reflections at increasing noise:
+// results lost to a cell's budgets, compared with an unlimited search.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -75,7 +75,7 @@ Outcome outcome_of(double sigma_m, const CorrespondSettings& settings, bool pred
   return outcome;
 }
 
-// A cell of 64 blobs, as platform/cells/default.toml has it.
+// A cell of 64 blobs, as in platform/cells/default.toml.
 CorrespondSettings within_a_cell() {
   CorrespondSettings settings;
   settings.focal_px = 253;

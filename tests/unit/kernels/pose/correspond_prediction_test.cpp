@@ -18,7 +18,7 @@ using test::Scene;
 
 const Pose k_truth{Quaternion::Identity(), Vector3(0, 0, 0.4)};
 
-// The first `seen` markers of a tool at k_truth, as they are.
+// The first `seen` markers of a tool at k_truth, without noise.
 Markers view_of(const Tool& tool, int seen) {
   std::vector<Vector3> points;
   for (std::size_t i = 0; i < static_cast<std::size_t>(seen); ++i)
@@ -42,7 +42,7 @@ TEST(CorrespondPrediction, BelievesThreeMarkersOnlyWhereTheToolCanHaveGot) {
   EXPECT_EQ(find(3, 0.021, 0.02), 0);
   EXPECT_GE(find(4, 0.021, 0.02), 1);  // four agree by chance far less often
   EXPECT_EQ(find(3, 0.049, 1.0), 1);
-  EXPECT_EQ(find(3, 0.051, 1.0), 0);  // never further than where any are looked for first
+  EXPECT_EQ(find(3, 0.051, 1.0), 0);  // never beyond the gate of the first search
 }
 
 TEST(CorrespondPrediction, SaysWhatAPredictionIsWorthOnlyWhereItIsMet) {
@@ -53,15 +53,15 @@ TEST(CorrespondPrediction, SaysWhatAPredictionIsWorthOnlyWhereItIsMet) {
   };
   const Pose near = beside_truth(0.012), far = beside_truth(0.06);
   const double sigma = ahat().range_sigma_m;
-  // In sigmas squared, 6 ln(1 m / 6 mm): where it was foretold, and so surely.
+  // In units of sigma squared: 6 ln(1 m / 6 mm) at the prediction.
   EXPECT_NEAR(worth(&k_truth), 30.7 * sigma * sigma, 1.5 * sigma * sigma);
   EXPECT_NEAR(worth(&k_truth) - worth(&near), 4 * sigma * sigma, 1.5 * sigma * sigma);
   EXPECT_EQ(worth(&far), 0);
   EXPECT_EQ(worth(nullptr), 0);
 }
 
-// Twice the logarithm of the densities' ratio, one at least, by the larger of both sigmas; about
-// the tool's middle.
+// Log prior ratio: twice the logarithm of the densities' ratio, at least one, by the larger of both
+// sigmas. Its position is that of the tool's centre.
 TEST(CorrespondPrediction, IsWorthTheLogarithmOfItsSureness) {
   const Tool pen = test::five_marker_pen();
   const Markers markers = view_of(pen, pen.marker_count);
@@ -85,7 +85,7 @@ TEST(CorrespondPrediction, IsWorthTheLogarithmOfItsSureness) {
   }
 }
 
-// One marker that lies beyond the gate is enough.
+// One marker beyond the gate is enough to fail.
 TEST(CorrespondPrediction, IsMetOnlyWhereEachMarkerLiesWithinTheGate) {
   const Tool pen = test::five_marker_pen();
   CorrespondSettings settings = ahat();
@@ -126,7 +126,7 @@ TEST(CorrespondPrediction, APredictionDecidesBetweenReadingsThatTheNoiseCannotTe
   const Vector3 ahead(0, 0, 0.5);
   std::vector<Vector3> points;
   for (std::size_t i = 0; i < 4; ++i) points.push_back(square.markers_m[i] + ahead);
-  points[0].x() += 0.0004;  // so that no two readings have the same residual
+  points[0].x() += 0.0004;  // so that no two hypotheses have the same residual
   const Markers markers = centres(square, points);
   for (int quarter = 0; quarter < 4; ++quarter) {
     const Quaternion turn = from_rotation_vector(Vector3(0, 0, quarter * 1.5707963267948966));
@@ -138,8 +138,8 @@ TEST(CorrespondPrediction, APredictionDecidesBetweenReadingsThatTheNoiseCannotTe
   }
 }
 
-// A rectangle turned by a quarter: each corner is off by half the sides' difference both ways. Of
-// four markers three sigmas of the likelihood ratio are an rms of one and a half.
+// A rectangle rotated by 90 degrees: each corner is off by half the sides' difference along both
+// axes. With four markers a likelihood ratio of three sigmas is an rms of 1.5 sigma.
 TEST(CorrespondPrediction, OverrulesAResidualOfThreeSigmasAndNoMore) {
   CorrespondSettings settings;
   const double limit_m = 1.5 * settings.range_sigma_m * std::sqrt(2.0);  // of the sides' difference
@@ -174,7 +174,7 @@ TEST(CorrespondPrediction, APredictionDoesNotOverruleAReadingThatFitsWorseThanNo
   const Tool plate = test::tool_of<4>({{0, 0, 0}, {80, 0, 0}, {85, 66, 0}, {0, 60, 0}});
   std::vector<Vector3> points;
   for (std::size_t i = 0; i < 4; ++i) points.push_back(plate.markers_m[i] + Vector3(0, 0, 0.5));
-  const CorrespondSettings settings;  // noise alike in all directions: the wide gate
+  const CorrespondSettings settings;  // isotropic noise: the wide gate
   const Quaternion half = from_rotation_vector(Vector3(0, 0, 3.14159265358979));
   const Vector3 middle(0.041, 0.031, 0);
   const Pose turned{half, Vector3(0, 0, 0.5) + middle - half * middle};

@@ -1,4 +1,4 @@
-// The search against a plain enumeration of all labelings, and the steps that it counts.
+// Correspondence search against an enumeration of all labelings, and its step counts.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ struct Searched {
   }
 };
 
-// All ways to name `least` or more markers whose distances agree and whose fit is good enough.
+// All labelings of `least` or more markers with matching distances and a sufficient fit.
 class Enumeration {
  public:
   Enumeration(const Searched& searched, const Tool& tool, const CorrespondSettings& settings,
@@ -44,7 +44,7 @@ class Enumeration {
       return std::tuple(-a.count, a.rms_m, a.marker) < std::tuple(-b.count, b.rms_m, b.marker);
     });
   }
-  // Those of the most markers and of so many fewer, at most as many as are kept.
+  // Labelings with the most markers and with up to `fewer` less, at most k_labelings_max.
   [[nodiscard]] std::vector<Labeling> best(int fewer) const {
     std::vector<Labeling> out;
     for (const Labeling& labeling : all_)
@@ -100,7 +100,7 @@ class Enumeration {
   std::vector<Labeling> all_;
 };
 
-// Crowded and noisy, so that most scenes have several labelings; some have more than are kept.
+// Crowded and noisy: most scenes have several labelings, and some have more than the capacity.
 TEST(CorrespondSearch, FindsTheBestOfAPlainEnumeration) {
   Random random(21);
   auto searched = std::make_unique<Searched>();
@@ -138,8 +138,8 @@ TEST(CorrespondSearch, FindsTheBestOfAPlainEnumeration) {
   EXPECT_GT(several, 100);
 }
 
-// Where each marker has one candidate alone: a name is tried wherever enough markers are left to
-// reach `target`, and not beyond it.
+// One candidate per marker: the search tries an assignment wherever enough markers remain to reach
+// `target`, and none beyond it.
 int names_tried(int markers, int target, int at = 0, int named = 0) {
   if (named == target || named + markers - at < target) return 0;
   return 1 + names_tried(markers, target, at + 1, named + 1) +
@@ -152,7 +152,7 @@ int labelings_of_size(int markers, int target) {
   return ways;
 }
 
-// Each distance occurs once in such a tool.
+// A tool whose distances are all different.
 Tool distinct_tool(int markers) {
   Random random(31);
   for (;;) {
@@ -175,7 +175,7 @@ Markers whole_view(const Tool& tool) {
   return centres(tool, points);
 }
 
-// Gates so narrow that each distance is the tool's own.
+// Gates so narrow that each distance is unique.
 CorrespondSettings exact() {
   CorrespondSettings settings;
   settings.range_sigma_m = 1e-5;
@@ -222,8 +222,8 @@ TEST(CorrespondSearch, EndsWithItsLastStepAndSaysSoOnlyWhereOneIsMissing) {
   }
 }
 
-// With a prediction: what lies near it, then everywhere, then the best one's markers once more. A
-// labeling that was found is not fitted again.
+// With a prediction: near it, then everywhere, then the best labeling's markers again. A labeling
+// found before is not fitted again.
 TEST(CorrespondSearch, CountsEachPassOfAPredictedTool) {
   auto searched = std::make_unique<Searched>();
   const Tool tool = distinct_tool(4);
@@ -263,7 +263,7 @@ TEST(CorrespondSearch, NeedsThreeMarkersAndAToolOfThreeToAsManyAsThereMayBe) {
   EXPECT_EQ(searched->found.items[0].count, k_markers_per_tool_max);
 }
 
-// Of a tool of five, of which four, three or two are seen.
+// A tool of five markers, of which four, three or two are visible.
 TEST(CorrespondSearch, TakesTheLeastMarkersThatItsSettingsAllow) {
   auto searched = std::make_unique<Searched>();
   const Tool tool = distinct_tool(5);
@@ -292,7 +292,7 @@ TEST(CorrespondSearch, TakesTheLeastMarkersThatItsSettingsAllow) {
   EXPECT_EQ(best(5, 5, 9, true), 5);
 }
 
-// What is kept of one call says nothing of the next.
+// No state is carried over from one call to the next.
 TEST(CorrespondSearch, StartsAnewWithEachCall) {
   auto used = std::make_unique<Searched>(), fresh = std::make_unique<Searched>();
   const Tool tool = distinct_tool(5);

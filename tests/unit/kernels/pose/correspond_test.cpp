@@ -40,7 +40,7 @@ TEST(Correspond, NamesTheMarkersOfAPenAmongStrays) {
 struct Tally {
   int found = 0;
   int exact = 0;
-  int gross = 0;  // more than 10 mm or 10 degrees off
+  int gross = 0;  // error above 10 mm or 10 degrees
   std::uint32_t hypotheses_most = 0;
 };
 
@@ -89,7 +89,7 @@ TEST(Correspond, FindsRandomToolsOfFourToEightMarkers) {
   const auto any = [](Random& random) { return test::random_tool(random, 4 + random.below(5)); };
   const Tally alone = tally_of(any, {}, 4200, false, 2);
   EXPECT_GE(alone.found, 4196);
-  EXPECT_LE(alone.gross, 8);  // of four random markers some are nearly symmetric
+  EXPECT_LE(alone.gross, 8);  // some tools of four random markers are nearly symmetric
   const Tally predicted = tally_of(any, {}, 4200, true, 3);
   EXPECT_GE(predicted.found, 4196);
   EXPECT_LE(predicted.gross, 1);
@@ -142,7 +142,7 @@ TEST(Correspond, TheSmallestResidualOfAllLabelingsDecidesForANearlySymmetricGrid
                   found.items[at].rms_m >= found.items[at - 1].rms_m);
     }
   }
-  EXPECT_EQ(several, 300);  // else the test shows nothing
+  EXPECT_EQ(several, 300);  // otherwise the test has no effect
 }
 
 TEST(Correspond, KeepsShortSidesAcrossTheRayWhoseErrorIsOfSecondOrder) {
@@ -281,7 +281,8 @@ TEST(Correspond, LeavesOutMarkersWithoutDepthOrOfAnImpossibleSize) {
   EXPECT_EQ(labelings_of(large, pen, ahat()).items[0].count, 5) << "the border cuts it";
 }
 
-// A small spot on a hand 0.26 m away is as large as a marker one wrap of the ranges behind it.
+// A small specular reflection on a hand at 0.26 m is as large as a marker one wrap distance behind
+// it.
 TEST(Correspond, LeavesOutMarkersBeyondTheExpectedRange) {
   const Tool pen = test::five_marker_pen();
   CorrespondSettings settings = ahat();

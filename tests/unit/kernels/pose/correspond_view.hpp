@@ -1,4 +1,4 @@
-// What the tests of the correspondence search share.
+// Settings, search call and marker list shared by the correspondence tests.
 #pragma once
 
 #include <vector>

@@ -36,7 +36,7 @@ void add(View& view, const Tool& tool, const Vector3& centre, Random& random) {
   view.sights[at] = {rays, k_noisy};
 }
 
-// The tool's markers in their order, all seen, and a labeling that says so.
+// Fills the view with all the tool's markers in order, and the correct labeling.
 void fill(View& view, const Tool& tool, const Pose& pose, Random& random) {
   view.markers.count = 0;
   for (int i = 0; i < tool.marker_count; ++i)
@@ -76,7 +76,7 @@ TEST(DecideLabeling, TakesTheOneThatTheNoiseExplainsWhereverItStands) {
   }
 }
 
-// The chain of the search and the decision, where the least rms alone is often wrong.
+// Search and decision together, in views where the least rms alone is often wrong.
 TEST(DecideLabeling, NamesMarkersThatTheLeastUnweightedResidualMixesUp) {
   Random random(2);
   const Tool tool = test::flat_tool();
@@ -102,7 +102,7 @@ TEST(DecideLabeling, NamesMarkersThatTheLeastUnweightedResidualMixesUp) {
   }
   std::printf("  of 2000 the least rms is wrong in %d, chi-square in %d, none explained in %d\n",
               wrong_by_rms, wrong, none);
-  EXPECT_GT(wrong_by_rms, 5);  // else the test shows nothing
+  EXPECT_GT(wrong_by_rms, 5);  // otherwise the test has no effect
   EXPECT_EQ(wrong, 0);
   EXPECT_LE(none, 3);
 }
@@ -147,7 +147,7 @@ TEST(DecideLabeling, TellsHowMuchWorseTheNextOneIsInEitherOrder) {
   const DecidedLabeling second = decide();
   EXPECT_EQ(first.chosen, 1 - second.chosen);
   EXPECT_NEAR(first.delta_chi_square, second.delta_chi_square, 1e-9);
-  EXPECT_LT(first.delta_chi_square, 1);  // a square cannot be told from itself
+  EXPECT_LT(first.delta_chi_square, 1);  // a square is symmetric
   view->labelings.count = 1;
   EXPECT_GT(decide().delta_chi_square, 1e6);
 }
@@ -172,7 +172,8 @@ TEST(DecideLabeling, SaysWhyThereIsNone) {
   EXPECT_EQ(reason(), Reason::search_full);
 }
 
-// Eight labelings of eight markers, all wrong in two markers: each fitted twice, without each too.
+// Eight labelings of eight markers: all but the first have two markers swapped, and every other
+// trial has two wrong ranges. Each is fitted twice, also without each marker.
 TEST(DecideLabeling, EndsWithinItsDeclaredWorkAtItsWorstWithTheSameBitsEverywhere) {
   Random random(6);
   test::BitHash hash;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int k_side = 64;
 
-// A small frame whose every pixel has a depth of its own, so that a sample tells its pixel.
+// A small frame in which every pixel has a different depth, so a sample identifies its pixel.
 class DepthSamplesOf : public testing::Test {
  protected:
   DepthSamplesOf() : depth_(k_side * k_side), bright_(k_side * k_side, 20000) {
@@ -51,7 +51,7 @@ class DepthSamplesOf : public testing::Test {
     return out;
   }
 
-  // Places of the samples' pixels.
+  // Indices of the samples' pixels.
   static std::vector<std::size_t> pixels_of(const DepthSamples& samples) {
     std::vector<std::size_t> out;
     for (int i = 0; i < samples.count; ++i) {
@@ -64,7 +64,7 @@ class DepthSamplesOf : public testing::Test {
                    static_cast<double>(pixel / k_side) + 0.5} -
            blob_.centroid_px;
   }
-  // By rows, the pixels with inner <= distance < outer.
+  // In row order, the pixels with inner <= distance < outer.
   [[nodiscard]] std::vector<std::size_t> pixels_between(double inner, double outer) const {
     std::vector<std::size_t> out;
     for (std::size_t i = 0; i < depth_.size(); ++i) {
@@ -118,7 +118,7 @@ TEST_F(DepthSamplesOf, TheRingLeaveOutWhatIsMostlyBackground) {
   EXPECT_EQ(pixels_of(ring(4.3, 64, 1000)), expected);
 }
 
-// Whatever its size: each is the last of an equal part.
+// For any number: each sample is the last pixel of an equal part.
 TEST_F(DepthSamplesOf, AFewAreSpreadEvenlyOverAllThatCount) {
   const auto all = pixels_between(0, 0.7 * 5);
   for (int most = 1; most <= static_cast<int>(all.size()); ++most) {
@@ -154,7 +154,8 @@ TEST_F(DepthSamplesOf, ABlobAtTheBorderStayInTheFrame) {
   }
 }
 
-// A pixel at just the inner radius is the ring's; one at the outer radius is not, nor the disc's.
+// Radii are half-open: a pixel at the inner radius belongs to the annulus, not to the disc. One at
+// the outer radius is outside the annulus.
 TEST_F(DepthSamplesOf, ARadiusBeginsARingAndEndsADisc) {
   const auto at = [&](double distance) {
     return pixels_between(distance, std::nextafter(distance, 99.0)).size();
@@ -197,7 +198,7 @@ TEST_F(DepthSamplesOf, AreTheSameOfEightBits) {
   EXPECT_EQ(around.tried, wide_ring.tried);
 }
 
-// Of depth pixels that no reflectivity has, and the other way round, none is looked at.
+// Only pixels that both images contain are read.
 TEST_F(DepthSamplesOf, StayInTheSmallerOfTheTwoPictures) {
   blob_.centroid_px = {29.7, 28.4};
   for (const bool small_depth : {false, true}) {
@@ -220,7 +221,7 @@ TEST_F(DepthSamplesOf, StayInTheSmallerOfTheTwoPictures) {
   }
 }
 
-// The square around the circle, in the smallest step that keeps it within what may be looked at.
+// The square around the circle, with the smallest step that fits the pixel budget.
 TEST_F(DepthSamplesOf, TheRingTakeTheSmallestStepThatFits) {
   const auto pixels = [](int step) {
     const int side = (42 + step - 1) / step;  // columns and rows 11 to 52
@@ -234,7 +235,7 @@ TEST_F(DepthSamplesOf, TheRingTakeTheSmallestStepThatFits) {
   }
 }
 
-// No further than the largest radius, whatever the blob's.
+// Limited to the largest radius, for any blob.
 TEST_F(DepthSamplesOf, TheRingOfAHugeBlobEndAtTheLargestRadius) {
   for (const double radius : {38.5, 45.0, 55.0}) {
     const DepthSamples found = ring(radius, 64, 1024);
@@ -247,7 +248,7 @@ TEST_F(DepthSamplesOf, TheRingOfAHugeBlobEndAtTheLargestRadius) {
   EXPECT_EQ(ring(60, 64, 1024).tried, 0) << "its ring lies further out";
 }
 
-// Raw values from 1 to just below where none begins; one that begins at 0 or 1 leaves none.
+// Valid raw values are 1 to below invalid_from; an invalid_from of 0 or 1 leaves none.
 TEST_F(DepthSamplesOf, CountEachDepthBetweenNoneAndInvalid) {
   for (const std::uint16_t invalid_from : {0, 1, 2, 500, 0xFFFF}) {
     settings_.invalid_from = invalid_from;
@@ -262,7 +263,7 @@ TEST_F(DepthSamplesOf, CountEachDepthBetweenNoneAndInvalid) {
 
 TEST_F(DepthSamplesOf, SayHowFarBesideTheMiddleTheyLie) {
   settings_.kind = DepthKind::z;
-  const DepthSamples found = inner(5, 7);  // an odd number: the last stands alone
+  const DepthSamples found = inner(5, 7);  // odd, so the last sample has no partner
   ASSERT_EQ(found.count, 7);
   const Vector3 middle = unproject(camera_, blob_.centroid_px).value;
   for (std::size_t i = 0; i < 7; ++i) {

@@ -18,7 +18,7 @@ const MarkerVariance k_usual{0.01, 0, 0.01, 0.0015 * 0.0015};
 const MarkerVariance k_unsure{0.09, 0, 0.09, 0.01 * 0.01};
 constexpr double k_shift_sigma_m = 0.003, k_turn_sigma_rad = 0.03;
 
-// As a filter would foretell it: off by as much as it says, at the middle of the markers.
+// A prediction with errors drawn from its covariance, about the centre of the markers.
 ExpectedPose expect(const Tool& tool, const Pose& truth, Random& random) {
   ExpectedPose expected;
   expected.reference_m = test::mean_of_markers(tool);
@@ -42,7 +42,7 @@ TEST(ExpectedPose, SurprisesByChiSquareOfSixWhereAllIsAsDeclared) {
   for (int trial = 0; trial < k_trials; ++trial) {
     const Pose truth = test::tilted_pose(tool, random.within(0.4, 1), k_place, random);
     const auto markers = test::weighted_view(tool, truth, k_usual, 1, random);
-    // The tip is 0.15 m from the middle, which the expectation is about.
+    // The tip is 0.15 m from the centre, which is the prediction's reference.
     const Vector3 tip = test::mean_of_markers(tool) + Vector3(0, 0, 0.15);
     const RefinedPose pose = refine_pose(markers, tip);
     ASSERT_EQ(pose.reason, Reason::none);
@@ -51,11 +51,11 @@ TEST(ExpectedPose, SurprisesByChiSquareOfSixWhereAllIsAsDeclared) {
     sum += surprise;
     beyond += surprise > chi_square_limit(6) ? 1 : 0;
   }
-  EXPECT_NEAR(sum / k_trials, 6, 0.3);  // 3,000 means of chi square of 6: 0.063, 1 sigma
+  EXPECT_NEAR(sum / k_trials, 6, 0.3);  // mean of 3,000 chi-squares of 6: sigma 0.063
   EXPECT_LE(beyond, 4);                 // 0.3 on average
 }
 
-// Both poses' covariances with full couplings, the found one's about another point.
+// Full covariances of both poses; that of the measured pose is about another point.
 TEST(ExpectedPose, SurpriseIsTheDistanceInBothCovariancesAboutItsReference) {
   Random random(4);
   const auto covariance = [&random] {
@@ -95,7 +95,7 @@ TEST(ExpectedPose, LeavesThePoseToTheMarkers) {
     const RefinedPose led = refine_pose(markers, tool.tip_m, nullptr, {}, &expected);
     EXPECT_EQ(alone.surprise, 0);
     EXPECT_GT(led.surprise, 0);
-    // Both starts end in one minimum, each as near to it as a fit ends.
+    // Both initial guesses converge to one minimum, within the fit's convergence limit.
     EXPECT_LT((led.T_camera_tool * tool.tip_m - alone.T_camera_tool * tool.tip_m).norm(), 1e-5);
     EXPECT_TRUE(led.covariance.isApprox(alone.covariance, 1e-3));
   }
@@ -105,8 +105,7 @@ struct Wrong {
   int alone = 0, led = 0;
 };
 
-// Three markers of a flat tool seen from the front: two minima which their noise hardly tells
-// apart.
+// Three markers of a flat tool seen face-on: two minima that chi-square hardly separates.
 TEST(ExpectedPose, TellsAFlatToolsMinimaApart) {
   Random random(3);
   const Tool tool = test::flat_tool();
@@ -123,7 +122,7 @@ TEST(ExpectedPose, TellsAFlatToolsMinimaApart) {
     count(&expected, gross.led);
   }
   std::printf("  grossly off: %d alone, %d with an expectation\n", gross.alone, gross.led);
-  EXPECT_GT(gross.alone, 80);             // else the test shows nothing
+  EXPECT_GT(gross.alone, 80);             // otherwise the test has no effect
   EXPECT_LE(gross.led, gross.alone / 2);  // the rest is noise, not the other minimum
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double k_sigma_m = 0.001, k_turn_sigma = 0.01;
 
-// One tool or two, predicted half a metre away; markers are put in view one by one.
+// One or two tools predicted at 0.5 m; tests add visible markers one by one.
 class FewMarkersTest : public testing::Test {
  protected:
   FewMarkersTest() {
@@ -224,7 +224,7 @@ TEST_F(FewMarkersTest, NamesNoneWithoutDepth) {
   EXPECT_EQ(named_[0].items[0].of_tool, 0);
 }
 
-// Beyond the markers looked at, nothing is named, nothing claimed.
+// Markers beyond markers_max are neither identified nor claimed by a gate.
 TEST_F(FewMarkersTest, LooksAtTheFirstMarkersAlone) {
   show(Vector3(0.3, 0.3, 0.9));
   show(place(0, 2));
@@ -233,7 +233,7 @@ TEST_F(FewMarkersTest, LooksAtTheFirstMarkersAlone) {
   EXPECT_EQ(named_[0].count, 0);
 }
 
-// At the edge of its gate along the line of sight: there the range's noise counts, too.
+// At the gate's limit along the line of sight the range noise counts, too.
 TEST_F(FewMarkersTest, HoldsAMarkerWithinThePredictionsAndTheMeasurementsNoise) {
   expect_within(0, k_sigma_m, 0);
   const Vector3 ahead = place(0, 2).normalized(), side = ahead.unitOrthogonal();
@@ -243,7 +243,7 @@ TEST_F(FewMarkersTest, HoldsAMarkerWithinThePredictionsAndTheMeasurementsNoise) 
     show(place(0, 2) + off);
     return name().count;
   };
-  const double limit = std::sqrt(21.1075);  // of three degrees of freedom
+  const double limit = std::sqrt(21.1075);  // chi-square limit of three degrees of freedom
   const double along_m = limit * std::hypot(k_sigma_m, 0.0015);
   const double across_m = limit * std::hypot(k_sigma_m, across);
   EXPECT_EQ(named_at(0.99 * along_m * ahead), 1);
@@ -255,7 +255,7 @@ TEST_F(FewMarkersTest, HoldsAMarkerWithinThePredictionsAndTheMeasurementsNoise) 
   EXPECT_EQ(named_at(1.01 * across_m * ahead.cross(side)), 0);
 }
 
-// Turned about the middle of its markers, not about the tool's origin.
+// Rotation is about the centre of the tool's markers, not about its origin.
 TEST_F(FewMarkersTest, WidensAGateByTheTurnAboutTheMiddle) {
   expect_within(0, 1e-5, 0.05);
   noise_ = {1e-4, 0.01, 250};
@@ -269,8 +269,8 @@ TEST_F(FewMarkersTest, WidensAGateByTheTurnAboutTheMiddle) {
   }
 }
 
-// Where a tool would lie at the camera's own place no gate holds anything, and the others of the
-// tool meet it.
+// A marker predicted at the camera's own position has no valid gate. The tool's other gates count
+// as overlapping it.
 TEST_F(FewMarkersTest, NamesNoneOfAToolWithAMarkerAtTheCamera) {
   show(place(0, 2));
   EXPECT_EQ(name().count, 1);
@@ -278,13 +278,13 @@ TEST_F(FewMarkersTest, NamesNoneOfAToolWithAMarkerAtTheCamera) {
   markers_->count = 0;
   show(place(0, 2) + Vector3(0, 0, 1e-9));
   EXPECT_EQ(name().count, 0);
-  // Its gate claims no other tool's marker.
+  // Its gate does not claim another tool's marker.
   expected_[1].predicted = expected_[1].wanted = true;
   markers_->count = 0;
   show(place(1, 2));
   EXPECT_EQ(name().count, 0);
   EXPECT_EQ(named_[1].count, 1);
-  // So it is of a covariance that is none.
+  // The same holds for an invalid covariance.
   expected_[0].T_camera_tool.translation = Vector3(0, 0, 0.5);
   expected_[0].covariance(1, 1) = -1;
   markers_->count = 0;
@@ -292,7 +292,7 @@ TEST_F(FewMarkersTest, NamesNoneOfAToolWithAMarkerAtTheCamera) {
   EXPECT_EQ(name().count, 0);
 }
 
-// An image shows the marker larger than it is: another one's light may be in it.
+// A blob larger than the marker's image may contain light of another marker.
 TEST_F(FewMarkersTest, WidensWhatAnImageShowsTooLarge) {
   show(place(0, 2));
   Marker& marker = markers_->items[0];

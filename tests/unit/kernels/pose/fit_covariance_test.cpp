@@ -39,7 +39,7 @@ Case case_of(test::Random& random, const Noise& noise) {
   return c;
 }
 
-// The six errors of one simulated fit: the tip's place and the rotation about the camera's axes.
+// The six errors of one simulated fit: tip position and rotation about the camera's axes.
 Eigen::Matrix<double, 6, 1> simulated_error(const Case& c, const Noise& noise,
                                             test::Random& random) {
   std::vector<Vector3> measured;
@@ -69,7 +69,7 @@ TEST(FitCovariance, PredictsTheScatterOfSimulatedFits) {
       const auto error = simulated_error(c, noise, random);
       scatter += error * error.transpose() / trials;
     }
-    // 8,000 trials know a variance to 1.6 %, 1 sigma.
+    // Relative standard deviation of a variance after 8,000 trials: 1.6 %.
     for (int i = 0; i < 6; ++i) {
       EXPECT_NEAR(scatter(i, i) / predicted.value(i, i), 1.0, 0.1) << view << " " << i;
       for (int j = 0; j < i; ++j) {
@@ -86,7 +86,7 @@ TEST(FitCovariance, OfIsotropicNoiseAtTheMeanIsTheTextbooks) {
   const std::vector<Matrix3> covariances(4, sigma * sigma * Matrix3::Identity());
   const auto result = fit_covariance(square, covariances, Vector3(0, 0, 1));
   ASSERT_TRUE(result);
-  EXPECT_NEAR(result.value(0, 0), sigma * sigma / 4, 1e-18);     // a mean of four
+  EXPECT_NEAR(result.value(0, 0), sigma * sigma / 4, 1e-18);     // mean of four
   EXPECT_NEAR(result.value(3, 3), sigma * sigma / 0.02, 1e-16);  // sum of y^2 + z^2
   EXPECT_NEAR(result.value(5, 5), sigma * sigma / 0.04, 1e-16);
   EXPECT_NEAR(result.value(0, 4), 0.0, 1e-18);
@@ -102,7 +102,7 @@ TEST(FitCovariance, GrowsWithTheDistanceOfTheReference) {
   EXPECT_NEAR(far.value(4, 4), near.value(4, 4), 1e-12);
 }
 
-// One sigma along the ray, another across it.
+// Different standard deviations along and across the ray.
 TEST(FitCovariance, OfAMarkerHasItsVarianceAlongAndAcrossTheRay) {
   const Vector3 ray = Vector3(0.3, -0.4, 1).normalized();
   const Vector3 side = ray.unitOrthogonal(), other = ray.cross(side);
@@ -114,7 +114,7 @@ TEST(FitCovariance, OfAMarkerHasItsVarianceAlongAndAcrossTheRay) {
   EXPECT_NEAR(side.dot(covariance * other), 0, 1e-18);
 }
 
-// By the whole matrices, about any reference.
+// Against full matrices, about any reference.
 TEST(FitCovariance, IsTheNoiseCarriedThroughTheUnweightedFit) {
   test::Random random(3);
   for (int trial = 0; trial < 20; ++trial) {

@@ -1,4 +1,4 @@
-// What the weighted fit is made of: factors, limits, whitened markers and lever arms.
+// Parts of the weighted fit: Cholesky factor, chi-square limits, whitened markers, lever arms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ TEST(PoseFactor, ReadsTheLowerHalfAlone) {
   EXPECT_LT((a.value.inverse() - a.value.inverse().transpose()).norm(), 1e-300);
 }
 
-// Of a direction that rounding alone determines nothing is left.
+// A direction that only rounding determines counts as undetermined.
 TEST(PoseFactor, IsNoneWhereADirectionHasLessThanATrillionthLeft) {
   for (const double left : {1e-11, 1e-13}) {
     Matrix6 matrix = Matrix6::Identity();
@@ -44,7 +44,7 @@ TEST(PoseFactor, IsNoneWhereADirectionHasLessThanATrillionthLeft) {
   EXPECT_EQ(pose_factor(none).reason, Reason::degenerate);
 }
 
-// The tail of chi-square by its closed forms (Abramowitz and Stegun 26.4.4 and 26.4.5).
+// Upper tail of chi-square in closed form (Abramowitz and Stegun 26.4.4 and 26.4.5).
 double tail(double chi_square, int degrees) {
   const double x = std::sqrt(chi_square);
   const double density = std::exp(-0.5 * chi_square);
@@ -91,8 +91,7 @@ TEST(WeightedMarker, RefusesEachFigureThatIsNotPositive) {
   EXPECT_FALSE(weigh_marker(model, flat, 0.5, {}));
 }
 
-// A step of the skewed noise's own kind is one sigma in whatever direction: whitened, the residuals
-// have the covariance one.
+// Correlated pixel noise: the whitened residuals have unit covariance.
 TEST(WeightedMarker, WhitensThePixelsCovariance) {
   const LocalRays rays{{100, 90}, {0, 0, 1}, {0.004, 0.001, 0}, {-0.0005, 0.003, 0}};
   const MarkerVariance variance{0.04, 0.012, 0.01, 0.003 * 0.003};
@@ -102,7 +101,7 @@ TEST(WeightedMarker, WhitensThePixelsCovariance) {
   EXPECT_EQ(marker.range_m, 0.7);
   EXPECT_EQ(marker.measured_m(), Vector3(0, 0, 0.7));
   EXPECT_NEAR(marker.per_range_sigma, 1 / 0.003, 1e-9);
-  Eigen::Matrix2d by_pixel;  // residuals by a pixel's step
+  Eigen::Matrix2d by_pixel;  // derivatives of the residuals by the pixel
   for (int axis = 0; axis < 2; ++axis) {
     const Vector3 along = axis == 0 ? rays.along_x : rays.along_y;
     by_pixel(0, axis) = marker.across_first.dot(along);
@@ -155,7 +154,7 @@ TEST(LeverArm, MovesAndTurnsACovarianceAsItsJacobianDoes) {
   }
 }
 
-// The largest sum of a row's magnitudes, which no direction's variance exceeds.
+// Largest row sum of magnitudes: an upper bound of the variance in any direction.
 TEST(LeverArm, LargestVarianceIsThatOfTheLargestRow) {
   Matrix3 matrix;
   matrix << 3, -1, 0.5, -1, 5, -2, 0.5, -2, 4;

@@ -1,4 +1,4 @@
-// The steps of the weighted fit by a plain version of its rules, and its normal equations.
+// Steps of the weighted fit against a reference of its rules, and its normal equations.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -33,10 +33,10 @@ bool equations(const std::vector<WeightedMarker>& markers, const Vector3& mean, 
   return add_markers(markers, pose, mean, normal);
 }
 
-// Gauss and Newton's steps; one that does not lower chi-square is taken back and repeated with a
-// hundredth of the diagonal more, then ten times as much; each that does has a tenth of it, below
-// 1e-4 none. It ends with a step that lowers chi-square by less than 1e-4, or after which the next
-// would.
+// Reference: Gauss-Newton with Levenberg-Marquardt damping. A step that does not lower chi-square
+// is undone and repeated with a hundredth of the diagonal added, then ten times as much. A
+// successful step divides the damping by ten; below 1e-4 it becomes zero. The fit ends with a step
+// that lowers chi-square by less than 1e-4, or after which the next would.
 Plain plain_fit(const std::vector<WeightedMarker>& markers, const Vector3& mean, const Pose& start,
                 int steps_max, double hopeless) {
   Plain out;
@@ -84,7 +84,7 @@ Plain plain_fit(const std::vector<WeightedMarker>& markers, const Vector3& mean,
   return out;
 }
 
-// From any rotation, with ranges that say little beside the pixels: many steps are taken back.
+// From any rotation, with ranges of low weight against the pixels: many steps are undone.
 TEST(FitSteps, AreThoseOfThePlainRules) {
   Random random(1);
   const MarkerVariance sure_pixels{1e-4, 0, 1e-4, 0.03 * 0.03};
@@ -122,7 +122,7 @@ TEST(FitSteps, AreThoseOfThePlainRules) {
   EXPECT_GT(degenerate, 5);
 }
 
-// A point ahead of its ray by a tenth of the measured range, and by less.
+// A point ahead of the camera along its ray by a tenth of the measured range, and by less.
 TEST(NormalEquations, HaveAPixelFromATenthOfTheRangeOn) {
   const CameraModel camera = test::pinhole();
   int steps = 0;
@@ -153,7 +153,7 @@ TEST(NormalEquations, AddToWhatIsThere) {
   EXPECT_DOUBLE_EQ(twice.chi_square, 2 * once.chi_square);
 }
 
-// Half a radian from the prediction: the second order of the rotation's change shows.
+// Half a radian from the prediction, where the second order of the rotation matters.
 TEST(PosePrior, SlopeIsHalfTheGradientFarFromThePrediction) {
   Random random(3);
   for (int trial = 0; trial < 20; ++trial) {

@@ -17,7 +17,7 @@ CameraModel wide_lens() {
   return camera;
 }
 
-// Half a pixel beside the pixels that were asked, all over the frame.
+// Half a pixel from the pixels that ray_steps_needed() tests, over the whole frame.
 int rays_lost(const CameraModel& camera, int steps_max) {
   int lost = 0;
   for (int y = 0; y < camera.height; y += 3) {
@@ -31,7 +31,7 @@ int rays_lost(const CameraModel& camera, int steps_max) {
   return lost;
 }
 
-// A lens's table of 9 x 7 rays, of which those beyond a column are missing.
+// Lens table of 9 x 7 rays; those beyond a column are missing.
 struct RimTable {
   std::vector<float> rays;
   CameraModel camera;
@@ -54,7 +54,7 @@ struct RimTable {
   }
 };
 
-// To the next pixel to the right and below, at the rim to the one before; at right angles.
+// Differences to the next pixel on the right and below, at the rim to the previous one.
 TEST(LocalRays, OfATableAreThoseOfItsNeighbours) {
   const RimTable whole(9), cut(5);
   CameraModel pinhole = whole.camera;
@@ -74,7 +74,7 @@ TEST(LocalRays, OfATableAreThoseOfItsNeighbours) {
         EXPECT_LT((rays.along_y - truth.along_y).norm(), 0.1 * truth.along_y.norm());
         EXPECT_NEAR(rays.along_x.dot(rays.ray), 0, 1e-12);
         EXPECT_NEAR(rays.along_y.dot(rays.ray), 0, 1e-12);
-        // By the focal length the ray moves as by its distance from the axis.
+        // The focal length moves the ray in proportion to its distance from the axis.
         EXPECT_TRUE(rays.outward.isApprox(rays.along_x * (x - 4) + rays.along_y * (y - 3)));
         EXPECT_EQ(steps, 7 + 3 * k_lens_steps_a_ray_looked_up);
         EXPECT_NEAR(rays.steradian_per_pixel(), rays.along_x.cross(rays.along_y).norm(), 1e-15);
@@ -122,7 +122,8 @@ TEST(RayStepsNeeded, IsOneMoreThanTheLensTakes) {
   EXPECT_GT(ray_steps_needed(wide_lens()), 12);
 }
 
-// The axis in a corner: the rays that take the most steps lie in the opposite one, whichever it is.
+// Principal point in a corner: the rays with the most steps are in the opposite one, for each
+// corner.
 TEST(RayStepsNeeded, LooksAtTheWholeFrame) {
   CameraModel camera = wide_lens();
   camera.width = 400;

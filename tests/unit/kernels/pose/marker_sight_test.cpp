@@ -23,7 +23,7 @@ Marker seen_at(const Vector2& pixel, double range_m) {
   return marker;
 }
 
-// How many sigmas off the weighted fit takes a point that was measured as `marker`, at its range.
+// Distance in sigmas of the weighted fit between a point and the measured `marker`, at its range.
 double sigmas_off(const Marker& marker, const MarkerNoise& noise, const Vector3& point) {
   const MarkerSight sight = sight_of(marker, marker.surface_range_m, noise);
   const Vector3 model = Vector3::Zero();
@@ -71,7 +71,8 @@ TEST(MarkerSight, TakesTheLensAsTheImageHasIt) {
   EXPECT_EQ(sight.rays.along_x, marker.along_x);
   EXPECT_EQ(sight.rays.along_y, marker.along_y);
   EXPECT_EQ(sight.rays.pixel, marker.centroid_px);
-  // One declared sigma beside it, which near a pinhole's rim is less than by the focal length.
+  // One declared sigma away. Near a pinhole's rim that is a smaller angle than the focal length
+  // implies.
   const Vector3 point = 0.5 * unproject(test::pinhole(), {450.1, 60}).value;
   EXPECT_NEAR(sigmas_off(marker, k_declared, point), 1, 0.002);
 }
@@ -100,7 +101,7 @@ TEST(MarkerSight, TakesAnyFocalLengthThatIsPositive) {
   EXPECT_NEAR(sight.rays.along_x.dot(sight.rays.along_y), 0, 1e-12);
   EXPECT_EQ(sight.rays.pixel, marker.centroid_px);
   EXPECT_NEAR(sight.variance.xx_px2, 0.01, 1e-15);
-  // Without one metres at the marker's range stand in for pixels.
+  // Without a focal length, metres at the marker's range replace pixels.
   const MarkerSight metres = sight_of(marker, 0.8, {0.002, 0.1, 0});
   EXPECT_NEAR(metres.rays.along_x.norm(), 1 / 0.8, 1e-12);
   EXPECT_EQ(metres.variance.xx_px2, metres.variance.range_m2);
@@ -119,7 +120,7 @@ TEST(MarkerSight, GivesAPointWithoutAFocalLengthTheSameNoiseInEveryDirection) {
   }
 }
 
-// Of the lens's own rays, and of a pinhole's where no image shows how the ray turns.
+// By the lens's own rays, and by a pinhole's if the marker has no ray derivatives.
 TEST(MarkerSight, FocalLengthMovesTheRayFromTheAxis) {
   Marker marker = seen_at({300, 200}, 0.5);
   MarkerNoise noise = k_declared;

@@ -19,7 +19,7 @@ MarkerVariance variance_of(const MarkerNoise& noise, const MarkerVariance& own) 
           own.range_m2 + noise.range_sigma_m * noise.range_sigma_m};
 }
 
-// Markers seen with the noise `truth`, weighed with another.
+// Markers with noise of variance `truth`, weighted with `taken`.
 std::vector<WeightedMarker> seen(const Tool& tool, const Pose& pose, const MarkerVariance& truth,
                                  const MarkerVariance& taken, Random& random) {
   std::vector<WeightedMarker> markers = test::weighted_view(tool, pose, truth, 1, random);
@@ -37,8 +37,8 @@ class NoiseOf : public ::testing::TestWithParam<MarkerNoise> {
  protected:
   static constexpr MarkerNoise k_declared{0.0015, 0.1, 253};
 
-  // The estimate after so many frames of one tool in random poses, and of each marker an own
-  // variance that is known.
+  // The estimate after this many frames of one tool in random poses; each marker also has a known
+  // variance of its own.
   static NoiseEstimate after(int frames, const Tool& tool, const MarkerNoise& truth,
                              const MarkerVariance& own, std::uint64_t seed, double outlier_m = 0) {
     Random random(seed);
@@ -75,7 +75,7 @@ TEST_P(NoiseOf, IsFoundByTheResidualsWhateverWasDeclared) {
     }
   }
   std::printf("  range %.2f mm, pixel %.3f px\n", 1e3 * range, pixel);
-  // Ten runs' means of a sigma that each has within 4 %; what was declared is nearly forgotten.
+  // Mean of ten runs, each with a sigma within 4 %; the declared value has hardly any weight left.
   EXPECT_NEAR(range, truth.range_sigma_m, 0.06 * truth.range_sigma_m);
   EXPECT_NEAR(pixel, truth.pixel_sigma_px, 0.06 * truth.pixel_sigma_px);
 }
@@ -111,7 +111,7 @@ TEST_F(NoiseEstimateTest, StaysWithinItsLimits) {
   EXPECT_EQ(loud.pixel_sigma_px, k_pixel_sigma_most_px);
 }
 
-// Five times the declared sigma is found from the same residuals as the declared one.
+// A true sigma of five times the declared one needs as many residuals as the declared one.
 TEST_F(NoiseEstimateTest, DoubtsTheDeclaredNoiseUntilThereAreResiduals) {
   EXPECT_EQ(variance_doubt({}, k_declared), k_noise_variance_open);
   const MarkerNoise loud{5 * k_declared.range_sigma_m, 5 * k_declared.pixel_sigma_px};
@@ -128,7 +128,7 @@ TEST_F(NoiseEstimateTest, DoubtsTheDeclaredNoiseUntilThereAreResiduals) {
   }
 }
 
-// A few residuals as large as declared leave most of the doubt, many leave little.
+// After few residuals of the declared size the factor stays large; after many it is near one.
 TEST_F(NoiseEstimateTest, LosesItsDoubtByDegrees) {
   const double m2 = k_declared.range_sigma_m * k_declared.range_sigma_m;
   const double px2 = k_declared.pixel_sigma_px * k_declared.pixel_sigma_px;

@@ -1,4 +1,4 @@
-// The residuals' sums and the estimate by their formulas, with numbers that are all different.
+// Sums of residuals and the noise estimate against their formulas, with all values different.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -18,7 +18,7 @@ using test::Random;
 
 constexpr MarkerNoise k_declared{0.0015, 0.1, 253, {250, 260}};
 
-// One marker's residuals in sigmas: its pixel's two and its range's.
+// Residuals of one marker in sigmas: two of the pixel, one of the range.
 Vector3 residuals(const WeightedMarker& marker, const Pose& pose) {
   const Vector3 point = pose * marker.model_m;
   const double along = marker.ray.dot(point);
@@ -32,8 +32,8 @@ Pose nudged(const Pose& pose, int parameter, double by) {
   return {(from_rotation_vector(turn) * pose.rotation).normalized(), pose.translation + shift};
 }
 
-// By differences and a whole matrix: a residual's leverage is its place on the diagonal of
-// J (J'J)^-1 J'.
+// Numerical derivatives and a full matrix: the leverage of a residual is its diagonal element of J
+// (J'J)^-1 J'.
 MarkerResiduals plain_residuals(const std::vector<WeightedMarker>& markers,
                                 const std::vector<MarkerVariance>& variances, const Pose& pose,
                                 const MarkerNoise& noise) {
@@ -75,7 +75,7 @@ MarkerResiduals plain_residuals(const std::vector<WeightedMarker>& markers,
   return out;
 }
 
-// Each marker with noise of its own; one far off, so that its residuals are clipped.
+// Different noise for each marker; one outlier, so that its residuals are clipped.
 TEST(NoiseResiduals, AreThoseOfAWholeMatrixOfLeverages) {
   Random random(1);
   for (int trial = 0; trial < 40; ++trial) {
@@ -104,7 +104,7 @@ TEST(NoiseResiduals, AreThoseOfAWholeMatrixOfLeverages) {
   }
 }
 
-// Each marker alone takes six of its residuals' freedom away in all.
+// The leverages of all residuals sum to six.
 TEST(NoiseResiduals, HaveTheFreedomThatAFitLeaves) {
   Random random(2);
   const Tool tool = test::random_tool(random, 6);
@@ -137,7 +137,7 @@ TEST(NoiseEstimate, IsTheWeightedMeanOfTheDeclaredAndTheNewestVariances) {
   const double m2 = 0.0015 * 0.0015, px2 = 0.01;
   NoiseEstimate estimate;
   add({{40 * m2, 12, 0}, {30 * px2, 24, 0}}, k_declared, estimate);
-  // Eight of the declared, of which the newest take their share away.
+  // The declared noise has eight degrees of freedom, of which new residuals replace their share.
   const double kept_range = 1 - 12.0 / 300, kept_pixel = 1 - 24.0 / 300;
   const double range_1 = (kept_range * 8 + 40) * m2, range_f1 = kept_range * 8 + 12;
   const double pixel_1 = (kept_pixel * 8 + 30) * px2, pixel_f1 = kept_pixel * 8 + 24;
@@ -174,7 +174,7 @@ TEST(NoiseEstimate, ForgetsAllBeforeAMemoryFullOfResiduals) {
   }
 }
 
-// A fit without free ranges, or without free pixels, adds nothing.
+// Residuals without redundancy in ranges or in pixels add nothing.
 TEST(NoiseEstimate, TakesResidualsOfBothKindsTogether) {
   for (const auto& [range, pixel] : {std::pair{0.0, 5.0}, {5.0, 0.0}, {0.0, 0.0}}) {
     NoiseEstimate estimate;
@@ -197,7 +197,8 @@ TEST(NoiseEstimate, KeepsEachSigmaWithinItsLimits) {
   EXPECT_DOUBLE_EQ(loud.pixel_sigma_px, k_pixel_sigma_most_px);
 }
 
-// The estimate beside one that begins with ten times the declared variance, worth three residuals.
+// The estimate against one that starts with ten times the declared variance at three degrees of
+// freedom.
 TEST(VarianceDoubt, IsTheLargerOfBothKinds) {
   NoiseEstimate estimate;
   estimate.known = true;

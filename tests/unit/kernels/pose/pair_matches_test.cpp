@@ -27,7 +27,7 @@ struct Gate {
   double distance_m = 0, delta_m = 0;
 };
 
-// The header's formula, in double precision, with the covariances as matrices.
+// Reference: the header's formula in double precision, with covariance matrices.
 Gate gate_of(const Candidates& c, int a, int b, const CorrespondSettings& settings) {
   const auto covariance = [&](int at) {
     const auto i = static_cast<std::size_t>(at);
@@ -62,7 +62,7 @@ struct Table {
   }
 };
 
-// Those whose distance is within rounding of the gate are left to either.
+// Pairs within rounding of the gate may match or not.
 TEST(PairMatches, AreThoseOfThePlainFormula) {
   Random random(3);
   Table table;
@@ -121,7 +121,7 @@ TEST(PairMatches, PartnerWhoHasAnotherAtThatDistanceEitherWay) {
           EXPECT_EQ(is_partnered(matches, i, j, a), any);
           EXPECT_EQ(is_partnered(matches, j, i, a), any);
         }
-        // Behind the last candidate no bit is set.
+        // Bits beyond the last candidate are zero.
         for (int a = 0; a < count; ++a)
           for (int b = count; b < 64 * matches.words; ++b)
             EXPECT_FALSE(has(matches, i, a, j, b)) << count << " " << b;
@@ -133,7 +133,7 @@ TEST(PairMatches, PartnerWhoHasAnotherAtThatDistanceEitherWay) {
   }
 }
 
-// Two blobs in one place have no distance, whatever the gate.
+// Two blobs at the same position have no distance, for any gate.
 TEST(PairMatches, HaveNoneOfTwoInOnePlace) {
   const Tool tool = test::tool_of<3>({{0, 0, 0}, {30, 0, 0}, {0, 40, 0}});
   CorrespondSettings settings;

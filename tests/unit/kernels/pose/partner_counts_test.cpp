@@ -14,7 +14,7 @@ bool has(const PairMatches& matches, int i, int a, int j, int b) {
           1) != 0;
 }
 
-// Of how many other markers a candidate that is marker i has a partner, one by one.
+// Reference: number of other markers at whose distance candidate a, as marker i, has a partner.
 int partners_one_by_one(const PairMatches& matches, int i, int a) {
   int partners = 0;
   for (int j = 0; j < matches.markers; ++j) {

@@ -14,7 +14,7 @@
 namespace glint {
 namespace {
 
-// The AHAT preset's lens as a table: what a device delivers.
+// The AHAT preset's lens as a table, the form in which a device delivers it.
 struct Table {
   std::vector<float> rays;
   CameraModel camera = hololens2_ahat().model;
@@ -114,7 +114,7 @@ TEST(RayTable, RefusesWhatItDoesNotHold) {
   EXPECT_FALSE(project(empty, {0, 0, 1}));
 }
 
-// A plane of rays, of which some are missing: bilinear between the four around.
+// A plane of rays, some of them missing: bilinear interpolation between four.
 struct SmallTable {
   static constexpr int k_width = 6, k_height = 4;
   std::vector<float> rays;
@@ -135,8 +135,8 @@ struct SmallTable {
   }
 };
 
-// The rays above are bilinear, so that the table has them everywhere; beyond the outermost centres
-// the nearest cell goes on.
+// These rays are bilinear in the pixel, so the table is exact everywhere. Beyond the outermost
+// centres the nearest cell is extrapolated.
 TEST(RayTable, IsBilinearBetweenItsRaysAndGoesOnToItsBorder) {
   const SmallTable small;
   for (double y = 0; y <= 4; y += 0.25) {
@@ -153,7 +153,7 @@ TEST(RayTable, IsBilinearBetweenItsRaysAndGoesOnToItsBorder) {
   EXPECT_TRUE(unproject(RayTable{2, 2, small.rays.data()}, {0.5, 0.5}));
 }
 
-// A place that needs a missing ray has none; a pixel's own centre needs no neighbour.
+// A position that needs a missing ray has none; a pixel's own centre needs no neighbour.
 TEST(RayTable, NeedsEachOfTheFourRaysThatWeigh) {
   for (const auto& [mx, my] : {std::pair{2, 1}, {3, 1}, {2, 2}, {3, 2}}) {
     SmallTable small;
@@ -163,7 +163,7 @@ TEST(RayTable, NeedsEachOfTheFourRaysThatWeigh) {
       const bool missing = x == mx && y == my;
       EXPECT_EQ(static_cast<bool>(unproject(small.table, {x + 0.5, y + 0.5})), !missing);
     }
-    // On the line between two centres the two others do not weigh.
+    // On the line between two centres the other two rays have zero weight.
     EXPECT_EQ(static_cast<bool>(unproject(small.table, {3, 1.5})), my == 2);
     EXPECT_EQ(static_cast<bool>(unproject(small.table, {2.5, 2})), mx == 3);
   }
@@ -210,7 +210,7 @@ TEST(RayTable, OfARealDeviceIsFoundAgainAndNearThePreset) {
       const Result<Vector2> fitted = project(preset.model, ray.value);
       ASSERT_TRUE(fitted);
       square += (fitted.value - pixel).squaredNorm() / 2;
-      // At the lens circle's very rim the search has no slopes to follow.
+      // At the rim of the lens circle the search has no derivatives.
       const bool rim = !unproject(camera.model, pixel + Vector2(1, 1)) ||
                        !unproject(camera.model, pixel - Vector2(1, 1)) ||
                        !unproject(camera.model, pixel + Vector2(1, -1)) ||

@@ -24,7 +24,7 @@ Vector6 error_of(const RefinedPose& pose, const Pose& truth, const Vector3& refe
   return error;
 }
 
-// Seen straight on, an exact square: by symmetry nothing couples, and every element is known.
+// An exact square seen face-on: by symmetry the covariance is diagonal and known in closed form.
 TEST(RefinePose, CovarianceOfASquareSeenStraightOnIsWhatItsGeometrySays) {
   const Tool square = test::tool_of<4>({{50, 0, 0}, {0, 50, 0}, {-50, 0, 0}, {0, -50, 0}});
   Random random(1);
@@ -76,9 +76,9 @@ TEST(RefinePose, ScattersAsItsCovarianceSaysForFlatAndSolidToolsAndSkewedPixels)
       const Scatter scatter = scatter_of(tool, tilt, k_skewed, 6000, random);
       std::printf("  %d markers, tilt %.1f: NEES/6 %.3f, bad %d, steps at most %d\n",
                   tool.marker_count, tilt, scatter.nees, scatter.bad, scatter.most.steps);
-      // 6,000 means of six squares: 0.0075, 1 sigma.
+      // Mean of 6,000 trials of six squares: sigma 0.0075.
       EXPECT_NEAR(scatter.nees, 1, 0.04);
-      EXPECT_LE(scatter.bad, 4);  // 0.6 by chi-square's tail
+      EXPECT_LE(scatter.bad, 4);  // 0.6 by the tail of chi-square
       EXPECT_EQ(scatter.gross, 0);
       for (int i = 0; i < 6; ++i)
         EXPECT_NEAR(scatter.errors(i, i) / scatter.predicted(i, i), 1, 0.08) << i;
@@ -86,7 +86,8 @@ TEST(RefinePose, ScattersAsItsCovarianceSaysForFlatAndSolidToolsAndSkewedPixels)
   }
 }
 
-// Over many views of a flat tool the truth or its flip is the start; the fit finds the truth.
+// Many views of a flat tool: from the true pose or its flip as the initial guess, the fit finds the
+// true one.
 TEST(RefinePose, TakesTheBetterOfAFlatToolsTwoMinimaAndTellsHowFarTheOtherIs) {
   Random random(3);
   const Tool tool = test::flat_tool();
@@ -114,12 +115,12 @@ TEST(RefinePose, TakesTheBetterOfAFlatToolsTwoMinimaAndTellsHowFarTheOtherIs) {
   }
   std::printf("  of 2000 the rigid fit is grossly off in %d, the refined in %d; two minima in %d\n",
               svd_gross, gross, others);
-  EXPECT_GT(svd_gross, 10);  // else the test shows nothing
+  EXPECT_GT(svd_gross, 10);  // otherwise the test has no effect
   EXPECT_EQ(gross, 0);
   EXPECT_GT(others, 1900);
 }
 
-// No four of its markers lie in a plane: its flip is no second minimum, which three steps show.
+// No four of its markers are coplanar: its flip is no second minimum, which three steps show.
 TEST(RefinePose, SparesTheFlipOfASolidTool) {
   Random random(14);
   const Tool tool = test::five_marker_pen();
@@ -138,7 +139,7 @@ TEST(RefinePose, SparesTheFlipOfASolidTool) {
   EXPECT_LT(static_cast<double>(steps) / k_views, 6.5);
 }
 
-// Unsure ranges as the mirror image has them: the rigid fit takes it, the pixels know better.
+// Imprecise ranges of the mirror image: the rigid fit selects it, the pixels contradict it.
 TEST(RefinePose, LeavesTheMirrorImageThatTheRangesAloneWouldTake) {
   Random random(11);
   const Tool tool = test::flat_tool();
@@ -178,7 +179,8 @@ TEST(RefinePose, LeavesOutTheOneMarkerThatDoesNotFit) {
   EXPECT_GE(named, 297);
 }
 
-// Six sigmas off: several fits without one marker would be explained, the least counts.
+// An outlier of six sigmas: several fits without one marker pass the test, and the least chi-square
+// is chosen.
 TEST(RefinePose, LeavesOutTheLikeliestWhereSeveralWouldDo) {
   Random random(12);
   int several = 0, named = 0;
@@ -194,7 +196,7 @@ TEST(RefinePose, LeavesOutTheLikeliestWhereSeveralWouldDo) {
   }
   std::printf("  of %d left out one marker, %d the wrong one\n", several, several - named);
   EXPECT_GT(several, 300);
-  EXPECT_EQ(named, several);  // the last explained instead of the least: 3 of 383 wrong
+  EXPECT_EQ(named, several);  // the last that passes instead of the least: 3 of 383 wrong
 }
 
 TEST(RefinePose, CallsItABadFitWhereNoSingleMarkerIsToBlame) {
@@ -223,7 +225,7 @@ TEST(RefinePose, CallsFourMarkersOfWhichOneIsWrongABadFit) {
   EXPECT_GT(pose.chi_square, 30);
 }
 
-// The prior of an earlier estimate with the same noise is worth as much as a second look.
+// A prior from an earlier estimate with the same noise has the weight of a second measurement.
 TEST(RefinePose, APriorCountsLikeTheMeasurementItStandsFor) {
   Random random(6);
   const Tool tool = test::five_marker_pen();
@@ -243,7 +245,7 @@ TEST(RefinePose, APriorCountsLikeTheMeasurementItStandsFor) {
     EXPECT_EQ(updated.degrees_of_freedom, 15);
     const PoseFactor sure = pose_factor(together.covariance).value;
     const Vector6 apart = error_of(updated, together.T_camera_tool, tool.tip_m);
-    EXPECT_LT(apart.dot(sure.solve(apart)), 0.4) << trial;  // the second order of the noise
+    EXPECT_LT(apart.dot(sure.solve(apart)), 0.4) << trial;  // second order in the noise
     for (int i = 0; i < 6; ++i)
       EXPECT_NEAR(updated.covariance(i, i) / together.covariance(i, i), 1, 0.1);
   }
@@ -301,7 +303,7 @@ TEST(RefinePose, SaysWhyMarkersFixNoPose) {
   EXPECT_EQ(refine_pose(markers, tip).reason, Reason::collinear);
 }
 
-// Eight markers of which two are wrong: every marker is left out in vain.
+// Eight markers, one to eight of them wrong: with two or more, removing a single one does not help.
 TEST(RefinePose, EndsWithinItsDeclaredWorkAtItsWorst) {
   Random random(9);
   RefineWork most;

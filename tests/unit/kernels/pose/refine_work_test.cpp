@@ -1,5 +1,4 @@
-// What the refined pose and the decision between labelings count, and each field that they fill,
-// against single fits.
+// Work counts and output fields of refine_pose and of the labeling decision, against single fits.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -64,7 +63,7 @@ TEST(RefineWork, IsAStepForEachMarkerOfAllAndOneFewerOfThoseLeftOut) {
   }
 }
 
-// Where the markers alone fix no rigid fit one fit begins at the prior.
+// Without a rigid fit from the markers, a single fit starts from the prior.
 TEST(RefineWork, OfOneOrTwoMarkersIsOneFit) {
   Random random(2);
   const Tool tool = test::five_marker_pen();
@@ -82,7 +81,7 @@ TEST(RefineWork, OfOneOrTwoMarkersIsOneFit) {
   }
 }
 
-// The pose, and the other minimum, are each a fit that begins near by.
+// The pose and the second minimum each equal a fit that starts near it.
 TEST(RefinePoseFields, AreThoseOfAFitThatBeginsAtEachMinimum) {
   Random random(3);
   const Tool tool = test::flat_tool();
@@ -118,7 +117,7 @@ TEST(RefinePoseFields, AreThoseOfAFitThatBeginsAtEachMinimum) {
   EXPECT_GT(others, 40);
 }
 
-// Tilted by less than 29 degrees, and nearly as likely.
+// Tilted by less than 29 degrees, and the flip nearly as likely.
 TEST(RefinePoseFields, AreShallowBelowATiltWhereTheFlipIsNearlyAsLikely) {
   Random random(4);
   const Tool tool = test::flat_tool();
@@ -140,7 +139,7 @@ struct View {
   Labelings labelings;
 };
 
-// The tool's markers, `copies` labelings that all name them rightly.
+// The tool's markers and `copies` correct labelings.
 void fill(View& view, const Tool& tool, const Pose& pose, int copies, Random& random) {
   const CameraModel camera = test::pinhole();
   view.markers.count = 0;
@@ -187,15 +186,15 @@ TEST(DecideWork, IsTheSumOfTheFitsOfEachLabelingThatIsLookedAt) {
   view->labelings.count = -1;
   EXPECT_EQ(decide(*view, tool).work.fits, 0);
   EXPECT_EQ(decide(*view, tool).reason, Reason::no_labeling);
-  // Behind one that is explained those of fewer markers are not fitted.
+  // After a labeling that passes the test, labelings of fewer markers are not fitted.
   view->labelings.count = 3;
   view->labelings.items[1].marker[4] = -1;
   view->labelings.items[1].count = 4;
   EXPECT_EQ(decide(*view, tool).work.fits, 2);
 }
 
-// Each has one bad marker: the first that is explained without one of its markers stands, the
-// others are not fitted again.
+// Each has one bad marker. The first labeling that passes without one marker is chosen; the others
+// are not fitted again.
 TEST(DecideWork, EndsWithTheFirstThatIsExplainedWithoutOneMarker) {
   Random random(6);
   const Tool tool = test::five_marker_pen();
@@ -216,7 +215,7 @@ TEST(DecideWork, EndsWithTheFirstThatIsExplainedWithoutOneMarker) {
   EXPECT_EQ(none.work.fits, 3 * 2) << "no second pass";
 }
 
-// The least chi-square of those with the most markers, and by how much the next is worse.
+// Least chi-square among the labelings with the most markers, and the excess of the next one.
 TEST(DecideLabelingFields, AreTheLeastChiSquareAndTheNextOnesDistance) {
   Random random(7);
   const Tool square = test::tool_of<4>({{0, 0, 0}, {0, 60, 0}, {0, 60, 60}, {0, 0, 60}});

@@ -53,7 +53,7 @@ double rms_of(const Pose& pose, const std::vector<Vector3>& model,
   return std::sqrt(squares / static_cast<double>(model.size()));
 }
 
-// No small step in any of the six directions makes the residual smaller.
+// No small step in any of the six directions lowers the residual.
 void expect_least_residual(const RigidFit& fit, const std::vector<Vector3>& model,
                            const std::vector<Vector3>& measured) {
   ASSERT_EQ(fit.reason, Reason::none);
@@ -164,7 +164,7 @@ TEST(Tool, IsRefusedWhenItsMarkersFixNoPose) {
   EXPECT_EQ(prepare_tool(tool), Reason::out_of_range);
 }
 
-// Its numbers were sought for it: FNV-1a of them is zero.
+// Values chosen so that their FNV-1a hash is zero.
 TEST(Tool, WhoseHashIsZeroStillHasAnIdentity) {
   Tool tool;
   tool.marker_count = 3;
@@ -184,8 +184,8 @@ Tool small_tool() {
   return tool;
 }
 
-// Each part of the body alone; its name, its sigmas and what stands behind its markers do not
-// count.
+// Each part of the body alone changes the identity. Name, sigmas and unused elements of markers_m
+// do not.
 TEST(Tool, HasAnotherIdentityWhereAnyPartOfItsBodyDiffers) {
   const auto identity = [](auto&& change) {
     Tool tool = small_tool();
@@ -259,7 +259,7 @@ TEST(Tool, HasItsMarkersMeanAsItsMiddleAndASpheresRadiusBehindItsSurface) {
   EXPECT_FALSE(tool.present());
 }
 
-// All points within a micrometre of their mean, and a little further.
+// Points within a micrometre of their mean, and slightly further apart.
 TEST(RigidFit, CallsPointsWithinAMicrometreOnePlace) {
   const auto square = [](double side) {
     return std::vector<Vector3>{{side, 0, 0}, {0, side, 0}, {-side, 0, 0}, {0, -side, 0}};

@@ -18,7 +18,7 @@ double middle_of(std::vector<double> values) {
   return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
 }
 
-// The plain version.
+// Reference version.
 RobustMean plain(const std::vector<double>& values, double gate_least) {
   RobustMean out;
   out.median = middle_of(values);

@@ -1,5 +1,5 @@
-// Random tools and views of them, the same on every machine: splitmix64 by counter, normals by
-// Box and Muller 1958 from the core's own functions.
+// Random tools and views of them, equal on every machine: splitmix64 by counter, normal values by
+// Box and Muller 1958 with the core's own functions.
 #pragma once
 
 #include <array>
@@ -52,7 +52,7 @@ class Random {
   std::uint64_t state_;
 };
 
-// The order of the bits of many numbers in one: 64-bit FNV-1a.
+// 64-bit FNV-1a hash over the bits of many numbers.
 class BitHash {
  public:
   void add(double value) {
@@ -80,7 +80,7 @@ Tool tool_of(const Vector3 (&markers_mm)[N]) {
   return tool;
 }
 
-// Five spheres; sides from 52 to 163 mm, 9.5 mm apart.
+// Five spheres; distances from 52 to 163 mm, which differ by at least 9.5 mm.
 inline Tool five_marker_pen() {
   return tool_of<5>({{-2, 23, 232}, {-40, 45, 115}, {45, 45, 240}, {-8, -45, 115}, {22, 24, 129}});
 }
@@ -122,7 +122,7 @@ inline void add_marker(Markers& markers, const Tool& tool, const Vector3& centre
   marker.ray = centre.normalized();
 }
 
-// The tool half a metre away in any orientation, strays around it, all in random order.
+// The tool at 0.5 m in a random orientation with stray reflections around it, in random order.
 inline Scene scene_of(const Tool& tool, const SceneSettings& settings, Random& random) {
   Scene scene;
   scene.truth.fill(-1);

@@ -19,7 +19,7 @@ CameraModel pinhole() {
   return camera;
 }
 
-// The mean of all places that see the sphere, on a grid of a tenth of a pixel.
+// Image centroid of the sphere: mean of all positions whose ray meets it, on a grid of 0.1 px.
 Vector2 seen_middle(const CameraModel& camera, const Vector3& centre, double radius_m) {
   const Vector2 about = project(camera, centre).value;
   const double least = std::sqrt(1 - std::pow(radius_m / centre.norm(), 2));
@@ -43,7 +43,7 @@ Vector3 at_angle(double degrees, double azimuth, double range_m) {
                            std::cos(angle));
 }
 
-// f a^2 tan(t) / cos^2(t), as the ellipse's middle by its two rims has it to second order.
+// f a^2 tan(t) / cos^2(t): to second order, the ellipse's centre between its two rims.
 TEST(SphereShift, OfAPinholeIsThatOfTheSilhouettesEllipse) {
   const SphereShift shift = sphere_shift(pinhole());
   for (const double degrees : {3.0, 10.0, 25.0, 45.0}) {
@@ -58,7 +58,7 @@ TEST(SphereShift, OfAPinholeIsThatOfTheSilhouettesEllipse) {
   }
 }
 
-// Without them the same spheres are up to 0.19 px off by the pinhole.
+// Without the correction the centroids of these spheres are up to 0.19 px off, for the pinhole.
 TEST(SphereShift, MovesTheMiddleOfWhatIsSeenToTheCentreForEveryLens) {
   const CameraModel lenses[] = {pinhole(), hololens1_short_throw().model, hololens2_ahat().model};
   for (const CameraModel& camera : lenses) {
@@ -94,7 +94,7 @@ TEST(SphereShift, OfATableIsThatOfItsLens) {
   }
 }
 
-// A place far outside, a lens that maps nothing, a camera without a size: numbers all the same.
+// Position far outside, a lens without rays, a camera without a size: the result is finite.
 TEST(SphereShift, IsANumberWhateverTheCamera) {
   CameraModel nothing;
   CameraModel blind = hololens2_ahat().model;
@@ -112,7 +112,7 @@ TEST(SphereShift, IsANumberWhateverTheCamera) {
   EXPECT_EQ(shift_px({}, {100, 100}, 0.02), Vector2(0, 0));
 }
 
-// f tan(t) / cos^2(t): a gain of 1 / cos^2(t) a unit of distance, at each of the table's places.
+// f tan(t) / cos^2(t): the gain is 1 / cos^2(t) per unit of distance, at each table entry.
 TEST(SphereShift, GainOfAPinholeIsTheSquareOfTheSecant) {
   CameraModel camera = pinhole();
   camera.width = 700;
@@ -130,7 +130,7 @@ TEST(SphereShift, GainOfAPinholeIsTheSquareOfTheSecant) {
   }
 }
 
-// Of a table of its own: even steps of the squared distance, as at the last one beyond.
+// A table with known entries: equal steps of the squared distance, constant beyond the last.
 TEST(SphereShift, InterpolatesItsTableByTheSquaredDistance) {
   SphereShift shift;
   shift.axis_px = {30, 40};
@@ -154,7 +154,7 @@ TEST(SphereShift, InterpolatesItsTableByTheSquaredDistance) {
   EXPECT_NEAR(gain_at(500, 900), 1 + last * last, 1e-9);
 }
 
-// As g++ -O3 and clang++ -O1 on x86-64 and g++ on arm64 have them.
+// Bits of g++ -O3 and clang++ -O1 on x86-64 and of g++ on arm64.
 TEST(SphereShift, HasTheSameBitsEverywhere) {
   const Vector2 moved =
       shift_px(sphere_shift(hololens1_short_throw().model), {400.25, 300.5}, 0.02);

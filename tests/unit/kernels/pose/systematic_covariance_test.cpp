@@ -17,7 +17,7 @@ using test::Random;
 
 constexpr MarkerVariance k_variance{0.01, 0.002, 0.012, 0.0015 * 0.0015};
 
-// One marker's pixel, range and position in the tool as the tracker takes them.
+// Pixel, range and model position of one marker as the tracker uses them.
 struct Taken {
   Vector2 pixel;
   double range_m = 0;
@@ -49,7 +49,7 @@ struct Scene {
   }
 };
 
-// What the error moves the fitted pose by: of the reference, and about the camera's axes.
+// Change of the fitted pose by the error: reference point, and rotation about the camera's axes.
 Vector6 moved_by(const Tool& tool, const Pose& pose, const Vector3& reference_m, const Error& error,
                  const CameraModel& camera = test::pinhole()) {
   const Pose found = Scene(tool, pose, error, camera).fitted();
@@ -59,7 +59,7 @@ Vector6 moved_by(const Tool& tool, const Pose& pose, const Vector3& reference_m,
   return moved;
 }
 
-// The same sum by refits: each parameter is off by a hundredth of its standard deviation, which
+// The same sum by refits. Each parameter is off by a hundredth of its standard deviation, which
 // keeps the fit linear.
 Matrix6 by_refits(const Tool& tool, const Pose& pose, const Vector3& reference_m,
                   const CameraUncertainty& camera, double marker_sigma_m) {
@@ -131,7 +131,7 @@ TEST(SystematicCovariance, IsTheSumOverRefitsWithEachParameterOff) {
   }
 }
 
-// One parameter alone, so that none hides behind a larger one.
+// One parameter at a time, so that a larger one cannot hide it.
 TEST(SystematicCovariance, HasEachParametersShare) {
   const Vector3 reference_m(0, 0, 0.1);
   const std::array<CameraUncertainty, 6> alone = {{{0.006, 0, 0, 0, 0, 0, 0, 0},
@@ -156,7 +156,7 @@ TEST(SystematicCovariance, HasEachParametersShare) {
   expect_share(k_exact_camera, 0.0003);
 }
 
-// 0.5 of the tangent off the axis, a pixel of this lens turns the ray a sixth more than a
+// At a tangent of 0.5 off the axis, a pixel of this lens rotates the ray a sixth more than a
 // pinhole's.
 TEST(SystematicCovariance, FocalLengthActsAsTheLensDistorts) {
   CameraModel camera = test::pinhole();

@@ -1,4 +1,4 @@
-// Glint undistorts the centroids, not the frame. Here both ways meet.
+// Undistortion of centroids, as Glint does it, against centroids of the undistorted frame.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -30,7 +30,7 @@ std::vector<Vector2> centroids_of(const cv::Mat& image) {
   return out;
 }
 
-// What a lens makes of discs that face the camera: each pixel is the mean of 6 x 6 rays.
+// Image of discs that face the camera through a lens; each pixel is the mean of 6 x 6 rays.
 cv::Mat render(const CameraModel& camera, const std::vector<Vector2>& discs, double radius) {
   cv::Mat image(camera.height, camera.width, CV_16UC1, cv::Scalar(300));
   for (const Vector2& disc : discs) {
@@ -60,7 +60,7 @@ TEST(UndistortBlobs, AgreesWithUndistortingTheFrame) {
   }
   const cv::Mat frame = render(camera, discs, 0.014);
 
-  // The frame first, then its centroids.
+  // Undistort the frame, then compute centroids.
   const cv::Matx33d matrix{camera.fx, 0, camera.cx - 0.5, 0, camera.fy, camera.cy - 0.5, 0, 0, 1};
   const auto& k = camera.distortion;
   cv::Mat map_x, map_y, undistorted;
@@ -69,7 +69,7 @@ TEST(UndistortBlobs, AgreesWithUndistortingTheFrame) {
   cv::remap(frame, undistorted, map_x, map_y, cv::INTER_LINEAR);
   const std::vector<Vector2> from_frame = centroids_of(undistorted);
 
-  // The centroids first, then the lens.
+  // Compute centroids, then undistort them.
   std::vector<Vector2> from_blobs;
   double moved = 0;
   for (const Vector2& pixel : centroids_of(frame)) {
@@ -80,7 +80,7 @@ TEST(UndistortBlobs, AgreesWithUndistortingTheFrame) {
   }
   ASSERT_EQ(from_blobs.size(), discs.size());
   ASSERT_EQ(from_frame.size(), discs.size());
-  EXPECT_GT(moved, 5);  // the lens is worth the trouble
+  EXPECT_GT(moved, 5);  // the distortion is significant
   for (const Vector2& a : from_blobs) {
     double nearest = 1e9;
     for (const Vector2& b : from_frame) nearest = std::min(nearest, (a - b).norm());

@@ -1,4 +1,4 @@
-// The parts of the weighted fit, each against what it stands for.
+// Parts of the weighted fit, each against its definition.
 #include "kernels/pose/weighted_fit.hpp"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ TEST(ChiSquareLimit, IsTheTextbooksAndGrows) {
   EXPECT_EQ(chi_square_limit(99), chi_square_limit(24));
 }
 
-// One pixel to the right, with a sigma of 0.2 px there and the range 2 sigmas short.
+// One pixel to the right, sigma 0.2 px along that axis; the range is 2 sigmas short.
 TEST(WeightedMarker, CountsInSigmasOfThePixelAndTheRange) {
   const CameraModel camera = test::pinhole();
   int lens_steps = 0;
@@ -216,7 +216,7 @@ TEST(WeightedFit, FindsThePoseOfExactMarkersFromFarAway) {
   }
 }
 
-// Against where the same fit rests that begins where it ended.
+// Against a second fit that starts from the converged pose.
 TEST(WeightedFit, EndsWithinAHundredthOfASigma) {
   test::Random random(12);
   double worst = 0;
@@ -242,7 +242,7 @@ TEST(WeightedFit, EndsWithinAHundredthOfASigma) {
   EXPECT_LT(std::sqrt(worst), 0.01);
 }
 
-// What is given up goes the long way round to the pose that is known, or stays as bad.
+// A fit that ends early would have converged slowly to the known pose, or stayed as bad.
 TEST(WeightedFit, GivesUpWhereAStartLeadsNowhereNear) {
   test::Random random(13);
   const Tool tool = test::five_marker_pen();

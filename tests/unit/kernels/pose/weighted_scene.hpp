@@ -1,4 +1,4 @@
-// A tool seen by a pinhole camera of AHAT's focal length, each marker with its own noise.
+// A tool seen by a pinhole camera of AHAT's focal length, with noise on each marker.
 #pragma once
 
 #include <vector>
@@ -18,7 +18,7 @@ inline CameraModel pinhole() {
   return camera;
 }
 
-// NDI's passive rigid body 8700339: four spheres exactly in a plane.
+// NDI's passive rigid body 8700339: four exactly coplanar spheres.
 inline Tool flat_tool() {
   return tool_of<4>({{0, 0, 0}, {0, 28.59, 41.02}, {0, 0, 88}, {0, -44.32, 40.45}});
 }
@@ -29,16 +29,16 @@ inline Vector3 mean_of_markers(const Tool& tool) {
   return mean / tool.marker_count;
 }
 
-// The least turn from the line of sight to `place`, which is in front of the camera.
+// The smallest rotation from the optical axis to `place`, which is in front of the camera.
 inline Quaternion turn_to(const Vector3& place) {
   const Vector3 ahead = Vector3::UnitZ();
-  Quaternion half;  // twice the turn's quaternion has the cosine of half of it
+  Quaternion half;  // 1 + cos and the cross product: twice cos(angle / 2) times the quaternion
   half.w() = 1 + ahead.dot(place.normalized());
   half.vec() = ahead.cross(place.normalized());
   return half.normalized();
 }
 
-// The tool's mean at `place`, its x axis at this angle from the line of sight.
+// The tool's mean at `place`, its x axis at this angle to the line of sight.
 inline Pose tilted_pose(const Tool& tool, double tilt_rad, const Vector3& place, Random& random) {
   const Quaternion facing = from_rotation_vector(Vector3(0, 1.5707963267948966, 0));
   const double around = random.within(0, 6.283185307179586);
@@ -51,7 +51,7 @@ inline Pose tilted_pose(const Tool& tool, double tilt_rad, const Vector3& place,
   return pose;
 }
 
-// Each marker measured with noise of `variance`; noise 0: exactly, but weighted the same.
+// Each marker measured with noise of `variance`; noise 0: exact, with unchanged weights.
 inline std::vector<WeightedMarker> weighted_view(const Tool& tool, const Pose& pose,
                                                  const MarkerVariance& variance, double noise,
                                                  Random& random) {
