@@ -49,7 +49,7 @@ std::vector<StampedPose> own_series(const Movement& how, int count = 450) {
   return poses;
 }
 
-// The reference at 100 Hz; its clock is ahead by k_offset_s.
+// Reference poses at 100 Hz, with time stamps ahead by k_offset_s.
 std::vector<StampedPose> reference_series(const Movement& how) {
   std::vector<StampedPose> poses;
   for (int i = 0; i < 1200; ++i) {
@@ -70,7 +70,7 @@ TEST(Align, FindsFrameLeverArmAndOffsetOfExactSeries) {
   EXPECT_LT(found.T_tool_body.rotation.angularDistance(k_y.rotation), 1e-4);
 }
 
-// Of 20 runs the mean squared error in sigmas of the offset is within 1 +- 0.7.
+// The mean NEES of the time offset over 20 runs is 1 +- 0.7.
 TEST(Align, KnowsHowSureItIs) {
   double offset = 0, lever = 0;
   constexpr int k_runs = 20;
@@ -86,7 +86,7 @@ TEST(Align, KnowsHowSureItIs) {
         k_runs;
   }
   EXPECT_NEAR(offset, 1, 0.7);
-  EXPECT_GT(lever, 0.8);  // the sigma is the worst axis's: between one and three of its squares
+  EXPECT_GT(lever, 0.8);  // lever_sigma_m is the largest of three axes: NEES between 1 and 3
   EXPECT_LT(lever, 3.5);
 }
 

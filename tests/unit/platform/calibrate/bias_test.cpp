@@ -17,14 +17,14 @@ namespace {
 const Vector3 k_shift_m{0.0012, -0.0008, 0.0021};
 const Vector3 k_turn_rad{0.004, -0.006, 0.002};
 
-// A tool held still at a few places one after the other, measured with noise and a constant error;
-// from place to place it moves for a second.
+// A tool that is static at several positions in turn, with measurement noise and a constant error.
+// It moves for one second between two positions.
 struct Stillness {
   CorrectionFrame frame = CorrectionFrame::tool;
   Vector3 shift_m = k_shift_m, turn_rad = k_turn_rad;
   double position_noise_m = 0.0004, rotation_noise_rad = 0.003;
   int places = 3;
-  double speed_m_s = 0;  // of a slow drift that never rests
+  double speed_m_s = 0;  // constant drift, which leaves no static window
   std::uint64_t seed = 1;
 };
 
@@ -90,7 +90,7 @@ TEST(Bias, FindsAConstantErrorAlongEitherFrame) {
   }
 }
 
-// Of 60 runs the squared errors in sigmas, six components: 1 +- 0.25 (4.7 sigma of chance).
+// The mean NEES of 60 runs, six components each, is 1 +- 0.25 (4.7 standard deviations).
 TEST(Bias, KnowsHowSureItIs) {
   double sum = 0;
   constexpr int k_runs = 60;

@@ -29,7 +29,7 @@ class CameraCalibration : public testing::Test {
     return folder_ + "/" + name;
   }
 
-  // A board of 9 x 6 inner corners, 20 mm apart, as this camera sees it: 3 x 3 rays a pixel.
+  // Images of a chessboard with 9 x 6 inner corners, 20 mm apart, rendered with 3 x 3 rays a pixel.
   std::vector<std::string> board_pictures(const CameraModel& camera, double tilt_rad,
                                           int views) const {
     std::vector<std::string> paths;
@@ -99,7 +99,7 @@ TEST_F(CameraCalibration, FindsTheLensFromPicturesOfABoard) {
   EXPECT_LT(fit.rms_px, 0.1);
   EXPECT_NEAR(fit.model.fx, 250, 1.0);
   EXPECT_NEAR(fit.model.fy, 252, 1.0);
-  EXPECT_NEAR(fit.model.cx, 163.2, 0.45);  // half a pixel off is a convention mixed up
+  EXPECT_NEAR(fit.model.cx, 163.2, 0.45);  // half a pixel: mixed pixel conventions
   EXPECT_NEAR(fit.model.cy, 141.7, 0.45);
 }
 

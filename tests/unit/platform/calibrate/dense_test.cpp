@@ -9,7 +9,7 @@
 namespace glint::dense_test {
 namespace {
 
-// Symmetric, of this rank, with eigenvalues far from 0 but for those that are 0.
+// Returns a symmetric matrix of this rank; its nonzero eigenvalues are far from 0.
 Eigen::MatrixXd symmetric(test::Random& random, int size, int rank) {
   Eigen::MatrixXd root(size, rank);
   for (int c = 0; c < rank; ++c)

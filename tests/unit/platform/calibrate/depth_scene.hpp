@@ -1,4 +1,4 @@
-// A tool as blobs in a camera, near and far, bright and dim, its ranges too long by a known bias.
+// Synthetic blobs of a tool at varied range and brightness, with a given range bias.
 #pragma once
 
 #include <cmath>
@@ -12,16 +12,16 @@ namespace glint::test {
 struct DepthScene {
   DepthBias bias{0.006, -0.008, 0.004, 0.01, 10};
   double near_m = 0.3, far_m = 0.8;
-  // The peak at 0.5 m, from dim_part of it on; by the square of the range where `falls`.
+  // Peak at 0.5 m; each blob's is a random part of it, from dim_part to 1.
   double peak = 20'000, dim_part = 0.15;
-  double falls = 2;  // power of the range by which brightness falls
+  double falls = 2;  // exponent of the decrease of brightness with range
   double pixel_sigma_px = 0.1, range_sigma_m = 0.002;
   int frames = 300;
   int strays = 0;
   std::uint64_t seed = 1;
 };
 
-// Made as it is drawn.
+// The built-in pen without marker position errors.
 inline Tool scene_tool() {
   Tool tool = default_pen();
   tool.marker_sigma_m = 0;
@@ -60,7 +60,7 @@ inline bool add_blob(const DepthScene& scene, const Camera& camera, const Vector
   blob.rays = rays.value;
   const double surface = centre.norm() - behind_m;
   blob.peak = std::floor(scene.peak * part * std::pow(0.5 / surface, scene.falls));
-  // The bias is that of the range as measured: range = surface + bias(range, peak).
+  // The bias is a function of the measured range: range = surface + bias(range, peak).
   const DepthBias& bias = scene.bias;
   const double at_zero = surface + bias.offset_m - bias.per_metre * DepthBias::k_reference_m +
                          bias.dim_m * DepthBias::k_reference_counts / blob.peak;

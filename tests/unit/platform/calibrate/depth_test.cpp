@@ -29,7 +29,7 @@ TEST(Depth, NamesTheMarkersAmongStraysThoughTheirRangesAreTooLong) {
   int wrong = 0;
   for (const Sighting& sighting : seen.sightings) {
     for (const SeenMarker& marker : sighting.markers) {
-      // The scene adds the markers in the tool's order.
+      // The scene adds the markers in the tool's order, so a blob's index is its marker's.
       const auto f = static_cast<std::size_t>(sighting.pose.time.nanoseconds / 22'000'000);
       const BlobFrame frame = test::blobs_of(scene).frames[f];
       const auto m = static_cast<std::size_t>(marker.marker);
@@ -54,7 +54,7 @@ TEST(Depth, FindsTheBiasAndTheNoiseAndWhatItTakesOff) {
   const DepthScene scene{.frames = 400};
   const DepthCalibration found = found_in(scene);
   const Vector3 off = values_of(found.bias) - values_of(scene.bias);
-  EXPECT_LT(off.dot(found.covariance.llt().solve(off)), 16.3);  // one in 1000
+  EXPECT_LT(off.dot(found.covariance.llt().solve(off)), 16.3);  // chi-square, 3 dof, level 1e-3
   EXPECT_LT(std::sqrt(found.covariance(0, 0)), 0.0005);
   EXPECT_NEAR(found.range_sigma_m, scene.range_sigma_m, 0.15 * scene.range_sigma_m);
   EXPECT_NEAR(found.pixel_sigma_px, scene.pixel_sigma_px, 0.15 * scene.pixel_sigma_px);
@@ -64,7 +64,7 @@ TEST(Depth, FindsTheBiasAndTheNoiseAndWhatItTakesOff) {
   EXPECT_LT(found.outliers, found.markers / 50);
 }
 
-// Of 40 runs the mean squared error in sigmas, 3 numbers each: 1 +- 0.4 (3.1 sigma of chance).
+// The mean NEES of 40 runs, 3 parameters each, is 1 +- 0.4 (3.1 standard deviations).
 TEST(Depth, KnowsHowSureItIs) {
   double sum = 0;
   constexpr int k_runs = 40;
@@ -78,7 +78,8 @@ TEST(Depth, KnowsHowSureItIs) {
   EXPECT_NEAR(sum, 1, 0.4);
 }
 
-// The tool's size is a ruler as exact as its markers' places: 0.3 mm an axis over its spread.
+// Marker position errors of 0.3 mm an axis limit the tool's size, the scale reference: its variance
+// is that of one axis over the sum of squared distances to the centre.
 TEST(Depth, CountsWhatTheToolsPlacesLeaveOfItsSize) {
   const DepthScene scene{.frames = 150};
   Tool drawn = test::scene_tool();
@@ -115,14 +116,14 @@ TEST(Depth, SaysWhichPartTheRunLeavesOpen) {
                            {"scene.mcap", "mm_per_m stays open", "towards the camera and away"});
   const DepthScene even{.dim_part = 0.9, .falls = 0};
   test::expect_input_error([&] { (void)found_in(even); }, {"dim_mm stays open", "--no-brightness"});
-  DepthCalibrationSettings by_range;  // what dimness adds is then the offset's
+  DepthCalibrationSettings by_range;  // without this term the offset includes the dimness bias
   by_range.brightness = Brightness::left_out;
   EXPECT_EQ(found_in(even, by_range).bias.dim_m, 0);
   const DepthScene few{.frames = 20};
   test::expect_input_error([&] { (void)found_in(few); }, {"in 20 frames", "at least 50"});
 }
 
-// As bright as the range has it and no other: the slope and the dimness do the same.
+// If brightness depends on range alone, the slope and the dimness term are not separable.
 TEST(Depth, SaysWhenBrightnessFollowsRange) {
   const DepthScene tied{
       .peak = 3000, .dim_part = 0.999, .falls = 1, .range_sigma_m = 0.004, .frames = 60};

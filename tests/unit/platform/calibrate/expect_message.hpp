@@ -1,4 +1,4 @@
-// An InputError whose message says all of the words.
+// Expects an InputError whose message contains all given words.
 #pragma once
 
 #include <gtest/gtest.h>

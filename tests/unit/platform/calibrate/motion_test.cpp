@@ -14,7 +14,7 @@
 namespace glint {
 namespace {
 
-// A hand that moves as the model says, by its exact steps at 500 Hz, measured with noise.
+// A hand simulated by exact steps of the motion model at 500 Hz, measured with noise.
 struct Hand {
   MotionSettings motion{2.0, 3.0, 300, 12};
   MeasuredNoise noise{0.0005, 0.004};
@@ -93,7 +93,7 @@ MotionUnknowns unknowns_of(const MotionSettings& motion, MotionPart part) {
 
 constexpr MotionPart k_parts[] = {MotionPart::shift, MotionPart::rotation};
 
-// The kernel's filter, its innovations' likelihood summed up beside it.
+// Log likelihood from the innovations of the kernel's own filter.
 double kernel_likelihood(std::span<const StampedPose> measured, MotionPart part,
                          const MotionSettings& motion, const MeasuredNoise& noise) {
   Matrix6 covariance = Matrix6::Zero();
@@ -132,7 +132,7 @@ TEST(MotionLikelihood, HasTheGradientThatDifferencesHave) {
   const std::vector<StampedPose> measured = moved_by(hand).samples;
   const LikelihoodSettings settings{hand.noise, {}, 0.5};
   for (const MotionPart part : k_parts) {
-    // Away from the most likely one, where the gradient is none.
+    // Off the maximum of the likelihood, where the gradient vanishes.
     MotionUnknowns at = unknowns_of(hand.motion, part);
     at.noise *= 2;
     at.damping *= 0.6;
@@ -164,7 +164,7 @@ TEST(MotionLikelihood, StartsAnewAfterAGap) {
   EXPECT_EQ(found.innovations, before - 30 - 2);
 }
 
-// The mean squared error in sigmas, of two unknowns and so many runs.
+// Mean NEES of the two unknowns over `runs` runs.
 double errors_in_sigmas(MotionPart part, int runs, double seconds) {
   double sum = 0;
   for (int run = 0; run < runs; ++run) {
@@ -182,7 +182,7 @@ double errors_in_sigmas(MotionPart part, int runs, double seconds) {
   return sum;
 }
 
-// 2.5 sigma of chance each.
+// Tolerances are 2.5 standard deviations of the mean NEES.
 TEST(MotionFit, FindsAShiftsNoiseAndDampingAndKnowsHowSureItIs) {
   EXPECT_NEAR(errors_in_sigmas(MotionPart::shift, 8, 8), 1, 0.9);
 }
@@ -216,7 +216,7 @@ TEST(Motion, SaysWhatARecordingLeavesOpen) {
   test::expect_input_error(
       [&] { (void)calibrate_motion(std::span(&rest, 1), settings, "rest.tum"); },
       {"rest.tum", "leaves the shift's", "open", "stand out", "starts, stops and turns"});
-  // A tool that is moved and never turned.
+  // Translation only: the rotation is unobservable.
   const Hand hand{.seconds = 12};
   Trajectory slid = moved_by(hand);
   for (std::size_t i = 0; i < slid.samples.size(); ++i)

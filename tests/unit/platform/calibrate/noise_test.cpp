@@ -15,7 +15,7 @@ namespace {
 const AxisNoise k_position{0.0001, 0.0003, 0.0005}, k_rotation{0.001, 0.003, 0.002};
 constexpr CorrelationTimes k_times{0.5, 20};
 
-// A tool at rest, poses every 0.2 s, with this noise on all axes.
+// Poses of a static tool every 0.2 s, with this noise on all axes.
 std::vector<StampedPose> rest(int frames, std::uint64_t seed) {
   const sim::RandomKey key{seed, sim::Stream::reference};
   const double keep_fast = std::exp(-0.2 / k_times.fast_s);
@@ -57,7 +57,8 @@ TEST(Noise, IsFoundByItsAllanDeviation) {
   EXPECT_NEAR(std::sqrt(fast), k_position.fast, 0.2 * k_position.fast);
   EXPECT_NEAR(std::sqrt(slow), k_position.slow, 0.3 * k_position.slow);
   EXPECT_LT(found.worst_factor, 1.5);
-  // The model's own deviation, where no closed form is trusted: one frame's white and fast noise.
+  // The model's Allan deviation at one frame: white and fast noise only, where the test uses no
+  // closed form.
   EXPECT_NEAR(allan_deviation({0.002, 0, 0}, k_times, 0.2, 4), 0.001, 1e-12);
 }
 
@@ -89,7 +90,7 @@ TEST(Noise, OfTwoBodiesIsThatOfTheirRelativePose) {
     EXPECT_LT((pose.pose.translation - Vector3(0.1, 0, 0.5)).norm(), 0.005);
 }
 
-// Marker errors are recovered from the pose errors that they cause.
+// The marker errors are recovered from the pose errors that they cause.
 TEST(Noise, GivesTheErrorsOfEachMarker) {
   const Cell cell = default_cell();
   const Tool& tool = cell.tools.items[0];
@@ -123,7 +124,7 @@ TEST(Noise, GivesTheErrorsOfEachMarker) {
   EXPECT_NEAR(found.slow_centroid_px, 0.08, 1e-4);
   EXPECT_NEAR(found.fast_share, 0.3, 1e-9);
   EXPECT_EQ(found.principal_point_px, cell.camera.uncertainty.principal_point_px);
-  // White noise alone leaves no marker error, and no number that is none.
+  // White noise alone gives marker errors of zero, and no NaN.
   const CameraUncertainty white = marker_errors_of({}, cell, tool, T_camera_tool);
   EXPECT_EQ(white.slow_range_m, 0);
   EXPECT_EQ(white.slow_centroid_px, 0);

@@ -24,7 +24,7 @@ TEST(Pivot, FindsTheTipOfExactPoses) {
 TEST(Pivot, LeavesOutWildPoses) {
   const TurnSettings turn{.position_sigma_m = 0.0003, .rotation_sigma_rad = 0.002};
   std::vector<StampedPose> poses = turned_poses(turn, 300);
-  for (std::size_t i = 0; i < poses.size(); i += 5) {  // every fifth: another thing was tracked
+  for (std::size_t i = 0; i < poses.size(); i += 5) {  // every fifth pose is of another object
     poses[i].pose.translation += Vector3(0.3, -0.1, 0.02 * static_cast<double>(i % 7));
   }
   const PivotResult result = calibrate_pivot(poses, {}, "wild");
@@ -34,7 +34,7 @@ TEST(Pivot, LeavesOutWildPoses) {
   EXPECT_LT(result.tip_sigma_m, 0.0003);
 }
 
-// 3 degrees of freedom: the mean of the squared error in sigmas is 3, of 60 runs within 3 +- 1.
+// The mean NEES of 60 runs, 3 degrees of freedom, is 3 +- 1.
 TEST(Pivot, KnowsHowSureItIs) {
   double sum = 0;
   constexpr int k_runs = 60;
@@ -49,7 +49,7 @@ TEST(Pivot, KnowsHowSureItIs) {
   EXPECT_NEAR(sum / k_runs, 3.0, 1.0);
 }
 
-// Positions that are all too long by a part move the tip by that part of its arm.
+// A relative scale error of the positions moves the tip by the same part of its lever arm.
 TEST(Pivot, CountsAScaleAlongTheArm) {
   const TurnSettings turn;
   PivotSettings settings;
@@ -71,7 +71,7 @@ TEST(Pivot, IsNotDrawnTowardsTheCentreByNoisyRotations) {
     turn.seed = static_cast<std::uint64_t>(run + 1);
     mean += calibrate_pivot(turned_poses(turn, 300), {}, "noise").tip_m / k_runs;
   }
-  // Plain least squares ends 1.5 mm short (0.02^2 / 0.2^2 of the tip's 155 mm).
+  // Plain least squares is biased 1.5 mm towards the centre (0.02^2 / 0.2^2 of 155 mm).
   EXPECT_NEAR(mean.norm() - turn.tip_m.norm(), 0, 0.0004);
 }
 

@@ -14,7 +14,7 @@ namespace {
 const Vector3 k_axis = Vector3(0.05, -0.08, 1).normalized();
 const Vector3 k_foot(0.004, -0.003, -0.00044);  // across the axis
 
-// Rolled to and fro by a full turn, sliding along the axis.
+// Poses of a tool that rolls by a full turn in both directions and slides along its axis.
 std::vector<StampedPose> rolled_poses(int count, double noise_rad,
                                       double turn_rad = 2 * std::numbers::pi,
                                       std::uint64_t seed = 1) {
@@ -46,7 +46,7 @@ TEST(Spin, FindsTheAxisAndItsFootOfExactPoses) {
   EXPECT_LT(result.foot_rms_m, 1e-9);
 }
 
-// 2 degrees of freedom: of 60 runs the mean squared error in sigmas is within 2 +- 0.9.
+// The mean NEES of 60 runs, 2 degrees of freedom, is 2 +- 0.9.
 TEST(Spin, KnowsHowSureItIs) {
   double sum = 0;
   constexpr int k_runs = 60;

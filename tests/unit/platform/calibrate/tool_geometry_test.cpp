@@ -15,7 +15,7 @@ namespace {
 
 const std::vector<Vector3> k_four{
     {0, 0, 0}, {0, 0.0286, 0.041}, {0, 0, 0.088}, {0, -0.0443, 0.0405}};
-// Nearly a mirror of itself: two rows of three, half a millimetre apart from symmetry.
+// Nearly mirror symmetric: two rows of three, half a millimetre from symmetry.
 const std::vector<Vector3> k_grid{{0.002, -0.0158, 0.086},   {0.002, 0.0159, 0.0864},
                                   {0.002, 0.0160, 0.1309},   {0.0021, 0.0161, 0.1759},
                                   {0.0017, -0.0156, 0.1754}, {0.0018, -0.0156, 0.1305}};
@@ -24,11 +24,11 @@ struct Recording {
   std::vector<Vector3> markers = k_four;
   int frames = 300;
   double noise_m = 0.0003;
-  double missing = 0.2;   // of all points
-  double strays = 0.1;    // frames with one
+  double missing = 0.2;   // fraction of all points
+  double strays = 0.1;    // fraction of frames with one false point
   double turn_rad = 0.5;  // amplitude about each axis
-  int jump_at = -1;       // the tool is put elsewhere
-  double slow_m = 0;      // each marker's own error, with a period of 3 s
+  int jump_at = -1;       // frame at which the tool's pose jumps; -1: none
+  double slow_m = 0;      // amplitude of each marker's correlated error, period pi s
 };
 
 std::vector<PointFrame> recorded(const Recording& how) {
@@ -56,7 +56,7 @@ std::vector<PointFrame> recorded(const Recording& how) {
       frame.points_m.push_back(Vector3(0, 0, 0.6) +
                                0.1 * sim::gaussian_vector(key, 200'000 + draw));
     }
-    // The order tells nothing.
+    // The order of the points carries no information.
     std::rotate(
         frame.points_m.begin(),
         frame.points_m.begin() + f % std::max<int>(1, static_cast<int>(frame.points_m.size())),
@@ -66,7 +66,7 @@ std::vector<PointFrame> recorded(const Recording& how) {
   return frames;
 }
 
-// The least rms over all orders of the found markers.
+// The smallest rms error over all permutations of the found markers.
 double error_of(const std::vector<Vector3>& found, const std::vector<Vector3>& truth) {
   if (found.size() != truth.size()) return 1;
   std::vector<std::size_t> order(found.size());
@@ -95,7 +95,7 @@ TEST(ToolGeometry, KnowsHowSureItIs) {
   }
 }
 
-// Errors that do not average out over frames count for less of them.
+// Correlated errors reduce the effective number of frames.
 TEST(ToolGeometry, IsLessSureOfSlowErrors) {
   const ToolGeometry quick = calibrate_tool(recorded({}), {}, "quick.csv");
   Recording how;
@@ -107,7 +107,7 @@ TEST(ToolGeometry, IsLessSureOfSlowErrors) {
   }
 }
 
-// Of the mean: all of an error that hardly changes, a small part of one that changes at once.
+// A mean keeps all of an error with a long correlation time, and little of one with a short time.
 TEST(ToolGeometry, CountsWhatSlowErrorsOfTheRangesLeave) {
   const std::vector<PointFrame> frames{{Time{}, {}}, {Time{40'000'000'000}, {}}};
   Camera camera;
@@ -140,7 +140,7 @@ TEST(ToolGeometry, KeepsANearlySymmetricToolApartFromItsMirrorOverAJump) {
 
 TEST(ToolGeometry, ScalesToAKnownSide) {
   Recording how;
-  for (Vector3& marker : how.markers) marker *= 0.98;  // a tracker that measures too short
+  for (Vector3& marker : how.markers) marker *= 0.98;  // a tracker with a scale error of -2 %
   ToolGeometrySettings settings;
   settings.longest_side_m = 0.088;
   const ToolGeometry found = calibrate_tool(recorded(how), settings, "short.csv");
@@ -156,7 +156,8 @@ Tool drawn_tool(const std::vector<Vector3>& markers) {
   return tool;
 }
 
-// Markers off by 0.4 mm, ranges that make it 1.2 % too small: the drawing's frame, order and size.
+// Markers off by 0.4 mm, ranges 1.2 % too small: the result has the drawing's frame, order and
+// scale.
 TEST(ToolGeometry, IsLaidOnItsDrawing) {
   const std::vector<Vector3> drawn{
       {0.01, 0.02, 0.1}, {0.08, 0.02, 0.13}, {0.03, 0.09, 0.12}, {-0.04, 0.05, 0.18}, {0, 0, 0.2}};
@@ -177,7 +178,7 @@ TEST(ToolGeometry, IsLaidOnItsDrawing) {
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     const Vector3 off = found.markers_m[i] - as_made.transform * made[i];
     off_m = std::max(off_m, off.norm());
-    // The size is as sure as the drawing, 0.3 mm over 0.19 m.
+    // The drawing limits the scale: 0.3 mm over 0.19 m.
     EXPECT_GT(found.marker_sigma_m[i], 0.00002);
     EXPECT_LT(found.marker_sigma_m[i], 0.0002);
   }

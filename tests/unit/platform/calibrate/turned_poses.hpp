@@ -1,4 +1,4 @@
-// Poses of a tool that stands on its tip or rolls about its axis, with declared noise.
+// Synthetic poses of a tool that pivots about its tip or rolls about its axis, with given noise.
 #pragma once
 
 #include <vector>
@@ -12,10 +12,10 @@ struct TurnSettings {
   Vector3 tip_m{0.012, -0.034, 0.151};    // tool frame
   Vector3 post_m{0.1, -0.2, 0.5};         // tracker frame
   Vector3 tilt_rms_rad{0.35, 0.35, 0.3};  // about the tool's axes
-  double position_sigma_m = 0;            // of the centre, an axis
-  double rotation_sigma_rad = 0;          // an axis
-  Vector3 centre_m = Vector3::Zero();     // about which the rotation errs
-  int repeats = 1;                        // each pose so often
+  double position_sigma_m = 0;            // position noise of the centre, each axis
+  double rotation_sigma_rad = 0;          // rotation noise, each axis
+  Vector3 centre_m = Vector3::Zero();     // centre of the rotation noise, tool frame
+  int repeats = 1;                        // copies of each pose
   std::uint64_t seed = 1;
 };
 
