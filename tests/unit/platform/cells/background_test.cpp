@@ -1,4 +1,4 @@
-// The section [background] of a cell file.
+// Section [background] of a cell file.
 #include <gtest/gtest.h>
 
 #include <string>

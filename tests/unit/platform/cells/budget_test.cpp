@@ -1,4 +1,4 @@
-// The section [budget] of a cell file, and the limits that follow.
+// Section [budget] of a cell file, and the derived limits.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -14,11 +14,11 @@ using test::complaint_about;
 TEST(CellBudget, FollowsTheCellsToolsAndCameraWhereNothingIsSaid) {
   const Limits limits = limits_of(cell_from_text("name = \"plain\"\n", "cell.toml"));
   EXPECT_EQ(limits.tools, 1);
-  EXPECT_EQ(limits.markers_per_tool, 5);  // the pen's
+  EXPECT_EQ(limits.markers_per_tool, 5);  // the pen has five
   EXPECT_EQ(limits.blobs, 64);
   EXPECT_EQ(limits.width, 512);
-  EXPECT_EQ(limits.lens_steps, 0);  // without a ray table nothing is searched in one
-  EXPECT_EQ(limits.ray_steps, 6);   // what the AHAT lens takes, and one more
+  EXPECT_EQ(limits.lens_steps, 0);  // no lens search without a ray table
+  EXPECT_EQ(limits.ray_steps, 6);   // iterations of the AHAT lens, plus one
   const Limits built_in = limits_of(default_cell());
   EXPECT_EQ(built_in.search_steps, limits.search_steps);
   EXPECT_EQ(built_in.runs_per_band, limits.runs_per_band);
@@ -85,7 +85,7 @@ CellFiles copies_of_the_pen(int tools) {
   return files;
 }
 
-// `more` starts in the cell's second line.
+// The text `more` starts on line 2 of the cell file.
 Cell cell_with_pens(int tools, const std::string& more) {
   const CellFiles carried = copies_of_the_pen(tools);
   std::string list;
@@ -153,7 +153,7 @@ TEST(CellBudget, RefusesMoreToolsThanTheBudgetCovers) {
   EXPECT_EQ(complaint_about(many + "]\n"), "cell.toml:2: 17 tools; expected at most 16");
 }
 
-// A pinhole's ray takes no step, AHAT's six.
+// Unprojection takes no step for a pinhole camera and six for AHAT.
 TEST(CellBudget, ACameraPutInItsPlaceBringsTheStepsOfItsLens) {
   Cell cell = default_cell();
   EXPECT_EQ(limits_of(cell).ray_steps, 6);

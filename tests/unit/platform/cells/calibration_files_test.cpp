@@ -1,4 +1,4 @@
-// A cell that names the files of `glint calibrate`: what it makes of them, and of bad ones.
+// A cell that names files of `glint calibrate`: values read, and bad files refused.
 #include "platform/cells/calibration_files.hpp"
 
 #include <gtest/gtest.h>
@@ -32,12 +32,12 @@ Cell cell_with(const std::string& text, const std::map<std::string, std::string>
   return cell_from_text(text, "cell.toml", &files);
 }
 
-// What is said of a cell that names this one file.
+// Error message for a cell that names this one file.
 std::string complaint(const std::string& section, const std::string& text) {
   try {
     std::map<std::string, std::string> named{
         {"camera.depth_bias", text}, {"motion.file", text}, {"correction.file", text}};
-    // A carried lens holds whether the cell names it or not: a source may have brought it.
+    // A carried lens applies even if the cell does not name it: the source may supply it.
     if (section.find("[camera]\nfile") == 0) named["camera.file"] = text;
     (void)cell_with(section + "\n", named);
     return "accepted";
@@ -82,7 +82,7 @@ TEST(CalibrationFiles, GiveACellTheUncertaintyOfItsRanges) {
   };
   const CameraUncertainty measured =
       uncertainty_by("offset_sigma_mm = 0.4\nmm_per_m_sigma = 2.0\n" + bias);
-  // With the focal length of another unit's lens, 0.3 %, and a range's period.
+  // Adds the focal length spread between units, 0.3 %, and the period of the range error.
   EXPECT_NEAR(measured.range_offset_m, std::hypot(0.0004, 0.0015, 0.0007), 1e-12);
   EXPECT_NEAR(measured.range_scale, std::hypot(0.002, 0.003), 1e-12);
   EXPECT_THROW((void)uncertainty_by("offset_sigma_mm = -1\nmm_per_m_sigma = 2\n" + bias),

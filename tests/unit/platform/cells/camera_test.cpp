@@ -1,5 +1,5 @@
-// [camera], [source] and [simulator] of a cell: presets, what differs from them, lenses from
-// elsewhere.
+// Sections [camera], [source] and [simulator] of a cell: presets, changed keys, lenses from other
+// files.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -186,7 +186,7 @@ TEST(CellCamera, NeedsALensFromSomewhere) {
             std::string::npos);
 }
 
-// The cell's text names none; a recording carries what the source brought.
+// The cell's text names no lens; the recording stores the lens of the source.
 TEST(CellCamera, ComesBackFromARecordingWithTheSourcesLens) {
   CellFiles carried;
   carried.named["camera.file"] = k_lens_file;

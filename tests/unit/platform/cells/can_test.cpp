@@ -1,4 +1,4 @@
-// The section [can] of a cell file.
+// Section [can] of a cell file.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -28,7 +28,7 @@ TEST(CellCan, RefusesAnIdentifierOfButtonsWithWhichItSends) {
     EXPECT_EQ(test::complaint_about("[can]\nbuttons = " + std::string(taken) + "\n"),
               "cell.toml:2: can.buttons is " + std::string(taken) + expected);
   }
-  // Each tool has 16 of its own, from the base that the cell says.
+  // Each tool has 16 identifiers, from the cell's base identifier on.
   const std::string two = "tools = [\"pen\", \"board\"]\n[can]\n";
   EXPECT_EQ(test::complaint_about(two + "buttons = 0x1BF\n"),
             "cell.toml:3: can.buttons is 0x1BF, with which Glint sends; expected none of 0x1A0 to "

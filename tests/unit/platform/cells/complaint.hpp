@@ -1,4 +1,4 @@
-// What the cell reader says of a text that it refuses.
+// Error message of the cell reader for a text that it refuses.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace glint::test {
 
-// "accepted" where it does not refuse it.
+// Returns the error message, or "accepted" if the reader accepts the text.
 inline std::string complaint_about(const std::string& text) {
   try {
     (void)cell_from_text(text, "cell.toml");

@@ -1,4 +1,4 @@
-// The section [camera.depth_bias] of a cell file.
+// Section [camera.depth_bias] of a cell file.
 #include <gtest/gtest.h>
 
 #include <string>

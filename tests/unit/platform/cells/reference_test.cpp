@@ -1,4 +1,4 @@
-// What a cell file says of the headset and of the body that it may hold to.
+// Headset drift and reference body in a cell file.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -15,7 +15,7 @@ namespace {
 using test::complaint_about;
 using test::expect_input_error;
 
-// toml++ 3.3.0: an assertion without NDEBUG, undefined behaviour in clang's release build.
+// toml++ 3.3.0: assertion failure without NDEBUG, undefined behaviour in clang's release build.
 TEST(TomlReader, RefusesWhatBreaksTheParserWithItsLine) {
   expect_input_error([] { (void)parse_toml("[\nd", "a.toml"); }, {"a.toml:1: ", "expected TOML"});
   expect_input_error([] { (void)parse_toml("a = 1\n[t]\nb = 2\n[\nd\n[u]\n", "a.toml"); },
@@ -28,7 +28,7 @@ std::string repeated(const std::string& piece, int times) {
   return text;
 }
 
-// toml++ 3.3.0: undefined behaviour at any such letter where a blank may stand.
+// toml++ 3.3.0: undefined behaviour at a non-ASCII letter where white space is allowed.
 TEST(TomlReader, RefusesLettersOfOtherLanguagesOutsideOfTexts) {
   expect_input_error([] { (void)parse_toml("a = 1\nb = 2 \xC3\xA9\n", "a.toml"); },
                      {"a.toml:2: ", "expected TOML"});
@@ -36,7 +36,7 @@ TEST(TomlReader, RefusesLettersOfOtherLanguagesOutsideOfTexts) {
   EXPECT_EQ(parse_toml("a = \"\xC3\xA9\" # \xC3\xA9\n", "a").size(), 1u);
 }
 
-// A million parts ended the process by SIGSEGV: toml++ destroys their tables by recursion.
+// A key of a million parts caused SIGSEGV: toml++ destroys nested tables by recursion.
 TEST(TomlReader, BoundsTheDepthOfTables) {
   const auto refused = [](const std::string& text, const char* place) {
     expect_input_error([&] { (void)parse_toml(text, "a.toml"); }, {place});
@@ -71,7 +71,7 @@ TEST(TomlReader, RefusesATextThatIsNotPrintable) {
             std::string::npos);
 }
 
-// Its rays were read before their number was compared with the picture's.
+// An earlier version read the rays before it compared their number with the image size.
 TEST(TomlReader, RefusesCarriedRaysThatAreTooFew) {
   CellFiles files;
   files.rays = std::make_shared<const std::vector<float>>(3, 1.0f);

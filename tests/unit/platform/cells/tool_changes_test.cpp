@@ -1,4 +1,4 @@
-// Which tools are there, as a cell file says it.
+// Tool changes in a cell file.
 #include <gtest/gtest.h>
 
 #include "platform/cells/cell.hpp"

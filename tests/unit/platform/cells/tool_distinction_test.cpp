@@ -1,4 +1,5 @@
-// The reference tries every labeling with the tracker's own rigid fit.
+// Smallest distances between tools, compared with an exhaustive search over all labelings by the
+// tracker's own rigid fit.
 #include "platform/cells/tool_distinction.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +33,8 @@ DistinctionSettings without_limit() {
   return settings;
 }
 
-// Of all ways to take `wanted` of a's markers for b's; a's own exchanges where they are the same.
+// Smallest root of the squared residual sum over all labelings of `wanted` markers of a by markers
+// of b. If a and b are the same tool, the identity is excluded.
 double nearest_of_all_m(const Tool& a, const Tool& b, int wanted) {
   double least = INFINITY;
   for (unsigned chosen = 0; chosen < 1U << a.marker_count; ++chosen) {
@@ -95,7 +97,7 @@ TEST(ToolDistinction, FindsWhatTryingAllLabelingsFinds) {
 }
 
 TEST(ToolDistinction, SaysHowOftenNoiseMakesTheWrongLabelingFitBetter) {
-  // Flat, and nearly the same turned over.
+  // Planar, and nearly symmetric under a rotation by pi.
   const Tool tool = tool_of({{-40, 0, 0}, {40, 0, 0}, {3, 55, 0}, {0, 20, 0}});
   const Distinction found = distinguish(set_of({tool}), {});
   ASSERT_EQ(found.likenesses.size(), 1u);
@@ -160,12 +162,12 @@ TEST(ToolDistinction, FindsAToolOfThreeMarkersWithinALargerOneNotTheOtherWayRoun
 }
 
 TEST(ToolDistinction, SeesMarkersOnALineThatNearlyFitATriangle) {
-  // Three of the larger tool's lie on a line; the smaller one is bent by 3 mm.
+  // Three markers of the larger tool are collinear; the smaller tool is bent by 3 mm.
   const Tool ruled = tool_of({{0, 0, 0}, {40, 0, 0}, {100, 0, 0}, {130, 80, 30}});
   const Tool bent = tool_of({{0, 0, 0}, {40, 3, 0}, {100, 0, 0}});
   const Distinction found = distinguish(set_of({ruled, bent}), {});
   ASSERT_NE(likeness_of(found, 0, 1), nullptr);
-  // Its markers leave 2.4 mm to the best line through them.
+  // The residual of the smaller tool's markers to the best line is 2.4 mm.
   EXPECT_GT(likeness_of(found, 0, 1)->distance_sigmas, 1.0);
   EXPECT_LT(likeness_of(found, 0, 1)->distance_sigmas, 2.0);
 }
@@ -181,7 +183,7 @@ TEST(ToolDistinction, PassesOverMarkersOnALineWhichTheTrackersFitRefuses) {
   EXPECT_GT(likeness_of(found, 0, 1)->distance_sigmas, k_distinct_sigmas);
 }
 
-// A cube's corners, and another's a little larger: every labeling of one is near one of the other.
+// The corners of a cube. Two cubes of similar size have many near labelings.
 Tool cube_of(double mm) {
   return tool_of({{0, 0, 0},
                   {mm, 0, 0},
@@ -204,7 +206,7 @@ TEST(ToolDistinction, StopsAtItsStepsAndSaysSo) {
   for (const Likeness& likeness : whole.likenesses) EXPECT_FALSE(likeness.search_full);
 }
 
-// Prints what it took, for the clock is not this test's to judge: the steps are.
+// Prints the elapsed time; only the steps are tested, the time is not.
 Distinction timed(const char* name, const ToolSet& set, const DistinctionSettings& settings = {}) {
   const auto start = std::chrono::steady_clock::now();
   Distinction found = distinguish(set, settings);

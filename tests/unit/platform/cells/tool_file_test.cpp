@@ -281,7 +281,7 @@ TEST(DefaultPen, HasSidesThatNoNoiseConfuses) {
     for (std::size_t j = 0; j < i; ++j) sides.insert(pen.distance_m[i][j]);
   }
   ASSERT_EQ(sides.size(), 10u);
-  EXPECT_GE(*sides.begin(), 0.05);  // neighbours do not merge into one blob
+  EXPECT_GE(*sides.begin(), 0.05);  // adjacent markers do not merge into one blob
   EXPECT_LE(*sides.rbegin(), 0.165);
   double previous = 0;
   for (const double side : sides) {

@@ -21,7 +21,7 @@ using test::redrawn;
 using test::set_of;
 using test::tool_of;
 
-// What a cell with these tools says: its notices a line each, or why it is refused.
+// Returns the notices for these tools, one a line, or the error message of the refusal.
 std::string told_of(const ToolSet& set, const DistinctionSettings& settings = {}) {
   try {
     std::string text;
@@ -39,7 +39,7 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// Flat, and nearly the same turned over.
+// Planar, and nearly symmetric under a rotation by pi.
 Tool nearly_symmetric() { return tool_of({{-40, 0, 0}, {40, 0, 0}, {3, 55, 0}, {0, 20, 0}}); }
 
 TEST(ToolNotices, SayNothingOfToolsThatAreToldApart) {

@@ -1,4 +1,4 @@
-// Tools for the tests of how they are told apart.
+// Tools for the tests of tool distinction.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ inline Tool random_tool(Random& random, int markers, double side_m) {
   }
 }
 
-// The tool's markers, elsewhere: each is carried by `where`, the last one first.
+// Applies `where` to each of the tool's markers and reverses their order.
 template <class Where>
 Tool redrawn(const Tool& tool, Where&& where) {
   Tool out = tool;
@@ -43,7 +43,7 @@ inline ToolSet set_of(std::initializer_list<Tool> tools) {
   return set;
 }
 
-// Five markers, no two sides within 9 mm, no four in a plane.
+// Five markers: all distances differ by at least 9 mm, no four markers are coplanar.
 inline Tool odd_tool() {
   return tool_of({{-2, 23, 232}, {-40, 45, 115}, {45, 45, 240}, {-8, -45, 115}, {22, 24, 129}});
 }
