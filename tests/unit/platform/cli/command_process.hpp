@@ -1,4 +1,4 @@
-// A command as its user starts it: a process whose words go into a file.
+// A glint command in a process of its own, with its output in a file.
 #pragma once
 
 #include <fcntl.h>
@@ -21,7 +21,7 @@ namespace glint {
 
 class CommandProcess {
  public:
-  // glint with these arguments; what it writes to both outputs goes to `log`.
+  // Starts glint with these arguments; both output streams are written to `log`.
   CommandProcess(std::vector<std::string> arguments, std::string log) : log_(std::move(log)) {
     arguments.insert(arguments.begin(), beside_test("glint"));
     std::vector<char*> words;
@@ -42,8 +42,7 @@ class CommandProcess {
   CommandProcess(const CommandProcess&) = delete;
   CommandProcess& operator=(const CommandProcess&) = delete;
 
-  // Does something again and again until `done` holds or the process has ended; false when patience
-  // is over first.
+  // Calls `act` repeatedly until `done` holds or the process ends. Returns false after k_patience.
   template <class Act, class Done>
   [[nodiscard]] bool meanwhile(Act act, Done done) {
     const auto end = std::chrono::steady_clock::now() + k_patience;
@@ -54,7 +53,7 @@ class CommandProcess {
     }
     return true;
   }
-  // The exit code, when it has ended; -1: it did not within patience, or not by itself.
+  // Returns the exit code; -1 if the process does not end within k_patience or ends by a signal.
   template <class Act>
   [[nodiscard]] int exit_code(Act act) {
     const bool ended = meanwhile(act, [] { return false; });
@@ -68,14 +67,14 @@ class CommandProcess {
     if (!status_ && waitpid(process_, &status, WNOHANG) == process_) status_ = status;
     return status_.has_value();
   }
-  // As Ctrl-C does.
+  // Sends SIGINT, as Ctrl-C does.
   void interrupt() {
     if (!has_ended()) kill(process_, SIGINT);
   }
   [[nodiscard]] std::string words() const { return text_of(log_); }
 
  private:
-  // Under a sanitizer on a busy machine, too.
+  // Long enough for a sanitizer build on a busy machine.
   static constexpr std::chrono::seconds k_patience{240};
 
   std::string log_;

@@ -1,4 +1,4 @@
-// `glint run` as a process, live, and this one as the driver of the robot that it follows.
+// `glint run` as a live process that tracks a robot; the test publishes the joint states.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -13,12 +13,13 @@
 namespace glint {
 namespace {
 
-constexpr double k_given_m = 0.6;  // along x, where run_of() has the robot
+constexpr double k_given_m = 0.6;  // x of the robot in the cell of run_of()
 
-// The run says each second on /diagnostics what became of its pictures; that is waited for.
+// The run publishes counts of its depth images on /diagnostics each second; the tests wait for
+// them.
 class HeardJointsOfARun : public DdsTest {
  protected:
-  // A cell with [mapping] keys of the test's own.
+  // Arguments of a run whose cell has these additional [mapping] keys.
   [[nodiscard]] std::vector<std::string> run_of(const std::string& mapping) const {
     const std::string cell_file = files_.write(
         "cell.toml",
@@ -33,7 +34,7 @@ class HeardJointsOfARun : public DdsTest {
   }
   [[nodiscard]] std::string path(const char* name) const { return files_.folder() + "/" + name; }
 
-  // Of the newest message, a count of the robot's; 0 before the first.
+  // The robot's count `key` in the newest message; 0 before the first message.
   [[nodiscard]] long robot_count(const char* key) {
     void* sample[1] = {nullptr};
     dds_sample_info_t info;
@@ -46,7 +47,7 @@ class HeardJointsOfARun : public DdsTest {
     const auto found = robot_.values.find(key);
     return found == robot_.values.end() ? 0 : std::stol(found->second);
   }
-  // Whether tf_static ever said that the robot stands elsewhere than the cell has it.
+  // Whether tf_static ever held a robot position other than the cell's.
   [[nodiscard]] bool was_moved_in_tf() const {
     bool moved = false;
     void* sample[1] = {nullptr};
@@ -62,7 +63,7 @@ class HeardJointsOfARun : public DdsTest {
     }
     return moved;
   }
-  // Ctrl-C, and what the run leaves.
+  // Interrupts the run and returns the references of its summary.
   [[nodiscard]] nlohmann::json end(CommandProcess& run) const {
     run.interrupt();
     EXPECT_EQ(run.exit_code(), 0) << run.words();

@@ -1,4 +1,4 @@
-// `glint reference --listen` as a process, and this one as the robot's driver and RViz.
+// `glint reference --listen` as a process; the test acts as the robot's driver and as RViz.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
