@@ -16,7 +16,7 @@ const AcquisitionCase& case_named(const std::vector<AcquisitionCase>& cases,
                        [&](const AcquisitionCase& one) { return one.name == name; });
 }
 
-// `glint experiment acquire` runs 20 seeds and more cases.
+// A short version; `glint experiment acquire` runs 20 random seeds and more cases.
 TEST(Acquisition, FindsAToolAmongStraysAndHotPixelsWithinASecond) {
   const std::vector<AcquisitionCase> cases = acquisition_cases();
   for (const char* name : {"200 strays", "1,000 hot pixels", "500 discs"}) {
@@ -49,7 +49,7 @@ TEST(PaintedSpots, AreTheSameAgainAndSpareTheMarkers) {
   ToolSet tools;
   tools.count = 1;
   tools.items[0].marker_count = 1;
-  tools.items[0].marker_radius_m = 0.5;  // fills the frame
+  tools.items[0].marker_radius_m = 0.5;  // its sphere covers the whole image
   frame.truth.T_world_tool = {{Quaternion::Identity(), Vector3(0, 0, 0.5)}};
   EXPECT_LT(PaintedSpots(settings, camera, 3).paint(tools, frame), 50);
 }

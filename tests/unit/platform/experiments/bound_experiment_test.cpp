@@ -1,5 +1,5 @@
-// The experiments on points: their bound against textbook cases, their scenes against the truth,
-// and the bars on the real device's lens.
+// Experiments on points: Cramer-Rao bound against closed forms, scenes against ground truth, and
+// the required limits with the device's real lens.
 #include "platform/experiments/bound_experiment.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ Camera pinhole() {
   return camera;
 }
 
-// A square far away and straight on: no perspective, and by symmetry nothing couples.
+// A distant square, perpendicular to the optical axis: no perspective, and by symmetry no coupling.
 TEST(CramerRao, OfASquareSeenStraightOnIsWhatItsGeometrySays) {
   Tool square;
   square.marker_count = 4;

@@ -36,7 +36,7 @@ TEST(CaseList, ShowsBarsAndSaysWhatMissesThem) {
   EXPECT_NE(good.find("rms 1.5 mm (<= 2)"), std::string::npos) << good;
   EXPECT_EQ(good.find("MISSED"), std::string::npos) << good;
   EXPECT_NE(bad.find("rms 3 mm (<= 2) MISSED"), std::string::npos) << bad;
-  EXPECT_EQ(bad.find("rms 99 mm MISSED"), std::string::npos) << bad;  // a baseline has no bar
+  EXPECT_EQ(bad.find("rms 99 mm MISSED"), std::string::npos) << bad;  // a baseline has no limit
 }
 
 TEST(CaseList, GivesTheTablesFiguresAsJsonWithTheEstimatorsName) {

@@ -16,7 +16,7 @@ TEST(CentroidExperiment, HoldsItsBarsInAQuickRun) {
   EXPECT_EQ(list.plots.size(), 5U);
 }
 
-// A bar must be able to fail: sigmas stated for a tenth of the noise are too small.
+// The test must be able to fail: a covariance for a tenth of the noise is too small.
 TEST(CentroidExperiment, WouldSeeASigmaThatIsTooSmall) {
   CentroidCase weak = sized_cases().back();
   weak.stated.read_counts /= 10;
@@ -34,7 +34,7 @@ TEST(CentroidExperiment, WouldSeeASigmaThatIsTooSmall) {
   EXPECT_GT(squares, 1.4 * 1.4 * variances);
 }
 
-// Picture i is the same whatever was rendered before.
+// Image i does not depend on the images rendered before it.
 TEST(SpherePictures, DependOnTheirNumberAlone) {
   const CentroidCase one = sized_cases().front();
   SpherePictures forward(one.setting, 5), back(one.setting, 5);

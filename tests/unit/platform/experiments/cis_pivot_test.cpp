@@ -37,7 +37,8 @@ class CisPivot : public testing::Test {
 
   std::ofstream file(const std::string& name) const { return std::ofstream(folder_ + "/" + name); }
 
-  // A pointer of four markers seen by both trackers, the optical one's base turned.
+  // Writes a data set of a pointer with four markers, measured by both trackers; the optical
+  // tracker's base is rotated.
   void write_case(const Vector3& em_mm, const Vector3& optical_mm, double answer_off_mm) const {
     const std::vector<Vector3> pointer{{0, 0, 90}, {40, 0, 120}, {0, 50, 150}, {-30, -20, 180}};
     const std::vector<Vector3> base{{0, 0, 0}, {0, 0, 150}, {0, 150, 0}};

@@ -22,7 +22,7 @@ double value_of(const std::vector<Figure>& figures, const std::string& name) {
   return -1;
 }
 
-// Two of the five tools, both whole and seen as they are.
+// Two of the five tools, both fully visible and estimated at their ground truth poses.
 struct TwoSeen {
   ToolSet tools = five_tools(1);
   FrameTruth truth;
@@ -41,7 +41,7 @@ struct TwoSeen {
     tool.marker_mask = mask;
     tool.T_camera_tool = T_camera_tool;
   }
-  // About the tip, which so stays where it is.
+  // Rotates about the tip, which keeps its position.
   void turn(std::size_t t, double angle_rad) {
     Pose& pose = outcome.tools[t].T_camera_tool;
     const Vector3 tip = pose * tools.items[t].tip_m;
@@ -96,7 +96,7 @@ TEST(ClutterTally, CallsSwappedOnlyWhatLiesOnAnotherTool) {
   ClutterTally tally(seen.tools);
   seen.outcome.tools[0].marker_mask = 0b1111;
   seen.outcome.tools[0].T_camera_tool = seen.truth.T_world_tool[1];
-  seen.outcome.tools[1].T_camera_tool.translation.y() += 0.2;  // on none
+  seen.outcome.tools[1].T_camera_tool.translation.y() += 0.2;  // far from both tools
   tally.add(seen.outcome, seen.truth);
   EXPECT_EQ(tally.gross(), 2);
   EXPECT_EQ(tally.swapped(), 1);
@@ -124,7 +124,7 @@ TEST(ClutterScene, KeepsTheFirstStraysWhenThereAreMore) {
   EXPECT_EQ(few.clutter[19].position_m, many.clutter[19].position_m);
 }
 
-// Tools one sigma apart are swapped now and then in the whole run too; README.md says so.
+// Tools one standard deviation apart are sometimes swapped in the full run too (README.md).
 TEST(ClutterExperiment, MeetsItsBarsInAQuickRunButForToolsThatAreNearlyEqual) {
   CaseList list = run_clutter({true, 1, ".", "", {}});
   const auto nearly_equal = [](const ExperimentCase& one) {

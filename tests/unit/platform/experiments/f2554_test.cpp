@@ -27,7 +27,8 @@ TEST(F2554, JudgesOnePointThreeTurnsAndDistancesTheSameAgain) {
     for (std::size_t f = 0; f < first.cases[i].figures.size(); ++f) {
       EXPECT_EQ(first.cases[i].figures[f].value, again.cases[i].figures[f].value);
     }
-    // Millimetres of a camera whose ranges err by 1.5 mm, neither none nor a wrong tool.
+    // The range noise is 1.5 mm, so errors are millimetres: not zero, and not those of a wrong
+    // tool.
     EXPECT_GT(first.cases[i].figures[1].value, 0.1);
     EXPECT_LT(first.cases[i].figures[1].value, 10);
   }

@@ -22,8 +22,8 @@ OutputErrors measured_errors(const SessionResult& run) {
   return run.by_rate->tools[0][0].of_measured;
 }
 
-// One device, by what its cell states of it and as if it were exact: the errors are larger, and the
-// stated covariance holds them.
+// One device, drawn from its cell's stated uncertainties and as an exact device. The drawn device
+// has larger errors, and the stated covariance covers them.
 TEST(Field, StatesTheErrorsOfADeviceThatIsNotWhatItsCellStates) {
   const test::TemporaryFolder folder;
   const OutputErrors drawn =
@@ -39,8 +39,8 @@ TEST(Field, StatesTheErrorsOfADeviceThatIsNotWhatItsCellStates) {
   EXPECT_DOUBLE_EQ(exact.stated_m2, exact.random_m2) << "an exact calibration leaves nothing open";
 }
 
-// A device after its user's calibrations: each of what they found lies nearer to what is so, within
-// a few of the standard deviations that are stated.
+// A device after its user's calibrations. Each calibrated value is closer to the ground truth than
+// before, within a few of its stated standard deviations.
 TEST(Field, CalibrationsFindADevicesErrorsAndStateWhatTheyLeave) {
   const Cell drawn = field_cell(9, 30);
   const Cell cell = calibrated_field_cell(drawn, {8, 40, 20, 30, 25});
@@ -90,7 +90,7 @@ TEST(Field, CalibrationsFindADevicesErrorsAndStateWhatTheyLeave) {
   EXPECT_LT(found, 2.5 * drift);
 }
 
-// As after a power cut: the line that is not whole is done again, what follows it is kept.
+// After a power cut the incomplete line is run again; later complete lines are kept.
 TEST(Field, RunsThatAreDoneAreNotDoneAgain) {
   const test::TemporaryFolder folder;
   const std::string path = folder.path("runs.txt");

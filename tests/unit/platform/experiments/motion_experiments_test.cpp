@@ -17,7 +17,7 @@
 namespace glint {
 namespace {
 
-// Half a second at constant velocity and turn, without noise.
+// Feeds half a second of constant linear and angular velocity, without noise.
 void feed_steady(Predictor& predictor, const Vector3& velocity, const Vector3& turn) {
   for (int frame = 0; frame <= 200; ++frame) {
     UncertainPose measured;
@@ -72,7 +72,7 @@ TEST(PointFit, OfExactPointsIsExact) {
 TEST(PredictionRun, JudgesNothingWithinASecondOfAGap) {
   Judged judged(milliseconds(1000));
   EXPECT_FALSE(judged(frame_time(44)));
-  EXPECT_FALSE(judged(frame_time(89)));  // a second of silence before it
+  EXPECT_FALSE(judged(frame_time(89)));  // the last second has no frames
   for (int frame = 90; frame < 135; ++frame) EXPECT_FALSE(judged(frame_time(frame))) << frame;
   EXPECT_TRUE(judged(frame_time(135)));
 }

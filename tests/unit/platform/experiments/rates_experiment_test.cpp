@@ -70,7 +70,7 @@ TEST(RatesSchedule, MovesExposuresWithTheirStamps) {
 TEST(RatesExperiment, TracksThroughEveryMishapInAQuickRun) {
   const CaseList list = run_rates({true, 1, ".", "", {}});
   EXPECT_EQ(missed_bars(list), 0) << case_table(list);
-  // Not for want of frames to refuse.
+  // Checks that frames were refused at all.
   for (const ExperimentCase& one : list.cases) {
     if (one.name != "both, 10 % stamped backwards") continue;
     EXPECT_GT(one.figures.front().value, 50);

@@ -34,7 +34,8 @@ TEST(StatedErrors, AreBelowOneSigmaButForTheLargeOne) {
   }
 }
 
-// One device of each case. The first, of the stated distributions, is one of 20 refused by chance.
+// One device per case. The first is drawn from the stated distributions, of which one in 20 is
+// refused by chance.
 TEST(VerifyExperiment, JudgesSmallAndLargeErrors) {
   CaseOptions options;
   options.quick = true;
