@@ -91,7 +91,7 @@ TEST(CloudFiles, RefuseBadPlyByFileAndLine) {
   expect_complaint("a.ply", head + "element vertex 1\n" + xyz + "end_header\n1 2 x3\n",
                    "line 8: \"x3\"; expected a number");
   expect_complaint("a.ply", head + "\x01\x02 what\n", "line 3: \"??\"");
-  // As many points as a map may have, in a file of a few bytes: nothing is reserved for them.
+  // As many points as a map's capacity, in a file of a few bytes: the reader reserves no memory.
   expect_complaint("a.ply", head + "element vertex 16000000\n" + xyz + "end_header\n1 2 3\n",
                    "16000000 points");
   expect_complaint("a.ply",

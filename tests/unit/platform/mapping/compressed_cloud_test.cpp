@@ -1,4 +1,4 @@
-// PCD's binary_compressed: packed by the test, and by PCL where its clouds are there.
+// PCD's binary_compressed format (LZF): packed by the test, and by PCL if its clouds are available.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace glint {
 namespace {
 
-// The longest match that lies up to 8192 bytes back, wherever it is three bytes or more.
+// LZF compression with the longest match of at least three bytes up to 8192 bytes back.
 std::string packed(const std::string& bytes) {
   std::string out, literals;
   const auto flush = [&] {
@@ -49,7 +49,7 @@ void append(std::string& bytes, T value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-// A field of two bytes between z and y, and one of three numbers.
+// Header with a field of two bytes between z and y, and a field of three numbers.
 std::string head(std::size_t points) {
   return "FIELDS x z label y rgb\nSIZE 4 8 2 4 1\nTYPE F F U F U\nCOUNT 1 1 1 1 3\nPOINTS " +
          std::to_string(points) + "\nDATA binary_compressed\n";
@@ -107,12 +107,12 @@ TEST(CompressedCloud, IsRefusedByNameWhereItsLengthsLie) {
   expect_complaint(head(2) + body(lzf.size(), 43, lzf), "unpack to 43; expected 2 points of 21");
   expect_complaint(head(3) + body(lzf.size(), 63, lzf), "do not unpack");
   expect_complaint(head(2) + body(lzf.size() - 1, 42, lzf), "do not unpack");
-  // 16 million points, and as many bytes as they have, of five: nothing is reserved for them.
+  // 16 million points and their full size, in a few bytes: the reader reserves no memory.
   expect_complaint(head(16'000'000) + body(lzf.size(), 336'000'000, lzf), "unpack to 336000000");
 }
 
-// Every cut and every changed byte of what was packed either unpacks to as many bytes or is
-// refused; neither writes beyond (nor reads: the sanitizers look on).
+// Every truncation and every changed byte either unpacks to the stated size or is refused. No case
+// writes (or, by the sanitizers, reads) out of bounds.
 TEST(CompressedCloud, UnpacksOrRefusesWhateverItIsGiven) {
   std::string bytes;
   for (int i = 0; i < 400; ++i) bytes += static_cast<char>(i % 7 + i / 100);
@@ -137,7 +137,7 @@ TEST(CompressedCloud, UnpacksOrRefusesWhateverItIsGiven) {
       unpack_lzf("\x02"
                  "abc",
                  three));
-  EXPECT_FALSE(unpack_lzf(std::string("\x20\x00", 2), three));  // from before the first
+  EXPECT_FALSE(unpack_lzf(std::string("\x20\x00", 2), three));  // refers to a byte before the first
   EXPECT_FALSE(unpack_lzf("\xe0", to));
   EXPECT_FALSE(unpack_lzf(std::string("\xe0\x00", 2), to));
 }
@@ -156,7 +156,7 @@ TEST(CompressedCloud, OfPclsOwnIsRead) {
       const HostCloud cloud = read_cloud(entry.path().string());
       for (const auto& [x, y, z] : cloud.points) {
         if (!std::isfinite(x + y + z)) continue;
-        ++finite;  // before or behind a depth camera of 60 by 50 degrees
+        ++finite;  // inside the field of a depth camera of 60 by 50 degrees, on either side
         const float far = std::abs(z);
         in_view += far > 0.3f && far < 15 && std::abs(x) < 0.6f * far && std::abs(y) < 0.5f * far;
       }

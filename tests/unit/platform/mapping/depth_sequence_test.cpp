@@ -74,7 +74,7 @@ TEST(DepthSequence, RefusesAFolderWithoutPicturesOrAPictureWithoutPose) {
   EXPECT_NE(complaint_about(folder).find("a.pose.txt: cannot be read"), std::string::npos);
 }
 
-// A wall a metre away, seen twice, once from the side.
+// A wall at one metre, in two depth images, one of them oblique.
 TEST(MapChain, MakesAWallFlatAndSaysWhatItDid) {
   CameraModel camera;
   camera.width = 200, camera.height = 150;
@@ -129,7 +129,7 @@ TEST(DepthSequence, ReadsWhatIsLeftOutAndRefusesAWrongLine) {
   }
 }
 
-// A pen before a wall: with its capsule nothing of it is in the map, and the wall is all there.
+// A pen in front of a wall: its capsule removes it from the map, and the wall is complete.
 TEST(MapChain, LeavesOutThePen) {
   CameraModel camera;
   camera.width = 200, camera.height = 150;

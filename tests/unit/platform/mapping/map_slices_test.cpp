@@ -1,4 +1,4 @@
-// A map in slices against the plain chain over the same pictures.
+// A map made in slices, compared with the plain chain over the same depth images.
 #include "kernels/cloud/map_slices.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,8 @@ MapSettings small_settings() {
   return in_slices(settings);
 }
 
-// A corner of a room with a ball before it, from six places; a few stray points.
+// Depth images of a room's corner with a disc in front of it, from six positions; a few stray
+// points.
 struct CornerOfARoom {
   CameraModel camera;
   std::vector<std::vector<float>> depth;
@@ -74,7 +75,7 @@ struct Sliced {
       const int taken = map.step(steps);
       ++taken_by[stage].first;
       taken_by[stage].second += taken;
-      // A slice of one step is one thing done, whatever it says of itself.
+      // A call with one step completes one item, whatever step count it returns.
       if (steps == 1 && !map.idle()) {
         ASSERT_LE(static_cast<int>(map.stage()), before + 1);
       }
@@ -132,7 +133,7 @@ TEST_P(OfAnySize, SlicesGiveTheChainsBits) {
 
 INSTANTIATE_TEST_SUITE_P(MapSlices, OfAnySize, testing::Values(1, 137, 5'000, 50'000, 1 << 29));
 
-// More slices take no fewer steps: each call of a stage costs some of its own.
+// More slices take no fewer steps: each call of a stage adds a fixed number of steps.
 TEST(MapSlices, CountTheStepsOfEachCall) {
   const CornerOfARoom corner;
   Sliced few(small_settings(), 1), many(small_settings(), 1);
@@ -142,7 +143,7 @@ TEST(MapSlices, CountTheStepsOfEachCall) {
   }
   ASSERT_EQ(many.taken_by.size(), 7u);
   for (const auto& [stage, took] : many.taken_by) {
-    if (stage == MapSlices::Stage::points) continue;  // its slices all have eight pixels
+    if (stage == MapSlices::Stage::points) continue;  // its slices always have eight pixels
     const auto [slices, steps] = few.taken_by[stage];
     EXPECT_GT(took.first, slices) << static_cast<int>(stage);
     EXPECT_GE(took.second - steps, 16 * (took.first - slices)) << static_cast<int>(stage);
@@ -161,7 +162,7 @@ TEST(MapSlices, KeepWhatIsOutWholeWhileTheNextIsMade) {
   int slices = 0;
   for (; sliced.map.totals().maps == 1; ++slices) {
     EXPECT_TRUE(same_bits(bits_of(sliced.map.map()), first));
-    EXPECT_FALSE(sliced.map.look(corner.picture(2)));  // under way
+    EXPECT_FALSE(sliced.map.look(corner.picture(2)));  // a map is in progress
     (void)sliced.map.step(10'000);
   }
   EXPECT_GT(slices, 10);
@@ -172,7 +173,7 @@ TEST(MapSlices, MakeAMapOfWhatThereIsWhenAsked) {
   const CornerOfARoom corner;
   const MapSettings settings = small_settings();
   Sliced sliced(settings, 1'000);
-  sliced.map.make_map();  // of nothing: none
+  sliced.map.make_map();  // no points: no map
   EXPECT_TRUE(sliced.map.idle());
   for (std::size_t i = 0; i < 2; ++i) {
     ASSERT_TRUE(sliced.map.look(corner.picture(i)));
@@ -183,7 +184,7 @@ TEST(MapSlices, MakeAMapOfWhatThereIsWhenAsked) {
   sliced.run(50'000);
   EXPECT_EQ(sliced.map.totals().maps, 1);
   EXPECT_GT(sliced.map.map().count, 0);
-  sliced.map.make_map();  // nothing new
+  sliced.map.make_map();  // no new depth image
   EXPECT_TRUE(sliced.map.idle());
 }
 

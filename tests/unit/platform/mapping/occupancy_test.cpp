@@ -20,8 +20,8 @@ CameraModel small_camera() {
   return camera;
 }
 
-// A wall 1 m ahead of a camera that stands off the world's origin, with depth noise of 1 cm; its
-// right half is 0.5 m further away. The map's points are where the walls really are.
+// A wall 1 m in front of a camera away from the world's origin, with depth noise of 1 cm. Its right
+// half is 0.5 m further away. The map's points are on the true walls.
 struct Corner {
   Pose T_world_camera{Quaternion::Identity(), Vector3(0.3, -0.2, 0.1)};
   std::vector<float> depth = std::vector<float>(120 * 90);
@@ -50,12 +50,12 @@ struct Corner {
   }
 };
 
-// How many of places across the near wall's inner part are so, this far behind it.
+// Fraction of points at this depth behind the near wall's inner part with the wanted state.
 double share(const Occupancy& occupancy, const Corner& corner, double behind_m, Occupied wanted) {
   int found = 0, all = 0;
   for (double x = -0.5; x <= -0.1; x += 0.013) {
     for (double y = -0.4; y <= 0.4; y += 0.013) {
-      // On the line of sight, so that the same pixels are asked at every depth.
+      // Along the line of sight, so that every depth uses the same pixels.
       const Vector3 place = corner.T_world_camera * (Vector3(x, y, 1) * (1 + behind_m));
       found += occupancy.at(place) == wanted ? 1 : 0;
       ++all;
@@ -110,13 +110,13 @@ TEST(Occupancy, IsReadBackByOctomapFromItsFileAndItsMessage) {
   EXPECT_GT(compared, 2000);
 }
 
-// Seen from the side, rays graze the wall: what the map holds stays occupied.
+// Rays at grazing incidence do not clear the surface: the map's points stay occupied.
 TEST(Occupancy, KeepsASurfaceThatRaysGraze) {
   const Corner corner;
   Occupancy occupancy({.resolution_m = 0.02});
   for (int i = 0; i < 2; ++i) corner.add_to(occupancy);
   Pose close = corner.T_world_camera;
-  close.translation.z() += 0.97;  // 3 cm before the wall, looking along it
+  close.translation.z() += 0.97;  // 3 cm from the wall, parallel to it
   close.rotation = Quaternion(Eigen::AngleAxisd(-1.5, Vector3::UnitY()));
   occupancy.add_view({120, 90, std::vector<float>(120 * 90, 0.5f)}, small_camera(), close, {});
   occupancy.add_surface(corner.map.points());

@@ -1,4 +1,4 @@
-// A folder for one test, gone with it; and what a bad file is refused with.
+// A temporary folder for one test, and the error message of a refused file.
 #pragma once
 
 #include <gtest/gtest.h>
