@@ -1,4 +1,4 @@
-// Keys as the pen's buttons.
+// Keyboard keys as the pen's buttons.
 #include "platform/programming/key_buttons.hpp"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ TEST(KeyButtons, DoNothingByAnyOtherKey) {
   }
 }
 
-// As a keyboard does: after half a second 25 times a second.
+// Keyboard autorepeat: after half a second, 25 times a second.
 TEST(KeyButtons, TakeAKeysOwnRepetitionForNoPress) {
   std::vector<std::pair<char, Duration>> keys{{' ', milliseconds(0)}};
   for (int ms = 500; ms < 2000; ms += 40) keys.emplace_back(' ', milliseconds(ms));

@@ -1,4 +1,4 @@
-// A terminal that gives its keys, and what reads them.
+// Reading keys from a pseudoterminal.
 #include "platform/programming/key_terminal.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@
 namespace glint {
 namespace {
 
-// A terminal's two ends: the user's and the program's.
+// The two ends of a pseudoterminal: the user's and the program's.
 class PseudoTerminal {
  public:
   PseudoTerminal() { EXPECT_EQ(::openpty(&user_, &program_, nullptr, nullptr, nullptr), 0); }
@@ -72,7 +72,7 @@ TEST(KeyTerminal, IsAsItWasWhereASignalEndsTheProgram) {
     const termios before = terminal.mode();
     const pid_t child = ::fork();
     if (child == 0) {
-      std::signal(signal, SIG_DFL);  // whoever started the tests may have ignored it
+      std::signal(signal, SIG_DFL);  // the parent process may ignore it
       const KeyTerminal keys(terminal.program(), "here");
       if (is_as(terminal.mode(), before)) ::_exit(1);
       ::raise(signal);
@@ -85,7 +85,7 @@ TEST(KeyTerminal, IsAsItWasWhereASignalEndsTheProgram) {
   }
 }
 
-// Whoever handles a signal goes on to do so, and no handler is left behind.
+// Existing signal handlers stay in place, and the default ones are restored afterwards.
 TEST(KeyTerminal, LeavesSignalsToTheirHandlers) {
   const PseudoTerminal terminal;
   const auto handler_of = [](int signal) {
@@ -153,7 +153,7 @@ TEST(KeyReader, HandsKeysOnWithTheTimeAtWhichTheyAreRead) {
     terminal.type("f");
     ASSERT_TRUE(wait_for(4));
   }
-  terminal.type("u");  // nobody reads any more
+  terminal.type("u");  // no reader any more
   const std::vector<ButtonEvent> expected{{seconds_in(0), Button::draw, true},
                                           {seconds_in(2), Button::draw, false},
                                           {seconds_in(3), Button::finish, true},

@@ -19,7 +19,7 @@ TEST(PathCapture, MakesAStrokeOfWhatIsDrawnWhileTheButtonIsHeld) {
   const DrawnPath path = capture.path();
   ASSERT_EQ(path.size(), 1u);
   EXPECT_EQ(path[0].kind, PathKind::stroke);
-  ASSERT_EQ(path[0].points.size(), 51u);  // 100 mm, a point each 2 mm
+  ASSERT_EQ(path[0].points.size(), 51u);  // 100 mm, a point every 2 mm
   EXPECT_EQ(path[0].points.front().time, at_ms(1000));
   EXPECT_EQ(path[0].points.back().time, at_ms(2000));
   EXPECT_NEAR(path[0].points[10].pose.translation.x(), 0.02, 1e-12);
@@ -29,7 +29,7 @@ TEST(PathCapture, MakesAStrokeOfWhatIsDrawnWhileTheButtonIsHeld) {
 
 TEST(PathCapture, MakesAWaypointOfAClickWhereTheTipWasAsItBegan) {
   PathCapture capture({});
-  // The finger moves the pen by 3 mm as it presses.
+  // The press moves the pen by 3 mm.
   draw(capture, 1000, 1200, [](double ms) { return Vector3(0.1, 0.003 * (ms - 1000) / 200, 0); });
   const DrawnPath path = capture.path();
   ASSERT_EQ(path.size(), 1u);
@@ -97,12 +97,12 @@ TEST(PathCapture, DeletesTheLastAndTakesChangesBack) {
   press(capture, 4000, Button::delete_last);  // the click at 3 s
   press(capture, 4100, Button::delete_last);  // the stroke
   ASSERT_EQ(capture.path().size(), 1u);
-  press(capture, 4200, Button::undo);  // the stroke is back
+  press(capture, 4200, Button::undo);  // restores the stroke
   ASSERT_EQ(capture.path().size(), 2u);
   EXPECT_EQ(capture.path()[1].points.size(), 51u);
   click(capture, 5000, {5, 0, 0});
-  press(capture, 6000, Button::undo);  // the click at 5 s is not
-  press(capture, 6100, Button::undo);  // and the one at 3 s is, before its deletion
+  press(capture, 6000, Button::undo);  // removes the click at 5 s
+  press(capture, 6100, Button::undo);  // restores the click at 3 s
   ASSERT_EQ(capture.path().size(), 3u);
   EXPECT_EQ(capture.path()[2].points[0].pose.translation.x(), 3);
   for (int i = 0; i < 3; ++i) press(capture, 7000 + 100 * i, Button::undo);
@@ -145,7 +145,7 @@ TEST(PathCapture, CountsWhatDoesNotFit) {
   draw_line(capture, 0, 1000);
   draw_line(capture, 2000, 3000);
   click(capture, 4000, {1, 0, 0});
-  EXPECT_EQ(capture.counts().points_left_out, 51 - 9 + 1);  // the click has no room, too
+  EXPECT_EQ(capture.counts().points_left_out, 51 - 9 + 1);  // no capacity for the click either
   const DrawnPath path = capture.path();
   ASSERT_EQ(path.size(), 2u);
   EXPECT_EQ(path[1].points.size(), 9u);
@@ -163,7 +163,7 @@ TEST(PathCapture, CountsAPressWithoutAPose) {
   PathCapture capture({});
   capture.add(down(0));
   capture.add(up(1));
-  capture.add(up(2));  // it is up already
+  capture.add(up(2));  // already released
   EXPECT_EQ(capture.counts().presses_in_vain, 1);
   EXPECT_TRUE(capture.path().empty());
 }
@@ -179,7 +179,7 @@ TEST(PathCapture, RefusesSettingsByName) {
   }
 }
 
-// A ring and back, drawn with the tracker's noise as its covariance states it.
+// An arc drawn with the tracker's noise as its covariance states it.
 TEST(PathCapture, GivesAStrokeBackWithinItsCovariance) {
   test::Random random(11);
   double sum = 0;
@@ -192,7 +192,7 @@ TEST(PathCapture, GivesAStrokeBackWithinItsCovariance) {
   for (int stroke = 0; stroke < 60; ++stroke) {
     PathCapture capture({});
     capture.add(down(0));
-    const Vector3 off = random.vector(4e-4), turn = random.vector(4e-3);  // the filter's, slow
+    const Vector3 off = random.vector(4e-4), turn = random.vector(4e-3);  // correlated error
     for (double ms = 0; ms <= 1500; ms += 4) {
       PoseSample sample = tip_at(ms, truth(ms).translation + off + random.vector(2e-4));
       sample.pose.rotation =
@@ -212,8 +212,9 @@ TEST(PathCapture, GivesAStrokeBackWithinItsCovariance) {
       ++points;
     }
   }
-  // 6 where nothing is better than stated. A fifth of the variance is white, of which a point
-  // between two samples has two thirds: 5.6. The slow part makes 60 strokes worth 360 squares.
+  // 6 would be the NEES of the raw covariance. A fifth of the variance is white; interpolation
+  // between two samples leaves two thirds of it: 5.6. The correlated part leaves 60 strokes with
+  // 360 independent squares.
   EXPECT_NEAR(sum / static_cast<double>(points), 5.6, 1.2);
 }
 

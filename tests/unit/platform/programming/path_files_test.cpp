@@ -1,4 +1,4 @@
-// What is written is read back here by plain readers of the two formats.
+// Path files, read back by simple parsers of the two formats.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace glint {
 namespace {
 
-// A waypoint, two strokes that bend, two waypoints; turned by all angles up to pi.
+// A waypoint, two curved strokes and two waypoints, with rotations by all angles up to pi.
 DrawnPath sample_path() {
   PathCapture capture({});
   click(capture, 0, {0.3, -0.2, 0.4});
@@ -51,7 +51,7 @@ struct Move {
   double acceleration = 0, speed = 0, blend = 0;
 };
 
-// Every line that is neither a comment nor the program's frame is a move, or this fails.
+// Parses the moves; fails on a line that is not a move, a comment or the program's frame.
 std::vector<Move> moves_in(const std::string& script) {
   const std::string number = "(-?[0-9]+\\.[0-9]{6})";
   std::string pattern = "  (movel|movep)\\(p\\[";
@@ -139,7 +139,7 @@ TEST(UrScript, KeepsBlendsApartAndStopsAtTheEndsOfStrokesAndOfTheProgram) {
   }
 }
 
-// Two points at one place, and three a rounding apart.
+// Two points at one position, and three that differ by less than the output's rounding.
 TEST(UrScript, HasNoBlendWhereThereIsNoWay) {
   DrawnPath path;
   for (const double x : {0.1, 0.1, 0.1000004, 0.1000008, 0.2}) {

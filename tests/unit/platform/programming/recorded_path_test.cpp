@@ -10,7 +10,7 @@
 namespace glint {
 namespace {
 
-// Two tools for two seconds at 250 Hz; the second one stands apart.
+// Two tools for two seconds at 250 Hz; the second one is static.
 void write_run(const std::string& path, const std::vector<ButtonEvent>& events,
                ReferenceFrame frame = ReferenceFrame::robot) {
   RecordingWriter writer(path, sample_info(RecordingLevel::outputs));
@@ -34,7 +34,7 @@ std::string complaint(const std::string& recording, const RecordedPathOptions& o
   return "no complaint";
 }
 
-// The events stand behind all poses in the file, and not in their order.
+// The events follow all poses in the file, and not in time order.
 TEST(RecordedPath, PutsPosesAndButtonsInTheOrderOfTheirTime) {
   const TemporaryFolder folder;
   write_run(folder.file("run.mcap"), {up(1000), down(200), up(1201, Button::undo),
@@ -44,7 +44,7 @@ TEST(RecordedPath, PutsPosesAndButtonsInTheOrderOfTheirTime) {
   EXPECT_EQ(drawn.events, 5);
   EXPECT_EQ(drawn.unix_offset.nanoseconds, 1'700'000'000'000'000'123);
   ASSERT_EQ(drawn.path.size(), 1u);
-  // A pose at the press and one at the release belong to it: 0.02 to 0.1 m, each 2 mm.
+  // The poses at the press and at the release are included: 0.02 to 0.1 m, a point every 2 mm.
   EXPECT_EQ(drawn.counts.taken, 201);
   ASSERT_EQ(drawn.path[0].points.size(), 41u);
   EXPECT_EQ(drawn.path[0].points.front().time, at_ms(200));

@@ -1,4 +1,4 @@
-// Poses and presses for the tests of paths.
+// Poses and button presses for the tests of paths.
 #pragma once
 
 #include <cmath>
@@ -38,7 +38,7 @@ inline void press(PathCapture& capture, double ms, Button button) {
   capture.add(up(ms + 50, button));
 }
 
-// Held from `from` to `to`; every 4 ms the tip is where `place` says.
+// Presses the button from `from` to `to`; every 4 ms the tip is at `place(ms)`.
 template <class Place>
 void draw(PathCapture& capture, double from, double to, Place place) {
   capture.add(down(from));
