@@ -49,7 +49,7 @@ TEST(DepthPicture, RefusesAnotherSizeNoDepthAndUnknownKinds) {
                      {"m.png", "cannot be read"});
 }
 
-// OpenCV takes memory for every pixel that the head of a file names.
+// OpenCV allocates memory for every pixel that a file's header states.
 TEST(DepthPicture, RefusesAPngThatSaysItIsEnormous) {
   const Files files;
   for (const std::string& size :
@@ -62,7 +62,7 @@ TEST(DepthPicture, RefusesAPngThatSaysItIsEnormous) {
 }
 
 TEST(SceneFrame, TakesPointsThatAreFewerThanThePicturesPixels) {
-  // A picture of 1280 x 720 is worked on at 320 x 180; a point for each fourth of those pixels.
+  // An image of 1280 x 720 is processed at 320 x 180; one point for every four of those pixels.
   const CameraModel large = camera(1280, 720);
   std::vector<Vector3f> points;
   for (int y = 1; y < 180; y += 2) {
@@ -72,8 +72,8 @@ TEST(SceneFrame, TakesPointsThatAreFewerThanThePicturesPixels) {
                           (static_cast<float>(y) - 89.5f) / 125 * z, z);
     }
   }
-  points.emplace_back(0.0f, 0.0f, 1.5f);  // alone: x is 160, y is 90
-  points.emplace_back(9.0f, 0.0f, 1.0f);  // beside the picture
+  points.emplace_back(0.0f, 0.0f, 1.5f);  // isolated: x is 160, y is 90
+  points.emplace_back(9.0f, 0.0f, 1.0f);  // outside the image
   const SceneFrame frame = scene_frame(points, nullptr, large);
   ASSERT_EQ(frame.depth_m.size(), 320u * 180);
   for (std::size_t i = 0; i < frame.depth_m.size(); ++i) {
@@ -127,8 +127,8 @@ TEST(DepthPoints, TakeWhatIsFiniteAndBeforeTheCamera) {
 
 TEST(SceneFrame, MergesBlocksWithoutMixingNearAndFar) {
   DepthImage depth{640, 4, std::vector<float>(640 * 4, 1.0f)};
-  depth.z_m[0] = 3;  // one far pixel of the first block
-  depth.z_m[2] = depth.z_m[3] = depth.z_m[642] = depth.z_m[643] = 0;  // the second has none
+  depth.z_m[0] = 3;  // one far pixel in the first block
+  depth.z_m[2] = depth.z_m[3] = depth.z_m[642] = depth.z_m[643] = 0;  // no depth in the second
   const SceneFrame frame = scene_frame(depth, nullptr, camera(640, 4));
   EXPECT_EQ(frame.camera.width, 320);
   EXPECT_EQ(frame.camera.height, 2);

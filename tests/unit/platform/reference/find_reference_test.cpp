@@ -25,7 +25,7 @@ PosedSurface surface_of(const std::vector<std::pair<Vector3, Vector3>>& boxes) {
   return surface;
 }
 
-// Of an arm that reaches out, and of a post that looks alike from four sides.
+// Surfaces of a post with a horizontal arm, and of a post with fourfold symmetry.
 PosedSurface arm() {
   return surface_of({{{0.2, 0.2, 0.5}, {0, 0, 0.25}},
                      {{0.5, 0.11, 0.1}, {0.2, 0, 0.45}},
@@ -33,8 +33,8 @@ PosedSurface arm() {
 }
 PosedSurface post() { return surface_of({{{0.2, 0.2, 0.5}, {0, 0, 0.25}}}); }
 
-// Seen from above, all sides of a box aslant: where one is seen edge on a direction stays open.
-// Roll before yaw would lean the robot: the yaw comes first.
+// A view from above, oblique to all sides of a box: an edge-on side leaves a direction
+// undetermined. The yaw is applied before the roll, as a roll first would tilt the robot.
 const Pose k_truth{
     pose_of_seed({0, 0, 0, 2.094, 0, 0}).rotation * pose_of_seed({0, 0, 0, 0, 0, 0.7}).rotation,
     {-0.1, 0.15, 1.3}};
@@ -89,7 +89,7 @@ TEST(FindReference, RefusesWhatLiesFlatOnAWall) {
   frames[0].model = surface_of({{{0.3, 0.5, 0.02}, {0, 0, 0}}, {{0.02, 0.3, 0.02}, {0.2, 0, 0}}});
   for (float& z : frames[0].depth_m) z = 1.3f;
   FindReferenceSettings settings;
-  settings.sigma_max_m = settings.sigma_max_rad = 1e9;  // a wall leaves three directions open
+  settings.sigma_max_m = settings.sigma_max_rad = 1e9;  // a wall leaves 3 dof open
   settings.alignment.gate_count = 0;
   settings.other_starts = false;
   const Pose flat{Quaternion::Identity(), {0, 0, 1.31}};
@@ -124,7 +124,7 @@ TEST(FindReference, WantsAMaskOrASecondPlaceWhereHalfIsHidden) {
   frames[0].mask.clear();
   frames.push_back(frames[0]);
   EXPECT_EQ(find_reference(frames, off(0.02, 0.03), {}).verdict, ReferenceVerdict::refused);
-  // Seen from elsewhere, too, what hides it is no longer in the way.
+  // From a second position the occluding object no longer covers the robot.
   const Pose aside{pose_of_seed({0, 0, 0, 0, 0.2, 0}).rotation, {-0.3, 0, 0.1}};
   frames[1] = scene_of(arm(), aside * k_truth)[0];
   frames[1].T_camera_world = aside;
@@ -227,7 +227,7 @@ TEST(FindReference, GivesTheSameBitsAgain) {
 
 TEST(Seed, TurnsAboutFixedAxes) {
   const Pose pose = pose_of_seed({1, 2, 3, M_PI / 2, 0, M_PI / 2});
-  // Rolled about x first: y goes to z, which the yaw leaves; x goes to y by the yaw.
+  // Roll about x is applied first: y goes to z, which the yaw keeps; the yaw moves x to y.
   EXPECT_LT((pose.rotation * Vector3::UnitY() - Vector3::UnitZ()).norm(), 1e-12);
   EXPECT_LT((pose.rotation * Vector3::UnitX() - Vector3::UnitY()).norm(), 1e-12);
   EXPECT_EQ(pose.translation, Vector3(1, 2, 3));

@@ -1,4 +1,4 @@
-// An arm that reaches out from a post and can turn on it, without meshes, and depth of it.
+// A robot without meshes, an arm that rotates on a post, and its depth images.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 namespace glint {
 
-// Its inputs: turn, slide.
+// Inputs: turn, slide.
 inline std::string post_arm_xml() {
   const auto link = [](const char* name, const char* size, const char* xyz) {
     return std::string("<link name='") + name + "'><collision><origin xyz='" + xyz +
@@ -26,17 +26,17 @@ inline std::string post_arm_xml() {
                          test::joint_xml("slide", "prismatic", "beam", "hand"));
 }
 
-// T_camera_base in the scene.
+// Ground truth of T_camera_base.
 inline const Pose k_post_arm_truth{
     pose_of_seed({0, 0, 0, 2.094, 0, 0}).rotation * pose_of_seed({0, 0, 0, 0, 0, 0.7}).rotation,
     {-0.1, 0.15, 1.3}};
 
-// A few degrees and centimetres beside it.
+// Initial guess: the ground truth with an error of a few degrees and centimetres.
 inline const Pose k_post_arm_guess{
     k_post_arm_truth.rotation * pose_of_seed({0, 0, 0, 0.05, 0.05, 0}).rotation,
     k_post_arm_truth.translation + Vector3(0.03, -0.03, 0.03)};
 
-// One picture, before a wall.
+// One depth image, with a wall behind the robot.
 inline std::vector<SceneFrame> post_arm_scene(const RobotModel& robot,
                                               std::span<const double> positions) {
   SceneFrame frame;

@@ -27,7 +27,7 @@ TEST(ReferenceChecks, JudgesNoLinkOfWhichLittleIsSeen) {
   EXPECT_NE(link_objection(three_links({100, 0, 100}), {}), "");
 }
 
-// All of it seen and explained, but for what the outline and the surface say.
+// A candidate that is fully visible and all inliers, with these outline and surface scores.
 Candidate end_of(double surface_score, double granted, int falls, int goes_on) {
   Candidate end;
   end.alignment.covariance = 1e-6 * Matrix6::Identity();

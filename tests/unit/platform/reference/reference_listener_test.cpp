@@ -1,4 +1,4 @@
-// A description, joint states and a guess from another participant, in place of files.
+// Robot description, joint states and initial guess from another DDS participant instead of files.
 #include "platform/reference/reference_listener.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using test::expect_input_error;
 
 constexpr Duration k_patience = milliseconds(k_patience_ms);
 
-// The other robot's joint stands among them; the order is not the URDF's.
+// The joint states include a joint of another robot, and their order is not the URDF's.
 TEST_F(ReferenceListening, GivesWhatFilesGive) {
   const test::Files files;
   const RobotModel from_file = load_robot({files.write("arm.urdf", post_arm_xml()), {}});
@@ -44,7 +44,7 @@ TEST_F(ReferenceListening, GivesWhatFilesGive) {
   EXPECT_EQ(by_files.verdict, ReferenceVerdict::accepted) << by_files.why;
   EXPECT_EQ(by_ear.verdict, ReferenceVerdict::accepted) << by_ear.why;
   const Pose &a = by_files.found.alignment.T_world_base, &b = by_ear.found.alignment.T_world_base;
-  EXPECT_LT((a.translation - b.translation).norm(), 1e-9);  // a guess is made of length 1 again
+  EXPECT_LT((a.translation - b.translation).norm(), 1e-9);  // the quaternion is normalised again
   EXPECT_LT(a.rotation.angularDistance(b.rotation), 1e-7);
   EXPECT_LT((b.translation - k_post_arm_truth.translation).norm(), 1e-3);
 }
