@@ -104,7 +104,7 @@ TEST(Plots, NeverLeavesAHalfWrittenFile) {
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "new");
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) files += entry.exists();
-  EXPECT_EQ(files, 2);  // a.svg and the folder in the way, no temporaries
+  EXPECT_EQ(files, 2);  // a.svg and the folder taken.svg; no temporary files
   std::filesystem::remove_all(folder);
 }
 

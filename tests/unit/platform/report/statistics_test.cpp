@@ -9,8 +9,8 @@
 namespace glint {
 namespace {
 
-// The normal distribution's quantiles at equal steps of probability, by bisection of erf: a sample
-// without chance.
+// Quantiles of the normal distribution at equal steps of probability, by bisection of erf: a sample
+// without randomness.
 std::vector<double> normal_sample(double mean, double sd, int count) {
   std::vector<double> values;
   for (int i = 0; i < count; ++i) {
@@ -89,7 +89,7 @@ TEST(Statistics, FindsTheBellThatMadeTheBars) {
   const GaussianFit fit = fit_gaussian(make_histogram(values, -8, 8, 40));
   ASSERT_TRUE(fit.valid);
   EXPECT_NEAR(fit.mean, 0.7, 0.02);
-  EXPECT_NEAR(fit.sd, 2.5, 0.03);  // the bins of 0.4 widen it by 0.005
+  EXPECT_NEAR(fit.sd, 2.5, 0.03);  // the bin width of 0.4 adds 0.005
   EXPECT_NEAR(fit.height, 4000 * 0.4 / (2.5 * std::sqrt(2 * 3.14159265)), 3);
   EXPECT_DOUBLE_EQ(fit.at(fit.mean), fit.height);
 }
