@@ -1,4 +1,4 @@
-// Files of a test in a folder of its own, gone at its end.
+// Files of a test in a temporary folder.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Forward kinematics against Orocos KDL, whose tree is made here from the XML itself.
+// Forward kinematics compared with Orocos KDL; the test builds KDL's tree from the XML itself.
 #include <gtest/gtest.h>
 #include <tinyxml.h>
 
@@ -26,7 +26,7 @@ KDL::Vector vector_of(const TiXmlElement* element, const char* attribute, KDL::V
 
 struct KdlRobot {
   KDL::Tree tree;
-  std::map<std::string, std::string> mimics;  // joint -> whom, with multiplier 1
+  std::map<std::string, std::string> mimics;  // joint -> mimicked joint, multiplier 1
 };
 
 KdlRobot kdl_robot(const std::string& path) {
@@ -76,7 +76,7 @@ KdlRobot kdl_robot(const std::string& path) {
 void expect_equal_to_kdl(const std::string& urdf, const std::vector<std::string>& packages) {
   const RobotModel robot = load_robot({urdf, packages});
   const KdlRobot kdl = kdl_robot(urdf);
-  // The solver keeps a copy, and copying numbers the joints anew, a copy of a copy alike.
+  // The solver copies the tree, and a copy renumbers the joints; copies of a copy agree.
   const KDL::Tree tree(kdl.tree);
   KDL::TreeFkSolverPos_recursive solver(tree);
   std::mt19937 random(7);

@@ -19,7 +19,7 @@ using test::stl_bytes;
 const Eigen::Vector3d k_one = Eigen::Vector3d::Ones();
 const Eigen::Vector3d k_tenth = 0.1 * k_one;
 
-// A triangle with corners at 1, 2 and 3 of the file's unit along its axes.
+// A triangle with corners at 1, 2 and 3 units on the three axes.
 std::string collada(const std::string& unit, const std::string& up) {
   return "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' "
          "version='1.4.1'><asset><unit name='u' meter='" +
@@ -42,7 +42,7 @@ TEST(MeshFile, ReadsStlAndObjAlike) {
   const Mesh obj =
       read_mesh(files.write("a.obj", "v 0 0 0\nv 100 0 0\nv 100 200 0\nv 0 200 0\nf 1 2 3 4\n"),
                 {1e-3, 1e-3, 1e-3});
-  ASSERT_EQ(obj.triangles.size(), 2u);  // a face of four corners
+  ASSERT_EQ(obj.triangles.size(), 2u);  // a quadrilateral face
   float most = 0;
   for (const Triangle& t : obj.triangles) most = std::max({most, t.a.y(), t.b.y(), t.c.y()});
   EXPECT_FLOAT_EQ(most, 0.2f);
@@ -87,7 +87,7 @@ TEST(MeshFile, SkipsAndCountsTrianglesWithoutAnArea) {
 TEST(MeshFile, RefusesFilesThatAreNotWhatTheySay) {
   const Files files;
   std::string lies = stl_bytes(box_surface({0.1, 0.2, 0.3}));
-  lies[83] = '\x7f';  // two thousand million triangles
+  lies[83] = '\x7f';  // about two thousand million triangles
   expect_input_error([&] { (void)read_mesh(files.write("lies.stl", lies), k_one); },
                      {"lies.stl:byte 80"});
   expect_input_error([&] { (void)read_mesh(files.write("e.stl", ""), k_one); }, {"e.stl"});
@@ -98,7 +98,7 @@ TEST(MeshFile, RefusesFilesThatAreNotWhatTheySay) {
                      {"e.step", ".stl"});
 }
 
-// Without limits the description of a robot that came over DDS read any file.
+// Without this limit a robot description received over DDS could read any file.
 TEST(FindMesh, StaysInThePackageFolders) {
   const Files files;
   const std::string secret = files.write("secret.stl", "x"), part = files.write("p/m/a.stl", "x");
@@ -111,7 +111,7 @@ TEST(FindMesh, StaysInThePackageFolders) {
   EXPECT_EQ(find_mesh("file://" + part, robot), part);
   EXPECT_EQ(find_mesh("file://" + package + "/m/../m/./a.stl", robot), part);
   refused("file://");
-  refused("package://x/" + std::string(300, 'a'));  // no file may have so long a name
+  refused("package://x/" + std::string(300, 'a'));  // longer than a file name may be
   refused("package://x/../secret.stl");
   refused("package://../secret.stl");
   refused("package://x/m/../../secret.stl");
@@ -122,10 +122,10 @@ TEST(FindMesh, StaysInThePackageFolders) {
   refused("file://" + package + "x/../secret.stl");
   refused(secret);
   refused("../secret.stl");
-  refused(package);  // a folder: found by fuzzing
+  refused(package);  // a folder; found by fuzzing
   refused("//" + package);
   refused(package + "/");
-  refused(package + "/m/b.stl");  // not there
+  refused(package + "/m/b.stl");  // does not exist
 }
 
 TEST(FindMesh, OfAFileStaysInItsFolderAndThePackageFolders) {
@@ -141,8 +141,8 @@ TEST(FindMesh, OfAFileStaysInItsFolderAndThePackageFolders) {
   EXPECT_EQ(find_mesh("../m/b.stl", {urdf, {"arm=" + files.folder() + "/m/"}}), other);
 }
 
-// `from` of the Collada file above as `to`, and the file read: assimp 5.2.5 crashed on the first
-// two, and filled the memory by the others.
+// Reads the Collada file above with `from` replaced by `to`. assimp 5.2.5 crashed on the first two
+// cases and exhausted the memory on the others.
 void expect_outlived(const std::string& from, const std::string& to, const char* message) {
   const Files files;
   std::string text = collada("0.001", "Z_UP");
@@ -157,7 +157,7 @@ TEST(MeshFile, OutlivesACrashOfTheLibrary) {
   expect_outlived("instance_geometry url='#g'", "instance_node url='#n'", "fails on it");
 }
 
-#ifndef GLINT_SANITIZED  // sanitizers reserve more addresses than any limit
+#ifndef GLINT_SANITIZED  // sanitizers reserve more address space than any limit
 TEST(MeshFile, BoundsTheMemoryOfTheLibrary) {
   expect_outlived("count='9'", "count='4294967295'", "1024 MB of memory");
   expect_outlived("triangles count='1'", "triangles count='4294967295'", "1024 MB of memory");

@@ -19,7 +19,7 @@ using test::Files;
 
 constexpr std::size_t k_point_bytes = 26;
 
-// A box of 0.2 x 0.1 x 0.3 m (0.22 m2), and a sphere of 0.1 m (0.126 m2) on a joint that mimics.
+// A box of 0.2 x 0.1 x 0.3 m (0.22 m2), and a sphere of radius 0.1 m (0.126 m2) on a mimic joint.
 RobotModel robot(const Files& files) {
   return load_robot(
       {files.write(
@@ -56,7 +56,7 @@ TEST(RobotCloud, ComesBackAsItWasWritten) {
   EXPECT_EQ(back.normals, cloud.normals);
   EXPECT_EQ(back.point_links, cloud.point_links);
   EXPECT_EQ(back.spacing_m, cloud.spacing_m);
-  // And it moves as the URDF's robot does, to the last bit.
+  // The forward kinematics of the file and of the URDF are bit-identical.
   const double values[] = {0.7};
   LinkPoses from_urdf, from_file;
   ASSERT_EQ(forward_kinematics(cloud.tree, values, from_urdf), Reason::none);
@@ -76,7 +76,7 @@ TEST(RobotCloud, LiesEvenlyOnTheSurface) {
   ASSERT_EQ(cloud.points.size(), static_cast<std::size_t>(count));
   const double area = 0.22 + 4 * M_PI * 0.01;
   EXPECT_NEAR(static_cast<double>(cloud.spacing_m), std::sqrt(area / count), 2e-5);
-  // Of each of the box's sides, and in quarters of its largest, points as area.
+  // The number of points is proportional to area, by side of the box and by quarter of the largest.
   int sides[3] = {}, quarters[4] = {}, ball = 0;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     const Vector3f &p = cloud.points[i], &n = cloud.normals[i];
@@ -147,7 +147,7 @@ TEST(RobotCloud, RefusesFilesByNameAndLine) {
       },
       {"head.ply", "end_header"});
   std::string lies = good;
-  lies.replace(lies.size() - 2, 2, "\x09\x00", 2);  // the last point's link
+  lies.replace(lies.size() - 2, 2, "\x09\x00", 2);  // link index of the last point
   expect_input_error([&] { (void)read_robot_cloud(files.write("link.ply", lies)); },
                      {"link.ply", "point 99"});
   lies = good;

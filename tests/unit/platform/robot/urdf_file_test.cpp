@@ -27,7 +27,7 @@ void expect_refused(const std::string& text, const char* what) {
                      {"/robot_description", what});
 }
 
-// Each ended the process with SIGSEGV: urdfdom's parser recurses for every open element.
+// Each case caused SIGSEGV: urdfdom's parser recurses for every open element.
 TEST(UrdfFile, RefusesDeepNestingWhateverHidesIt) {
   const std::string links = "<link name='a'/>";
   expect_refused(robot_xml(links + repeated("<a>")), "nested");
@@ -38,7 +38,8 @@ TEST(UrdfFile, RefusesDeepNestingWhateverHidesIt) {
   expect_refused(robot_xml(links + "<![CDATA[-->]]>" + repeated("<a>")), "nested");
 }
 
-// Text that tinyxml2 skips and urdfdom's own parser may take for elements never reaches it.
+// The text passed to urdfdom contains nothing that tinyxml2 skips, so that both see the same
+// elements.
 TEST(UrdfFile, HidesNoElementsFromItsOwnCheck) {
   const std::string deep = repeated("<a>");
   const std::string arm = "<robot name='arm'><link name='a'/></robot>";
