@@ -12,7 +12,7 @@ namespace {
 
 const Pose k_T_reference_world = turned(0.3, -1.2, 2.0, {1.2, -0.7, 0.9});
 
-// A tip that moves a little, far from the world's origin, with a small error that changes its sign.
+// A tip with little motion, far from the world's origin, and a small error of alternating sign.
 std::vector<PosePair> samples(int count, double error_m, double error_rad) {
   std::vector<PosePair> pairs;
   for (int i = 0; i < count; ++i) {

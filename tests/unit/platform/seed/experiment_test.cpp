@@ -20,7 +20,7 @@ sim::SimFrame frame_with(const Pose& T_reference_tool) {
   return frame;
 }
 
-// The tip's pose, as a method that states no covariance has it.
+// The tip's pose as a method without a covariance returns it.
 Result<UncertainPose> answered(const Pose& T_world_tool, Reason reason = Reason::none) {
   const Pose T_tool_tip{Quaternion::Identity(), small_tool().tip_m};
   return {{{}, T_world_tool * T_tool_tip, Matrix6::Zero()}, reason};
@@ -35,7 +35,7 @@ const Pose k_pose = turned(0.1, 0.2, 0.3, {0.1, 0.2, 0.5});
 TEST(MethodRecord, JudgesAgainstWhatTheRestAligned) {
   MethodRecord record("any", small_tool(), {0, 0, {}});
   record.begin_run();
-  const Vector3 offset(0.01, 0, 0);  // the worlds' own difference: no error
+  const Vector3 offset(0.01, 0, 0);  // offset between the world frames: no error
   for (int i = 0; i < 20; ++i)
     record.take_aligning(frame_with(k_pose), shifted(k_pose, offset), 0.5);
   for (int i = 0; i < 10; ++i)
@@ -60,7 +60,7 @@ TEST(MethodRecord, CountsAFrameWithoutAPoseAsNoSample) {
   record.take_judged(frame_with(k_pose), answered(k_pose), 1);
   EXPECT_EQ(record.figures().frames, 3);
   EXPECT_EQ(record.figures().samples, 1);
-  ASSERT_EQ(record.path_m().size(), 3u);  // a gap for each frame without
+  ASSERT_EQ(record.path_m().size(), 3u);  // a gap for each frame without a pose
   EXPECT_FALSE(record.path_m()[1].allFinite());
   EXPECT_TRUE(record.path_m()[2].allFinite());
 }
@@ -113,7 +113,7 @@ TEST(Experiment, GivesBothMethodsTheSameFramesAndTheSameFiguresAgain) {
                                       std::pair(&a.glint_held, &b.glint_held)}) {
     EXPECT_EQ(first->frames, 12);
     EXPECT_GE(first->samples, 10);
-    EXPECT_LT(first->position_mm.norm_mean, 100);  // it measured the tool, whatever drifted
+    EXPECT_LT(first->position_mm.norm_mean, 100);  // the tool was tracked, whatever the drift
     EXPECT_EQ(first->position_mm.summary.mean_abs, second->position_mm.summary.mean_abs);
     EXPECT_EQ(first->angle_deg.summary.sd, second->angle_deg.summary.sd);
   }
@@ -123,7 +123,7 @@ TEST(Experiment, GivesBothMethodsTheSameFramesAndTheSameFiguresAgain) {
 
 TEST(Experiment, NamesItsParametersByAHashThatMovesWithThem) {
   EXPECT_EQ(fnv1a_text(""), "cbf29ce484222325");
-  EXPECT_EQ(fnv1a_text("a"), "af63dc4c8601ec8c");  // the authors' test vector
+  EXPECT_EQ(fnv1a_text("a"), "af63dc4c8601ec8c");  // test vector of the FNV authors
   ExperimentRun other = short_run();
   const std::string before = declared_parameters({other});
   other.scenario.localisation.rest_angle_rad *= 1.0001;
@@ -144,7 +144,7 @@ TEST(Experiment, WritesPublishedSeedAndGlintSideBySide) {
     }
   }
   EXPECT_EQ(json["published"]["position_mean_abs_mm"], 1.9);
-  EXPECT_TRUE(json["published"]["position_sd_mm"].is_null());  // not stated for the static one
+  EXPECT_TRUE(json["published"]["position_sd_mm"].is_null());  // not published (static)
   EXPECT_EQ(json["seed"]["position_mean_abs_mm"], 2.0);
   EXPECT_EQ(json["seed"]["position_mm"]["norm_mean"], 4.0);
   result.kind = ExperimentKind::moving;

@@ -1,4 +1,4 @@
-// A frame with a tool's spheres in it and nothing else, ray by ray: no noise, dark background.
+// Renders a tool's spheres by ray casting, without noise, on a dark background.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@ inline Tool small_tool() {
   return tool;
 }
 
-// The front point's distance along the ray, or 0.
+// Distance of the nearest surface point along the ray, or 0.
 inline double sphere_range(const Vector3& ray, const Vector3& centre, double radius) {
   const double along = ray.dot(centre);
   const double square = along * along - centre.squaredNorm() + radius * radius;

@@ -28,7 +28,7 @@ TEST(SeedMatch, FindsTheToolAmongStrays) {
   EXPECT_LT(match.rms_m, 1e-12);
   EXPECT_LT((match.T_camera_tool.translation - k_pose.translation).norm(), 1e-12);
   EXPECT_LT(match.T_camera_tool.rotation.angularDistance(k_pose.rotation), 1e-7);
-  EXPECT_EQ(match.point[0], 5);  // inserted in reverse
+  EXPECT_EQ(match.point[0], 5);  // inserted in reverse order
 }
 
 TEST(SeedMatch, IsContentWithThreeOfTheMarkers) {
@@ -47,7 +47,7 @@ TEST(SeedMatch, RefusesTheMirrorImage) {
   std::vector<Vector3> points = placed(tool, k_pose);
   for (Vector3& point : points) point.x() = -point.x();
   SeedSettings settings;
-  settings.min_markers = 5;  // any three points have a mirror image that fits
+  settings.min_markers = 5;  // any three points match their mirror image
   EXPECT_EQ(match_tool(points, tool, settings).reason, Reason::bad_fit);
 }
 
@@ -73,7 +73,7 @@ TEST(SeedMatch, FitsFlatSetsWithARotationNeverAReflection) {
 
 TEST(SeedMatch, GivesNoPointToTwoMarkers) {
   Tool tool = small_tool();
-  tool.markers_m[4] = tool.markers_m[0] + Vector3(0, 0, 0.004);  // nearer than delta
+  tool.markers_m[4] = tool.markers_m[0] + Vector3(0, 0, 0.004);  // closer than delta
   ASSERT_EQ(prepare_tool(tool), Reason::none);
   std::vector<Vector3> points = placed(tool, k_pose);
   points.pop_back();

@@ -38,7 +38,7 @@ TEST_P(SeedOnBothCameras, FindsTheBlobsWhereAPinholeSeesTheMarkers) {
                         camera.model.fy * point.y() / point.z() + camera.model.cy);
     double nearest = 1e9;
     for (const SeedBlob& blob : blobs) nearest = std::min(nearest, (blob.centre_px - pixel).norm());
-    EXPECT_LT(nearest, 1.0) << "marker " << i;  // half a half-size pixel
+    EXPECT_LT(nearest, 1.0) << "marker " << i;  // half a pixel at half resolution
   }
 }
 
@@ -68,7 +68,7 @@ TEST_P(SeedOnBothCameras, LooksAroundThePredictionAndThenEverywhere) {
 }
 
 TEST_P(SeedOnBothCameras, GivesTheSamePoseWhereverItUndistorts) {
-  const Pose pose = turned(0.4, -0.3, 1.1, {-0.15, 0.12, 0.45});  // where the lens bends
+  const Pose pose = turned(0.4, -0.3, 1.1, {-0.15, 0.12, 0.45});  // at strong lens distortion
   const FrameBuffer buffer = painted_frame(camera, tool, pose);
   for (const auto undistortion : {SeedUndistortion::roi, SeedUndistortion::points}) {
     SeedSettings settings;
@@ -92,7 +92,7 @@ TEST(Seed, PredictsAcrossTheHeadsOwnMotion) {
   SeedTracker tracker(camera, small_tool());
   const Pose T_world_pen = k_pose;
   for (int i = 0; i < 4; ++i) {
-    // 25 mm and 4 degrees a frame: beyond the ROI's margin, were the head's motion not known.
+    // 25 mm and 4 degrees a frame: outside the ROI's margin without the head's motion.
     const Pose T_world_camera = turned(0, 0.07 * i, 0, {0.025 * i, 0, 0});
     const FrameBuffer buffer =
         painted_frame(camera, small_tool(), T_world_camera.inverse() * T_world_pen);
@@ -157,7 +157,7 @@ TEST(Seed, TakesTheRimsDepthWhereASaturatedMiddleHasNone) {
   SeedTracker tracker(camera, small_tool());
   const SeedResult result = tracker.process(buffer.view({}, {}, 0), no_head());
   ASSERT_EQ(result.reason, Reason::none);
-  // The rim lies up to a radius behind the front point.
+  // The rim is up to a radius behind the nearest surface point.
   EXPECT_LT((result.T_camera_tool.translation - k_pose.translation).norm(), 0.006);
 }
 
