@@ -80,7 +80,8 @@ std::string raw(const Numbers& numbers) {
   return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(numbers[0])};
 }
 
-// StreamRecorder's table has unit rays alone; hl2ss's calibration x and y at z = 1, then more.
+// StreamRecorder's table holds unit rays only; hl2ss's calibration holds x and y at z = 1, then
+// more.
 TEST(RayTableFile, IsReadAsRecordersOfHeadsetsWriteIt) {
   const TemporaryFolder folder;
   const Camera camera = small_camera();
@@ -94,7 +95,7 @@ TEST(RayTableFile, IsReadAsRecordersOfHeadsetsWriteIt) {
       planes[6 + i] = rays[3 * i + 1] / rays[3 * i + 2];
     }
     planes[4] = NAN;
-    planes[5] = planes[11] = 0;  // as pixel 0, whose ray is the axis
+    planes[5] = planes[11] = 0;  // as pixel 0, whose ray is the optical axis
     const Camera read = with_ray_table(camera, folder.write("hl2ss.bin", raw(planes)));
     for (std::size_t i = 3; i < 12; ++i) EXPECT_NEAR((*read.table)[i], rays[i], 1e-6f) << i;
     for (std::size_t i = 12; i < 18; ++i) EXPECT_EQ((*read.table)[i], 0.0f) << i;
@@ -119,7 +120,7 @@ TEST(Cameras, AreNamedAndHaveALensOrNone) {
   EXPECT_EQ(camera_named("magic_leap2")->depth.kind, DepthKind::radial);
 }
 
-// A camera without a lens of its own gets a place for the search to begin.
+// A camera without a lens gets a pinhole model as the initial guess of the search.
 TEST(RayTableFile, GivesABareCameraAPinholeNearIt) {
   const Camera camera = *camera_named("azure_kinect_nfov_binned");
   std::vector<float> rays;

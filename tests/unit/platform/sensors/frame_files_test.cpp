@@ -31,7 +31,7 @@ TEST(FrameFiles, MoveTheBrightnessOfAdiBackByItsColumns) {
   put(bytes, depth_at * 5, 0x1234);
   bytes[bright_at * 5 + 2] = '\x55';  // confidence
   put(bytes, bright_at * 5 + 3, 0xFEDC);
-  put(bytes, (8 * 512 + 3) * 5 + 3, 777);  // in the first 32 columns: of no pixel
+  put(bytes, (8 * 512 + 3) * 5 + 3, 777);  // the first 32 columns hold no pixel
   const FrameBuffer frame = load_frame(folder.write("f.bin", bytes), FrameFileLayout::adi);
   EXPECT_EQ(frame.width, 512);
   EXPECT_EQ(frame.height, 512);

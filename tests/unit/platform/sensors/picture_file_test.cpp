@@ -30,7 +30,7 @@ std::string chunk(const std::string& kind, const std::string& data) {
          big_endian(static_cast<std::uint32_t>(sum));
 }
 
-// The PNG specification, by zlib alone: `rows` with the filter's byte 0 before each.
+// A PNG by its specification, with zlib only: `rows` includes each row's filter byte 0.
 std::string png(std::uint32_t width, std::uint32_t height, int depth, int colour_type,
                 const std::string& rows, const std::string& before_pixels = "") {
   std::string packed(rows.size() + 100, '\0');

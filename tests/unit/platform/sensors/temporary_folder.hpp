@@ -1,4 +1,4 @@
-// A folder of its own for each test, gone afterwards.
+// A temporary folder for each test.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ class TemporaryFolder {
   std::filesystem::path folder_;
 };
 
-// The message of the InputError that call throws, "" if it throws none.
+// Message of the InputError that `call` throws; "" if it throws none.
 template <class Error, class Call>
 std::string message_of(Call call) {
   try {

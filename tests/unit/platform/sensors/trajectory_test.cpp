@@ -89,7 +89,7 @@ TEST(TrajectoryFile, RefusesOneThatIsNotThere) {
 Trajectory parabola() {
   Trajectory path;
   for (int i = 0; i <= 10; ++i) {
-    const std::int64_t ns = i * 50'000'000LL + (i % 2) * 15'000'000LL;  // unevenly
+    const std::int64_t ns = i * 50'000'000LL + (i % 2) * 15'000'000LL;  // irregular steps
     const double t = static_cast<double>(ns) * 1e-9;
     path.samples.push_back({Time{ns}, {from_rotation_vector({0, 0, t}), Vector3(t, t * t, 1)}});
   }
