@@ -1,4 +1,4 @@
-// What a marker leaves in the frame: where its centroid is, and how far its depth says it is.
+// Simulated marker blobs: centroid and range.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,8 +10,8 @@
 namespace glint::sim {
 namespace {
 
-// The silhouette of a sphere is an ellipse; its middle by its two rims along the line from the
-// principal point: f tan(theta +- a), sin a = r / range.
+// Centre of a sphere's elliptic silhouette, from its two rims along the line from the principal
+// point: f tan(theta +- a), sin a = r / range.
 Vector2 silhouette_middle(const Scenario& scenario, const Vector3& place, double radius) {
   const double range = place.norm(), f = scenario.camera.model.fx;
   const double tilt = std::atan2(std::hypot(place.x(), place.y()), place.z());
@@ -61,7 +61,7 @@ TEST(Blob, CoversTheAreaOfItsSphere) {
   SimFrame frame;
   Simulator(scenario).render(0, frame);
   double covered = 0;
-  const double whole = 8000 * 0.25;  // counts times range squared
+  const double whole = 8000 * 0.25;  // full signal: counts times range squared
   for (int y = 70; y < 90; ++y) {
     for (int x = 70; x < 95; ++x) covered += frame.view().reflectivity_16.row(y)[x];
   }
@@ -79,7 +79,7 @@ TEST(Blob, HasTheDepthOfItsFrontPoint) {
                           scenario.tools[0].tool.markers_m[static_cast<std::size_t>(i)];
     const double range = measure(frame, projected(scenario, i)).range_m;
     EXPECT_GT(range, place.norm() - 0.0055 - 0.0006);
-    EXPECT_LT(range, place.norm() - 0.0055 + 0.0015);  // the pixels beside see it curl away
+    EXPECT_LT(range, place.norm() - 0.0055 + 0.0015);  // the sphere curves away beside it
   }
 }
 
@@ -98,7 +98,7 @@ TEST(Blob, HasItsDeclaredErrorsAsLongAsItIsAHalfMetreAway) {
     simulator.render(k, frame);
     for (int i = 0; i < 5; ++i) {
       const Measured truth = measure(reference, projected(clean, i));
-      // A good centroid: only what is well above the noise of the dark counts.
+      // Only pixels well above the dark noise contribute to the centroid.
       for (auto& value : frame.pixels.reflectivity_16) {
         if (value < 60) value = 0;
       }
@@ -136,7 +136,7 @@ TEST(Blob, RangeErrorGrowsWithTheRange) {
   EXPECT_NEAR(spread(0.8) / spread(0.5), 1.6, 0.05);
 }
 
-// Of the light across the middle marker's columns.
+// Horizontal variance of the light of the centre marker.
 double variance_across(const SimFrame& frame) {
   double sum = 0, first = 0, second = 0;
   for (int y = 70; y < 90; ++y) {
@@ -168,8 +168,8 @@ TEST(Blob, SmearsAboutItsPlaceAtMidExposure) {
     const Measured b = measure(still, projected(scenario, i));
     EXPECT_LT((a.centroid - b.centroid).norm(), 0.02);
   }
-  // A shift spread evenly over a length adds its square / 12 to the variance; the rays' grid
-  // makes either uncertain by 0.02.
+  // A uniform motion blur adds its length squared / 12 to the variance. The ray grid makes each
+  // variance uncertain by 0.02.
   const double length_px = 253 * 1.5 * 0.002 / 0.5;
   EXPECT_NEAR(variance_across(moving) - variance_across(still), length_px * length_px / 12, 0.04);
 }

@@ -16,7 +16,7 @@ double distance_to_axis(const Capsule& capsule, const Vector3& point) {
   return (capsule.a + u * axis - point).norm();
 }
 
-// Marches along the ray in small steps until it is inside.
+// Marches along the ray in small steps until it is inside the capsule; a reference method.
 double marched(const Capsule& capsule, const Vector3& ray) {
   for (double range = 0; range < 2; range += 1e-4) {
     if (distance_to_axis(capsule, range * ray) < capsule.radius_m) return range;
@@ -36,7 +36,7 @@ TEST(Capsule, IsHitWhereMarchingAlongTheRayMeetsIt) {
     const double expected = marched(capsule, aim.normalized());
     if (std::abs(distance_to_axis(capsule, expected * aim.normalized()) - 0.08) > 2e-4) continue;
     EXPECT_NEAR(hit.range_m, expected, 2e-3) << i;
-    EXPECT_GE(hit.cosine, -1e-9);  // 0 where it missed
+    EXPECT_GE(hit.cosine, -1e-9);  // 0 if it missed
     EXPECT_LE(hit.cosine, 1 + 1e-9);
     hits += hit ? 1 : 0;
   }

@@ -1,4 +1,4 @@
-// Same seed, same bytes: in any order, from any thread, on any machine.
+// The same random seed gives the same bytes: in any order, from any thread, on any machine.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -47,7 +47,7 @@ std::uint64_t hash_of(const Simulator& simulator, std::initializer_list<int> fra
   return hash.value();
 }
 
-// A change of any preset changes these; a change of compiler, flags or machine must not.
+// Changes of a preset change these hashes; changes of compiler, flags or machine must not.
 TEST(Determinism, GivesTheFramesOfTheDefaultRunTheirKnownBytes) {
   EXPECT_EQ(hash_of(Simulator(default_run()), {0, 333, 1290, 1800}), 407481027437288636u);
 }

@@ -27,8 +27,8 @@ TEST(DeviceErrors, AreThoseThatAreStated) {
   EXPECT_DOUBLE_EQ(error.range_m, 0.005 + 0.01);
 }
 
-// Over many markers and times: as large as stated, alike within a tenth of a second, another after
-// a minute, and each marker's own.
+// Over many markers and times the error has the stated rms. It is correlated over a tenth of a
+// second, uncorrelated over a minute and between markers.
 TEST(DeviceErrors, OfAMarkerChangeSlowly) {
   DeviceErrors device;
   device.slow_range_m = 0.002;
@@ -73,7 +73,7 @@ TEST(Field, DrawsOneDeviceARandomSeed) {
   EXPECT_NE(one.timing.stamp_offset, other.timing.stamp_offset);
 }
 
-// Rms over devices of what the shipped settings state.
+// The rms error over devices equals that of the shipped settings.
 TEST(Field, DrawsErrorsAsLargeAsTheShippedSettingsState) {
   const CameraUncertainty shipped;
   const Scenario nominal = hand_held_run(hololens2_ahat(), {}, 1);
@@ -85,7 +85,7 @@ TEST(Field, DrawsErrorsAsLargeAsTheShippedSettingsState) {
     const Scenario drawn = field(seed);
     principal += drawn.device.principal_point_px.squaredNorm() / (2 * k_devices);
     offset += drawn.device.range_offset_m * drawn.device.range_offset_m / k_devices;
-    // In the tool's frame the tip lies where it is stated, all markers beside.
+    // The tip has its nominal position in the tool's frame; all markers are offset.
     const Tool& made = drawn.tools[0].tool;
     EXPECT_EQ(made.tip_m, stated.tip_m);
     const Vector3 off = made.middle_m() - stated.middle_m();
@@ -134,7 +134,8 @@ TEST(Field, MovesEachMarkersImageAndRangeByTheDevicesErrors) {
   EXPECT_EQ(markers, drawn.tools[0].tool.marker_count);
 }
 
-// The same device as at work, the tool alone, the head on a stand unless it looks about.
+// The device is the same for each calibration, with the tool alone; the head is static except for
+// FieldTask::look.
 TEST(Field, ShowsTheSameDeviceForEachCalibration) {
   const Scenario work = field(3);
   for (const FieldTask task :
@@ -181,7 +182,7 @@ TEST(ToolBody, IsTheSameInAFrameWhoseTipIsAsStated) {
   EXPECT_NEAR(was.rotation.angularDistance(is.rotation), 2 * std::acos(turn.w()), 1e-9);
 }
 
-// Half way from black to white at a corner, whatever the lens and the tilt are.
+// A corner has the mean of black and white, for any lens and tilt.
 TEST(Chessboard, HasItsCornersWhereTheDevicesLensPutsThem) {
   const CameraModel model = hololens2_ahat().model;
   DeviceErrors device;
@@ -200,7 +201,7 @@ TEST(Chessboard, HasItsCornersWhereTheDevicesLensPutsThem) {
     const Vector2 ideal = project(model, corner).value;
     const Vector2 pixel =
         ideal + marker_error(device, ideal, {model.cx, model.cy}, 0, 0, {}).shift_px;
-    // The plane of the four pixels around it.
+    // Bilinear interpolation of the four pixels around it.
     const Vector2 at = pixel - Vector2(0.5, 0.5);
     const int x = static_cast<int>(at.x()), y = static_cast<int>(at.y());
     const auto counts = [&](int i, int j) {

@@ -20,7 +20,7 @@ LocalisationSettings still_settings() {
   return settings;
 }
 
-// Straight ahead of the camera: turning errors do not move it.
+// A point on the camera's optical axis: rotation errors do not move it.
 Vector3 pivot_of(const Pose& camera, double pivot_m) { return camera * Vector3(0, 0, pivot_m); }
 
 struct Spread {

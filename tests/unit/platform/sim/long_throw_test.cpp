@@ -23,7 +23,7 @@ PosedSurface box(double side_m) {
 
 class LongThrowTest : public testing::Test {
  protected:
-  // Of a box of 20 cm that stands straight before the camera, its middle so far away.
+  // Depth image with an upright box of 20 cm in front of the camera, its centre at range_m.
   std::vector<float> with_box_at(double range_m) {
     sim::SimFrame frame;
     simulator_.describe(k_frame, frame);
@@ -38,9 +38,9 @@ class LongThrowTest : public testing::Test {
 TEST_F(LongThrowTest, DrawsTheRobotWhereItStands) {
   const std::vector<float> near = with_box_at(0.3), far = with_box_at(5);
   EXPECT_NEAR(near[k_middle], 0.2, 6 * k_long_throw_sigma_m);
-  EXPECT_GT(far[k_middle], 0.3);  // behind the room's walls it hides nothing
+  EXPECT_GT(far[k_middle], 0.3);  // behind the room's walls it occludes nothing
   EXPECT_LT(far[k_middle], 3.5);
-  // Beside the box the room is the same to the last bit.
+  // Outside the box the images are bit-identical.
   EXPECT_EQ(near[0], far[0]);
   for (const float z : far) EXPECT_TRUE(z > 0.1f && z < 6.0f) << z;
 }

@@ -80,7 +80,7 @@ TEST(Grip, HoldsTheToolWithItsBestSideToTheCameraAndItsTipBelow) {
   Tool tool = five_spheres();
   tool.tip_m = Vector3(0, -0.2, 0);
   const Grip grip = best_grip(tool);
-  EXPECT_GT(std::abs(grip.towards_camera.z()), 0.8);  // its markers lie near the x-y plane
+  EXPECT_GT(std::abs(grip.towards_camera.z()), 0.8);  // the markers are near the x-y plane
   const Vector3 place(0.45, 0.1, -0.2);
   const Pose pose = held_at(grip, place, Vector3::Zero());
   EXPECT_NEAR((pose * grip.middle - place).norm(), 0, 1e-12);

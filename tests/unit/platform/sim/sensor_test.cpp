@@ -67,7 +67,7 @@ TEST(Sensor, GivesDepthAlongTheAxisWhereTheCameraDoes) {
 TEST(Sensor, IsBlackWhereTheLensMapsNothing) {
   Camera camera = small_camera();
   camera.model.lens = Lens::brown;
-  camera.model.field_tangent_max = 0.2;  // a circle of 50 px
+  camera.model.field_tangent_max = 0.2;  // an image circle of 50 px radius
   NoiseSettings noise;
   const FrameBuffer frame = exposed(camera, noise, 500, 0.5f);
   EXPECT_EQ(frame.reflectivity_16[0], 0);

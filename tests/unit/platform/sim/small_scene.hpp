@@ -1,5 +1,5 @@
-// A small pinhole camera before a tool at rest in the dark: every pixel that is not zero is a
-// marker's, and a test renders a hundred frames in a moment.
+// A small pinhole camera and a static tool in the dark. Every nonzero pixel belongs to a marker,
+// and a hundred frames render quickly.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace glint::sim {
 
-// 160 x 160, f = 253 px, 16 bit, 1 mm radial depth without wrap.
+// 160 x 160, f = 253 px, 16 bit, radial depth in 1 mm steps without wrapping.
 inline Camera small_camera() {
   Camera camera;
   camera.name = "small";
@@ -35,7 +35,7 @@ inline NoiseSettings no_noise() {
   return noise;
 }
 
-// Five spheres, apart by 40 mm and more in the image plane.
+// Five spheres, at least 40 mm apart in the image plane.
 inline Tool five_spheres(MarkerShape shape = MarkerShape::sphere) {
   Tool tool;
   const std::array<Vector3, 5> places{Vector3(0, 0, 0), Vector3(0.05, 0.01, 0.01),
@@ -48,8 +48,7 @@ inline Tool five_spheres(MarkerShape shape = MarkerShape::sphere) {
   return tool;
 }
 
-// The camera in the world's origin, the tool ahead of it, nothing else. Camera and world axes
-// agree.
+// The camera at the world's origin with the tool in front of it. Camera and world axes agree.
 inline Scenario dark_scene(const Vector3& tool_place = Vector3(0.003, -0.002, 0.5),
                            MarkerShape shape = MarkerShape::sphere) {
   Scenario scenario;
@@ -69,12 +68,12 @@ inline Scenario dark_scene(const Vector3& tool_place = Vector3(0.003, -0.002, 0.
 
 struct Measured {
   Vector2 centroid = Vector2::Zero();
-  double range_m = 0;   // mean of the depths within a pixel and a half of the centroid
-  int zero_depths = 0;  // of the pixels brighter than the threshold
+  double range_m = 0;   // mean depth within 1.5 px of the centroid
+  int zero_depths = 0;  // bright pixels without depth
   int bright = 0;
 };
 
-// The centroid of everything within 12 px of `near`; the background must be dark.
+// Centroid of all signal within 12 px of `near`; requires a dark background.
 inline Measured measure(const SimFrame& frame, const Vector2& near) {
   Measured result;
   double sum = 0, count = 0, depth = 0;

@@ -19,7 +19,7 @@ TimingSettings with(const FaultEvent& fault) {
 
 TEST(Timing, KeepsTheCamerasPeriod) {
   const auto frames = frame_timings(small_camera(), {}, k_two_seconds, 1);
-  ASSERT_EQ(frames.size(), 91u);  // 90 periods of 22.222222 ms end 20 ns before two seconds
+  ASSERT_EQ(frames.size(), 91u);  // 90 periods of 22.222222 ms are 20 ns less than 2 s
   for (std::size_t i = 0; i < frames.size(); ++i) {
     EXPECT_EQ(frames[i].sequence, i);
     EXPECT_EQ(frames[i].mid_exposure.nanoseconds, 22'222'222 * static_cast<std::int64_t>(i));

@@ -21,7 +21,7 @@ Time middle_of_touch(int touch) {
       1e9 * (touch * (settings.hold_s + settings.move_s) + 0.5 * settings.hold_s))};
 }
 
-// Two on the first point, one on the second, and so on; the last is the rest.
+// Two touches of the first point, one of the second, and so on; at the end a static window.
 TEST(Touches, StandOnTheirPoints) {
   const Scenario scenario = touches(1);
   const TouchSettings settings;
@@ -56,7 +56,7 @@ TEST(Touches, LeanAndAreSeenFromOtherPlaces) {
   EXPECT_NE(touches(3).head->pose({}).translation, scenario.head->pose({}).translation);
 }
 
-// No jump: between two frames the tip moves by less than 2 cm.
+// The tip moves by less than 2 cm between two frames.
 TEST(Touches, MoveSmoothly) {
   const Scenario scenario = touches(1);
   const Vector3& tip_m = scenario.tools[0].tool.tip_m;

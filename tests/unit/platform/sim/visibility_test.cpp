@@ -17,7 +17,7 @@ TEST(Visible, AreAllMarkersThatNothingHides) { EXPECT_EQ(mask_of(dark_scene()), 
 
 TEST(Visible, IsNoMarkerBehindAFinger) {
   Scenario scenario = dark_scene();
-  // Before marker 1 at (53, 8, 510) mm, between it and the camera.
+  // Between the camera and marker 1, which is at (53, 8, 510) mm.
   scenario.tools[0].parts.push_back({{0.04, 0.008, -0.05}, {0.06, 0.008, -0.05}, 0.008, 300});
   EXPECT_EQ(mask_of(scenario), 0b11101);
 }
@@ -35,7 +35,7 @@ TEST(Visible, IsNoMarkerThatTheShaftCovers) {
 }
 
 TEST(Visible, IsNoMarkerThatTheFrameCuts) {
-  // Marker 2 is at the column 80 - 253 * (x + 0.045) / 0.49; 2 px from the border.
+  // The column of marker 2 is 80 - 253 * (x + 0.045) / 0.49; 2 px from the border.
   EXPECT_EQ(mask_of(dark_scene({-0.106, 0, 0.5})), 0b11011);
   EXPECT_EQ(mask_of(dark_scene({-0.095, 0, 0.5})), 0b11111);
 }
@@ -45,24 +45,24 @@ TEST(Visible, IsNoMarkerOutOfRange) {
   EXPECT_EQ(mask_of(dark_scene({0, 0, 0.97})), 0b11111);
 }
 
-// The edge of a thick vertical line runs beside marker 0's centre, which is at (3, -2, 500) mm.
+// The edge of a thick vertical line is beside the centre of marker 0, at (3, -2, 500) mm.
 Scenario with_edge_beside_marker_0(double beside_radii) {
   Scenario scenario = dark_scene();
-  const double edge_mm = 0.9 * (3 + beside_radii * 5.5);  // 450 mm ahead
+  const double edge_mm = 0.9 * (3 + beside_radii * 5.5);  // in the plane at 450 mm
   const double axis_m = 0.001 * (edge_mm + 4 - 3);
   scenario.tools[0].parts.push_back({{axis_m, -0.03, -0.05}, {axis_m, 0.03, -0.05}, 0.004, 300});
   return scenario;
 }
 
-// A line at 0.6 radii leaves 86 % of a disc, one at 0.4 radii 75 %.
+// A line at 0.6 radii leaves 86 % of the disc visible; at 0.4 radii, 75 %.
 TEST(Visible, IsAMarkerWhoseDiscIsOpenByFourFifths) {
   EXPECT_EQ(mask_of(with_edge_beside_marker_0(0.6)), 0b11111);
   EXPECT_EQ(mask_of(with_edge_beside_marker_0(0.4)), 0b11110);
 }
 
 TEST(Visible, IsNoMarkerThatTheLensCutsByMoreThanAFifth) {
-  // Marker 2 is at (-42, 28, 490) mm: its centre lies at a tangent of 0.1030 from the axis, its rim
-  // 0.0112 further.
+  // Marker 2 is at (-42, 28, 490) mm: its centre is at a tangent of 0.1030 from the optical axis,
+  // its rim 0.0112 further.
   Scenario scenario = dark_scene();
   scenario.camera.model.lens = Lens::rational;
   scenario.camera.model.field_tangent_max = 0.1108;
@@ -71,7 +71,7 @@ TEST(Visible, IsNoMarkerThatTheLensCutsByMoreThanAFifth) {
   EXPECT_EQ(mask_of(scenario) & 0b00100, 0);
 }
 
-// The tracker's threshold is no part of the truth.
+// Ground truth visibility does not depend on the tracker's threshold.
 TEST(Visible, IsAMarkerDarkerThanTheThreshold) {
   Scenario scenario = dark_scene();
   scenario.signal.marker = 1200;
@@ -82,7 +82,7 @@ TEST(Visible, IsNoMarkerThatMergesWithClutter) {
   Scenario scenario = dark_scene();
   scenario.clutter.push_back({{0.012, -0.002, 0.55}, Vector3::Zero(), 0.005, 8000});
   EXPECT_EQ(mask_of(scenario), 0b11110);
-  // Behind a finger it merges with nothing.
+  // Behind a finger the clutter merges with no marker.
   scenario.tools[0].parts.push_back({{0.008, -0.02, 0.03}, {0.008, 0.02, 0.03}, 0.008, 300});
   EXPECT_EQ(mask_of(scenario), 0b11111);
 }
@@ -125,7 +125,7 @@ TEST(Saturation, LeavesTheMarkersCoreWithoutDepth) {
   for (int i = 0; i < 5; ++i) {
     const Measured measured = measure(frame, projected(scenario, i));
     EXPECT_GE(measured.zero_depths, 5);
-    EXPECT_GE(measured.bright - measured.zero_depths, 5);  // the ring still has it
+    EXPECT_GE(measured.bright - measured.zero_depths, 5);  // the annulus still has depth
   }
 }
 
