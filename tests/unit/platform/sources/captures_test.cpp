@@ -1,4 +1,4 @@
-// Captures of headsets: tar archives, StreamRecorder's folders, hl2ss's files, matrices as poses.
+// Headset captures: tar archives, StreamRecorder's folders, hl2ss's files, matrices as poses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 namespace glint {
 namespace {
 
-// One header of POSIX ustar and the contents, filled to whole blocks.
+// One POSIX ustar header and the contents, padded to whole blocks.
 std::string tar_of(const std::string& name, const std::string& contents, char type = '0') {
   std::string header(512, '\0');
   std::copy_n(name.begin(), std::min<std::size_t>(name.size(), 100), header.begin());
@@ -69,7 +69,7 @@ TEST(TarFile, EndsAtItsLastWholeFile) {
   const Listed cut = listed(whole.substr(0, whole.size() - 500));
   ASSERT_EQ(cut.entries.size(), 1u);
   EXPECT_EQ(cut.cut, whole.size() - 500 - 1024);
-  EXPECT_EQ(listed(whole.substr(0, 1024 + 512 + 600)).entries.size(), 2u);  // but for its padding
+  EXPECT_EQ(listed(whole.substr(0, 1024 + 512 + 600)).entries.size(), 2u);  // padding missing
   EXPECT_EQ(listed("").entries.size(), 0u);
 }
 
@@ -82,7 +82,7 @@ TEST(TarFile, RefusesADamagedHeader) {
 }
 
 TEST(MatrixPose, TakesRigidTransformsAlone) {
-  // A turn of 90 degrees about z: x goes to y.
+  // A rotation of 90 degrees about z: x goes to y.
   MatrixNumbers m{0, -1, 0, 1, 1, 0, 0, 2, 0, 0, 1, 3, 0, 0, 0, 1};
   const std::optional<Pose> pose = pose_of_matrix(m);
   ASSERT_TRUE(pose);
@@ -143,13 +143,13 @@ TEST_F(StreamRecorderTest, ReadsAnUnpackedCaptureInTheOrderOfItsStamps) {
   EXPECT_EQ(frame.pixels.depth[7], 0x0303);
   EXPECT_EQ(frame.pixels.reflectivity_16[7], 0x0404);
   ASSERT_TRUE(frame.head.valid);
-  // Rig at (1, 2, 3); the camera's origin is 5 to the rig's left: rig to camera adds 5.
+  // The rig is at (1, 2, 3); the camera's origin is 5 to its left: rig to camera adds 5.
   EXPECT_TRUE(frame.head.T_world_camera.translation.isApprox(Vector3(-4, 2, 3), 1e-12));
   ASSERT_TRUE(frames.next(frame));
   EXPECT_EQ(frame.mid_exposure.nanoseconds, 20'000);
   EXPECT_FALSE(frame.head.valid);
   EXPECT_FALSE(frames.next(frame));
-  EXPECT_EQ(frames.unreadable(), 1u);  // 300 has no brightness
+  EXPECT_EQ(frames.unreadable(), 1u);  // 300 has no reflectivity image
   EXPECT_NE(frames.first_unreadable().find("300.pgm has no _ab.pgm"), std::string::npos)
       << frames.first_unreadable();
   EXPECT_EQ(frames.counts()[0].second, 2u);
@@ -240,7 +240,7 @@ TEST_F(Hl2ssTest, ReadsRawFramesAndSkipsEmptyPackets) {
   EXPECT_EQ(frame.mid_exposure.nanoseconds, 7000);
   EXPECT_EQ(frame.pixels.depth[9], 0x0101);
   EXPECT_EQ(frame.pixels.reflectivity_16[9], 0x0202);
-  EXPECT_FALSE(frame.head.valid);  // without the extrinsics
+  EXPECT_FALSE(frame.head.valid);  // no extrinsics
   ASSERT_TRUE(frames.next(frame));
   EXPECT_EQ(frame.mid_exposure.nanoseconds, 10'000);
   EXPECT_FALSE(frames.next(frame));
@@ -255,7 +255,7 @@ TEST_F(Hl2ssTest, TakesLensAndExtrinsicsOfTheCalibration) {
   const std::size_t pixels = 512 * 512;
   std::vector<float> numbers(4 * pixels + 16 + 2 + 4);
   for (std::size_t i = 0; i < pixels; ++i) numbers[i] = 0.75f;
-  numbers[5] = 0;  // not mapped
+  numbers[5] = 0;  // no ray
   for (std::size_t i = 0; i < 4; ++i) numbers[2 * pixels + 5 * i] = 1;
   numbers[2 * pixels + 12] = 5;  // rig to camera: x + 5
   SourceSettings settings =

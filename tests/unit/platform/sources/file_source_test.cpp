@@ -53,7 +53,7 @@ class Frames final : public FrameReader {
 };
 
 struct Delivered {
-  std::vector<ArrivedFrame> frames;  // their pixels are gone
+  std::vector<ArrivedFrame> frames;  // without their pixels
   SourceReport report;
   [[nodiscard]] std::uint64_t count(const std::string& name) const {
     for (const auto& [known, count] : report.counts) {
@@ -92,7 +92,7 @@ std::string refusal_of(const ReadFrame& first) {
   return "none";
 }
 
-// More frames than there are slots.
+// More frames than slots.
 TEST(FileSource, DeliversFramesInSessionTime) {
   std::vector<ReadFrame> frames;
   for (int i = 0; i < 100; ++i) frames.push_back(frame_at(1'700'000'000'000 + 25 * i));
@@ -119,7 +119,7 @@ TEST(FileSource, LeavesAloneStampsThatAreTheSessions) {
   EXPECT_EQ(delivered_by(source).frames[1].frame.mid_exposure, Time{} + milliseconds(90));
 }
 
-// Else a run would tick from 0 until then.
+// Otherwise a run would tick from 0 to that time.
 TEST(FileSource, BeginsTheSessionAtAStampThatCannotBeItsOwn) {
   for (const std::int64_t ms : {-5LL, 1001LL, 1'700'000'000'000LL}) {
     FileSource source(std::make_unique<Frames>(std::vector{frame_at(ms)}), small_camera());
@@ -227,7 +227,7 @@ TEST(FileSource, ReportsWhatEndedTheReading) {
   EXPECT_EQ(delivered.report.failures[0], "reading ended early: byte 7: cut");
 }
 
-// A frame counts by when it arrives: 9 ms after the middle of its exposure.
+// A frame counts if it arrives in time: 9 ms after the middle of its exposure.
 TEST(FileSource, LeavesOutWhatArrivesAfterTheDuration) {
   std::vector<ReadFrame> frames;
   for (int i = 0; i < 100; ++i) frames.push_back(frame_at(20 * i));
@@ -270,7 +270,7 @@ std::string big_endian(const std::vector<std::uint16_t>& values) {
   return bytes;
 }
 
-// Without a loss on the way: 17 digits of each number.
+// Lossless text: 17 digits a number.
 void write_folder(const Cell& cell, const std::string& folder) {
   const sim::Simulator simulator(scenario_of(cell));
   std::ofstream csv(folder + "/frames.csv");

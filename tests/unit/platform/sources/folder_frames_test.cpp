@@ -17,7 +17,7 @@ class FolderFramesTest : public ::testing::Test {
   void write(const std::string& name, const std::string& bytes) const {
     std::ofstream(std::filesystem::path(folder_.path()) / name, std::ios::binary) << bytes;
   }
-  // 2 x 1 pixels.
+  // Images of 2 x 1 pixels.
   void write_pictures() const {
     write("a.pgm", std::string("P5 2 1 65535\n\x01\x02\x03\x04", 17));
     write("d.pgm", std::string("P5 2 1 65535\n\x00\x05\x00\x06", 17));
@@ -72,7 +72,7 @@ TEST_F(FolderFramesTest, ReadsAllColumnsInAnyOrder) {
   EXPECT_EQ(frames.unreadable(), 0u);
 }
 
-// A float is in metres, whatever the camera's unit; what is no depth becomes 0.
+// Floats are in metres, whatever the camera's depth unit; an invalid depth becomes 0.
 TEST_F(FolderFramesTest, ReadsDepthInMetresFromAnArrayOfFloats) {
   write_pictures();
   const std::string heading = "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 2), }";

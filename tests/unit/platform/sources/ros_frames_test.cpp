@@ -1,4 +1,4 @@
-// ROS images, poses and transforms as they arrive: paired, checked, counted and handed over.
+// ROS images, poses and transforms as they arrive: pairing, checks, counts and delivery.
 #include "platform/sources/ros_frames.hpp"
 
 #include <gtest/gtest.h>
@@ -112,7 +112,7 @@ class RosFramesTest : public testing::Test {
     live_.add_to(report);
     return report;
   }
-  // Frames that can be had at once.
+  // Frames available without waiting.
   std::vector<ArrivedFrame> delivered() {
     std::vector<ArrivedFrame> all;
     for (; taken_ < live_.published(); ++taken_) {
@@ -178,14 +178,14 @@ TEST_F(RosFramesTest, CountsDoubledAndBackwardStamps) {
   EXPECT_EQ(count(report(frames), "stamps_doubled_or_backward"), 4u);
 }
 
-// The first one is silent before the other one is taken.
+// The source changes to a second publisher only after the first one is silent.
 TEST_F(RosFramesTest, FollowsOnePublisherUntilItIsSilent) {
   RosFrames frames(live_, topics());
   send_both(frames, 0);
   send(frames, 1, ImageKind::reflectivity, {}, 2);
   EXPECT_EQ(count(report(frames), "images_of_another_publisher"), 1u);
   const int later = static_cast<int>(k_publisher_silent.nanoseconds / k_period.nanoseconds) + 1;
-  // Of another clock, which has run for less.
+  // Its clock started later.
   for (const ImageKind kind : {ImageKind::reflectivity, ImageKind::depth}) {
     frames.take_image(image_at(stamp(0)), kind, 2, arrival(later));
   }
@@ -225,7 +225,7 @@ TEST_F(RosFramesTest, GivesAFrameWithoutHeadPoseWhereNoneCame) {
   EXPECT_FALSE(all[0].head.valid);
   EXPECT_EQ(count(report(frames), "head_poses_late"), 1u);
   EXPECT_EQ(count(report(frames), "frames_without_head_pose"), 1u);
-  send_both(frames, 60);  // the poses ended long ago: nothing to wait for
+  send_both(frames, 60);  // the poses stopped long ago: no wait
   EXPECT_EQ(delivered().size(), 1u);
 }
 

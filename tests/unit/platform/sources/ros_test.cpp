@@ -1,4 +1,4 @@
-// ROS messages, transforms over time, and compressed chunks.
+// ROS messages, interpolation of transforms, and compressed chunks.
 #include <gtest/gtest.h>
 #include <lz4frame.h>
 #include <zstd.h>
@@ -113,7 +113,7 @@ CameraModel lens_of_info(const Bytes& message) {
   return lens_of({"camera.file", "bag:/info", lens_text_of_camera_info(message, "/info")}, size);
 }
 
-// By OpenCV's formulas, whose pixel centres are at whole numbers, written out here again.
+// The reference is OpenCV's formulas, written out here, with pixel centres at integers.
 TEST(CameraInfo, ProjectsAsRosDocumentsIt) {
   const std::vector<double> plumb_bob{-0.2, 0.05, 0.001, -0.002, 0.01};
   const std::vector<double> rational{0.4, 0.1, 0.001, -0.002, 0.01, 0.7, 0.2, 0.03};
@@ -134,7 +134,7 @@ TEST(CameraInfo, ProjectsAsRosDocumentsIt) {
   }
 }
 
-// A barrel distortion has a widest angle: beyond it the polynomial turns back.
+// A barrel distortion has a maximum field angle: beyond it the polynomial decreases.
 TEST(CameraInfo, EndsTheFieldWhereTheDistortionTurnsBack) {
   const CameraModel lens = lens_of_info(info_message("plumb_bob", {-0.9, 0, 0, 0, 0}, 60));
   EXPECT_NEAR(lens.field_tangent_max, std::sqrt(1 / (3 * 0.9)), 2e-3);
@@ -166,7 +166,7 @@ Pose turned_about_z(double angle, double x) {
 TEST(TransformTree, InterpolatesAndMultipliesAlongTheChain) {
   TransformTree tree;
   tree.add("rig", "camera", {}, {Quaternion::Identity(), Vector3(0, 0, 1)}, true);
-  tree.add("map", "rig", Time{2'000'000}, turned_about_z(0.02, 2), false);  // out of order
+  tree.add("map", "rig", Time{2'000'000}, turned_about_z(0.02, 2), false);  // out of time order
   tree.add("map", "rig", Time{1'000'000}, turned_about_z(0.01, 1), false);
   EXPECT_EQ(tree.root_of("camera"), "map");
   const auto pose = tree.at("map", "camera", Time{1'250'000});
@@ -198,7 +198,7 @@ TEST(TransformTree, HasNothingOutsideItsTimesAndOverLongGaps) {
   EXPECT_FALSE(tree.at("other", "rig", Time{0}));
 }
 
-// Two branches of one tree; a link above where they meet has no part in it.
+// Two branches of one tree; transforms above their common ancestor are not needed.
 TEST(TransformTree, GoesDownAnotherBranch) {
   TransformTree tree;
   tree.add("odom", "base", {}, {Quaternion::Identity(), Vector3(1, 0, 0)}, true);
@@ -224,7 +224,7 @@ TEST(TransformTree, KeepsTheNewestOfATreeWithoutEnd) {
   for (int i = 0; i < 10'000; ++i) tree.add("map", "rig", at_ms(i), turned_about_z(0, i), false);
   EXPECT_NEAR(tree.at("map", "rig", at_ms(9'700))->translation.x(), 9'700, 1e-9);
   EXPECT_FALSE(tree.at("map", "rig", at_ms(100)));
-  tree.add("map", "rig", at_ms(0), turned_about_z(0, 1), false);  // another clock
+  tree.add("map", "rig", at_ms(0), turned_about_z(0, 1), false);  // a clock that restarted
   tree.add("map", "rig", at_ms(2), turned_about_z(0, 3), false);
   EXPECT_NEAR(tree.at("map", "rig", at_ms(1))->translation.x(), 2, 1e-9);
   EXPECT_EQ(tree.known_until("map", "rig"), at_ms(2));
@@ -237,7 +237,7 @@ TEST(TransformTree, KeepsTheNewestOfATreeWithoutEnd) {
 TEST(TransformTree, RefusesWhatIsNoTree) {
   TransformTree tree;
   tree.add("a", "b", {}, {}, true);
-  tree.add("b", "a", {}, {}, true);  // a loop: no root, and an end
+  tree.add("b", "a", {}, {}, true);  // a loop: no root; the search ends
   EXPECT_FALSE(tree.at("c", "a", {}));
   tree.add("c", "b", {}, {}, true);  // a second parent
   Pose bad;

@@ -24,7 +24,7 @@ TEST(ScenarioOf, TakesTheMarkersNoiseFromTheCell) {
   EXPECT_EQ(scenario_of(cell).noise.blob_pixel_sigma_px, 0.4);
 }
 
-// Calibrated or not, the random seed's device is the one that the drawn cell's statements make.
+// The random seed's device follows from the uncertainties of the drawn cell, calibrated or not.
 TEST(ScenarioOf, DrawsTheDeviceFromWhatWasStatedBeforeItsCalibration) {
   const std::string path = testing::TempDir() + "drawn_" + std::to_string(getpid()) + ".toml";
   std::ofstream(path) << "tools = [\"pen\"]\n[simulator]\nscenario = \"still\"\n";

@@ -12,7 +12,7 @@ Time at(std::int64_t ms) { return Time{} + milliseconds(ms); }
 TEST(StampGate, TakesAscendingStampsAndCountsLongGaps) {
   StampGate gate(k_period);
   for (const std::int64_t ms : {500, 520, 1520, 2521, 14'521}) EXPECT_TRUE(gate.take(at(ms))) << ms;
-  EXPECT_EQ(gate.counts().gaps, 2u);  // 1 s is none yet
+  EXPECT_EQ(gate.counts().gaps, 2u);  // 1 s is not yet a gap
   EXPECT_EQ(gate.counts().longest_gap, milliseconds(12'000));
   EXPECT_EQ(gate.offset(), Duration{});
 }
@@ -45,7 +45,7 @@ TEST(StampGate, RefusesAFirstStampBeyondItsRange) {
   EXPECT_TRUE(gate.take(k_stamp_max));
 }
 
-// Time goes on one nominal gap after the last frame that was taken.
+// After a restart the time continues one nominal gap after the last accepted frame.
 TEST(StampGate, FollowsAClockThatRestarts) {
   for (const std::int64_t restart_ms : {0, 400'000'000}) {
     StampGate gate(k_period);
