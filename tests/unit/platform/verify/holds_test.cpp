@@ -18,7 +18,7 @@ TEST(Holds, AreTheTouchesAndTheRest) {
   EXPECT_GT(holds.back().seconds, 20);
 }
 
-// A tip that goes on at 100 mm/s stands nowhere, nor does a tool that turns about its tip.
+// A tip at 100 mm/s is not static, nor is a tool that rotates about its tip.
 TEST(Holds, NeedTipAndMarkersAtRest) {
   const TipSeries still = test::series_of({.touches = 0, .rest_s = 3});
   ASSERT_EQ(find_holds(still).size(), 1u);
@@ -33,7 +33,7 @@ TEST(Holds, NeedTipAndMarkersAtRest) {
   EXPECT_TRUE(find_holds(turning).empty());
 }
 
-// The mean of one hold: noise falls by the root of the count, what is common stays.
+// In the mean of one hold the noise falls with the root of the count; systematic errors remain.
 TEST(Holds, MeanKeepsWhatSightingsHaveInCommon) {
   const TipSeries series = test::series_of({.touches = 0, .errors = {2, 0, 0}});
   const Touch touch = mean_of(series, {0, 400, 400 / 45.0});

@@ -15,7 +15,7 @@ std::vector<Touch> touches_of(const TipSeries& series) {
   return touches;
 }
 
-// The drift of two touches fades with the time between them; noise is each touch's own.
+// The covariance of the drift of two touches decays with time; noise is independent.
 TEST(JointCovariance, DriftFadesBetweenTouches) {
   TipSeries series = test::series_of({.touches = 4});
   const std::vector<Touch> touches = touches_of(series);
@@ -31,7 +31,7 @@ TEST(JointCovariance, DriftFadesBetweenTouches) {
   EXPECT_LT((drift - drift.transpose()).norm(), 1e-18);
 }
 
-// A process that is much faster than a touch leaves its mean alone, and no touch shares it.
+// A process much faster than a touch averages out in its mean, and touches do not share it.
 TEST(JointCovariance, OfAFastProcessIsFinite) {
   TipSeries series = test::series_of({.touches = 2});
   series.stated.head.rest_correlation_s = 1e-4;
@@ -42,8 +42,8 @@ TEST(JointCovariance, OfAFastProcessIsFinite) {
   EXPECT_NEAR(covariance(0, 3), 0, 1e-20);
 }
 
-// A wrong tip stands beside the point where the tool leans to: all touches have it in common, and
-// it turns with the tool.
+// The error of the tip is a constant in the tool's frame: it is common to all touches and rotates
+// with the tool.
 TEST(JointCovariance, TheTipsErrorTurnsWithTheTool) {
   TipSeries series = test::series_of({.touches = 2});
   std::vector<Touch> touches = touches_of(series);
@@ -57,7 +57,7 @@ TEST(JointCovariance, TheTipsErrorTurnsWithTheTool) {
   EXPECT_NEAR((added.block<3, 3>(0, 3) - 4e-6 * turned).norm(), 0, 1e-18);
 }
 
-// Lens residual and range ripple are each place's own: a rest does not have them.
+// Lens residual and range ripple differ between positions: a static tool does not show them.
 TEST(JointCovariance, OfOnePlaceLeavesOutLensAndRipple) {
   TipSeries series = test::series_of({.touches = 2});
   for (TipSighting& one : series.sightings) one.by_markers.col(0) = Vector3(0, 0, 2);

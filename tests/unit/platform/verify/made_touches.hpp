@@ -1,4 +1,5 @@
-// Sightings of a tool that touches two points and rests, without a camera: their errors are given.
+// Synthetic sightings of a tool that touches two points and then is static, with given errors and
+// no camera.
 #pragma once
 
 #include <algorithm>
@@ -11,19 +12,19 @@
 namespace glint::test {
 
 inline constexpr double k_made_distance_m = 0.2;
-inline constexpr double k_made_noise_m = 0.0005;  // an axis, of one sighting
+inline constexpr double k_made_noise_m = 0.0005;  // each axis, one sighting
 
 struct MadeTouches {
-  int touches = 15;  // every third one of the second point
+  int touches = 15;  // every third touch is of the second point
   double touch_s = 2, rest_s = 21;
   double lean_rad = 0.4, distance_m = k_made_distance_m;
-  Vector3 errors = Vector3::Zero();  // range offset and principal point, in stated sigmas
-  // Added to the tip of a touch, or of the rest at a time.
+  Vector3 errors = Vector3::Zero();  // range offset and principal point, in standard deviations
+  // Added to the tip at a time of a touch, or of the static window (touch = -1).
   std::function<Vector3(int touch, double seconds)> wander = {};
 };
 
-// The camera looks from another side each time; its errors move the tip along its axes, 5 mm a
-// sigma.
+// The camera's direction differs for each touch. Its errors move the tip along its axes, 5 mm a
+// standard deviation.
 inline TipSeries series_of(const MadeTouches& made) {
   TipSeries series;
   series.what = "made";

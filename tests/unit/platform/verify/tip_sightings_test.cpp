@@ -12,10 +12,10 @@
 namespace glint::tip_sightings_test {
 namespace {
 
-// A quarter of a second of the first touch: no noise but the pixels' own, no drift.
+// A quarter of a second of the first touch, with pixel noise only and no drift.
 Touch seen(const sim::DeviceErrors& device, const Vector3& moved_marker_m) {
   Cell cell = default_cell();
-  cell.camera.estimate_noise = false;  // else another error makes other weights
+  cell.camera.estimate_noise = false;  // else a device error would change the weights
   sim::Scenario scenario = scenario_of(cell);
   sim::touch_points({}, 1, scenario);
   scenario.duration = milliseconds(250);
@@ -34,7 +34,7 @@ Touch seen(const sim::DeviceErrors& device, const Vector3& moved_marker_m) {
   return mean_of(series, {0, series.sightings.size(), 0.25});
 }
 
-// The tip moves as the slopes state, where a device or a tool has the error.
+// The tip moves as the sensitivities state if a device or a tool has the error.
 TEST(TipSightings, StateHowEachErrorMovesTheTip) {
   const Touch plain = seen({}, Vector3::Zero());
   EXPECT_LT((plain.mean.tip_m - sim::TouchSettings{}.first_m).norm(), 0.001);
@@ -58,8 +58,9 @@ TEST(TipSightings, StateHowEachErrorMovesTheTip) {
   }
 }
 
-// A headset that drifts ten times as much as declared, before a body that shows it: what is stated
-// of a touch is the declared drift all the same, else no touch would disagree.
+// A headset that drifts ten times as much as declared, in view of a reference body that shows it.
+// The covariance of a touch contains the declared drift all the same; otherwise every touch would
+// agree.
 TEST(TipSightings, StateTheDeclaredDriftBesideABody) {
   const auto moving_of = [](bool is_reference) {
     Cell cell = default_cell();

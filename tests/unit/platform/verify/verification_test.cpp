@@ -29,7 +29,7 @@ TEST(Verification, AgreesWithErrorsAsStated) {
   EXPECT_EQ(found.other_holds, 0);
   EXPECT_LT(found.repeatability.measured_m, found.repeatability.stated_m);
   EXPECT_NEAR(found.distance_m, test::k_made_distance_m, 0.001);
-  // Five things that are judged: repeatability, scale, rest, range, principal point.
+  // Five tests: repeatability, scale, rest, range, principal point.
   EXPECT_NEAR(found.level, 0.05 / 5, 1e-12);
 }
 
@@ -43,7 +43,7 @@ TEST(Verification, NamesTheCalibrationErrorOfFourSigma) {
   EXPECT_EQ(named_of(lens), std::vector<ErrorSource>{ErrorSource::principal_point});
 }
 
-// Each touch 4 mm beside the point, to another side: no stated error does that.
+// The touches are 4 mm off the point in alternating directions; no stated error explains that.
 TEST(Verification, RefusesTouchesThatDoNotRepeat) {
   const Verification found = verified({.wander = [](int touch, double) {
     return touch < 0 ? Vector3::Zero() : Vector3(0.004 * (touch % 2 == 0 ? 1 : -1), 0, 0);
@@ -80,7 +80,7 @@ TEST(Verification, NamesWhatTheRecordingLacks) {
   lacks({.rest_s = 9}, {"the tool rests for", "expected 20 s"});
 }
 
-// Where the tracker loses the tool because of it, the residuals of its fits name the error.
+// If an error makes the tracker lose the tool, the residuals of its fits identify the error.
 TEST(Verification, TakesFitsAloneWhereTouchesLack) {
   TipSeries series = test::series_of({.touches = 3});
   series.residuals.fits = 30;
