@@ -8,7 +8,8 @@
 namespace glint::bench {
 namespace {
 
-// Of the reach, and every how many-th source point: few points find the way, more of them the end.
+// Fraction of the reach, and stride of the source points. Early stages use few points to converge
+// quickly; later stages use more for accuracy.
 struct Stage {
   double part;
   int step;
@@ -31,7 +32,7 @@ void CloudAlignment::run(const AlignmentTask& task, Matching matching, Alignment
   for (int i = 0; i < task.target_count; ++i) target_.push_back(point_of(task.target, i));
   const double begin = thread_seconds();
   const AlignmentSettings rest;
-  const SceneView no_picture{};  // nothing hides anything
+  const SceneView no_picture{};  // no occlusion
   Pose T;
   for (const Stage& stage : k_stages) {
     const double gate_m = stage.part * static_cast<double>(task.reach_m);

@@ -1,4 +1,4 @@
-// Glint's side of the alignment race: the pairs and steps of kernels/registration on two clouds.
+// Glint's side of the alignment benchmark: ICP with kernels/registration on two point clouds.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace glint::bench {
 
-// Coarse to fine, as align_model.hpp does it on pictures; memory once, for targets of at most so
-// many points.
+// Coarse to fine, as align_model.hpp on depth images. Allocates once, for targets of at most
+// `points` points.
 class CloudAlignment {
  public:
   explicit CloudAlignment(int points);

@@ -19,10 +19,10 @@ constexpr int k_source_every = 4;
 
 struct Clouds {
   std::vector<float> source, normals, target;
-  Pose T_target_source;  // the truth
+  Pose T_target_source;  // ground truth
 };
 
-// Every fourth point is the source's, moved away; the others are the target's.
+// Every fourth point is a source point, displaced; the others are target points.
 Clouds part(const PointCloud& surface) {
   Clouds clouds;
   Vector3 middle = Vector3::Zero();
@@ -48,7 +48,7 @@ Clouds part(const PointCloud& surface) {
   return clouds;
 }
 
-// Root of the mean square of how far the source's points end from where they belong.
+// Rms distance of the aligned source points from their true positions.
 double error_m(const Clouds& clouds, const AlignmentAnswer& answer) {
   double squares = 0;
   const std::size_t count = clouds.source.size() / 3;
@@ -91,7 +91,7 @@ bool race_alignments(const PointCloud& surface, RunAlignment rival, int rounds) 
     if (keep) row.seconds.push_back(answer.seconds);
     row.error_m = error_m(clouds, answer);
   };
-  for (int round = 0; round <= rounds; ++round) {  // the first one warms up
+  for (int round = 0; round <= rounds; ++round) {  // round 0 is the warm-up
     const bool keep = round > 0;
     once(
         plane, [&](AlignmentAnswer& a) { glint.run(task, Matching::plane, a); }, keep);

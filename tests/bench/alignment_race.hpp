@@ -1,5 +1,5 @@
-// Two clouds of one surface without a common point, 9 cm and 5 degrees apart, brought together by
-// the Point Cloud Library and by Glint in turn.
+// Benchmark of the alignment of two point clouds of one surface without a common point, 9 cm and 5
+// degrees apart: the Point Cloud Library and Glint in turn.
 #pragma once
 
 #include "alignment_steps.hpp"
@@ -7,7 +7,8 @@
 
 namespace glint::bench {
 
-// surface: points with normals. Without a rival Glint's rows stand alone. False: a bar is missed.
+// surface: points with normals. Without `rival` only Glint's rows are measured. Returns false if a
+// limit is missed.
 [[nodiscard]] bool race_alignments(const PointCloud& surface, RunAlignment rival, int rounds);
 
 }  // namespace glint::bench

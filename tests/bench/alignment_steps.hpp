@@ -1,22 +1,21 @@
-// What both sides of the alignment race are told, and what they give back; plain C, as
-// cloud_steps.hpp.
+// Input and output of both sides of the alignment benchmark; plain C, as cloud_steps.hpp.
 #pragma once
 
 extern "C" {
 
-// Points as x, y, z side by side.
+// Points are interleaved x, y, z.
 struct AlignmentTask {
-  const float* source;   // that moves ..
-  const float* normals;  // .. with its normals
+  const float* source;   // source points, which move
+  const float* normals;  // their normals
   int source_count;
   const float* target;
   int target_count;
-  float reach_m;  // as far as points are paired at most
+  float reach_m;  // largest distance of a pair
 };
 
 struct AlignmentAnswer {
   double seconds;
-  double matrix[12];  // target from source, row by row, without the last
+  double matrix[12];  // T_target_source, row-major, without the last row
 };
 
 using RunAlignment = void (*)(const AlignmentTask& task, AlignmentAnswer& answer);

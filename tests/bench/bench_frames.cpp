@@ -5,7 +5,7 @@
 namespace glint::bench {
 namespace {
 
-// More than the processor's cache holds: every frame comes from memory, as from a camera.
+// Larger than the processor's cache: every frame is read from memory, as from a camera.
 constexpr int k_frames = 64;
 
 Sensor make_sensor(std::string name, const sim::Scenario& scenario, int first) {
@@ -23,7 +23,7 @@ Sensor make_sensor(std::string name, const sim::Scenario& scenario, int first) {
 }  // namespace
 
 const Sensor& short_throw() {
-  // Three seconds after the rest that aligns the worlds: head and pen in full motion.
+  // Three seconds after the static part that aligns the worlds: head and pen in full motion.
   static const Sensor sensor =
       make_sensor("448x450 8 bit", sim::experiment_dynamic(0), sim::k_aligning_frames + 90);
   return sensor;
@@ -43,7 +43,7 @@ void Player::next() {
   head_ = shown.head;
   head_.time = now;
   if (back_ ? at_ == 0 : at_ + 1 == sensor_->frames.size()) {
-    back_ = !back_;  // the turning frame is shown twice: a still moment
+    back_ = !back_;  // the last frame of each direction repeats: one static frame
   } else {
     at_ = back_ ? at_ - 1 : at_ + 1;
   }

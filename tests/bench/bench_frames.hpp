@@ -1,5 +1,5 @@
-// The frames that every row of the benchmark gets: consecutive ones of the simulator, to and fro,
-// so that the pen never jumps and the stamps always rise.
+// Frames for all rows of the benchmark: consecutive simulated frames, played forwards and
+// backwards, so that the pen never jumps and the time stamps always increase.
 #pragma once
 
 #include <string>
@@ -12,18 +12,19 @@
 namespace glint::bench {
 
 struct Sensor {
-  std::string name;  // size and bits
+  std::string name;  // image size and bit depth
   Camera camera;
   Tool tool;
   std::vector<sim::SimFrame> frames;
 };
 
-// HoloLens 1 short-throw, 448 x 450, 8 bit, and HoloLens 2 AHAT, 512 x 512, 16 bit, both with the
+// HoloLens 1 short-throw, 448 x 450, 8 bit, and HoloLens 2 AHAT, 512 x 512, 16 bit. The pen moves
+// in view of both.
 // pen moving in view.
 [[nodiscard]] const Sensor& short_throw();
 [[nodiscard]] const Sensor& ahat();
 
-// Goes through the frames to and fro with its own clock.
+// Plays the frames forwards and backwards with its own clock.
 class Player {
  public:
   explicit Player(const Sensor& sensor) : sensor_(&sensor) {}

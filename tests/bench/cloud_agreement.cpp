@@ -39,7 +39,7 @@ Agreement summary(std::vector<double> distances, std::size_t of) {
 
 constexpr float k_search_m = 0.01f;
 
-// For each point of `from` the nearest of `to` within k_search_m, or -1.
+// Index of the nearest point of `to` within k_search_m for each point of `from`, or -1.
 std::vector<int> nearest(const std::vector<float>& from, const std::vector<float>& to) {
   std::map<Cell, std::vector<int>> cells;
   for (std::size_t i = 0; 3 * i < to.size(); ++i) {

@@ -1,4 +1,4 @@
-// How far two ways through the cloud chain agree.
+// Agreement of the points of two implementations of the cloud filter chain.
 #pragma once
 
 #include <vector>
@@ -6,13 +6,13 @@
 namespace glint::bench {
 
 struct Agreement {
-  double share = 0;  // of the larger side's points that have a partner
-  double p99_m = 0;  // of the partners' distances
+  double share = 0;  // fraction of the larger side's points with a partner
+  double p99_m = 0;  // of the distances between partners
   double max_m = 0;
 };
 
-// Points as x, y, z side by side. Partners are each the nearest of the other, at most within_m
-// (and 10 mm) apart.
+// Points are interleaved x, y, z. Partners are mutual nearest neighbours, at most within_m (and 10
+// mm) apart.
 [[nodiscard]] Agreement agreement_of(const std::vector<float>& a, const std::vector<float>& b,
                                      double within_m);
 

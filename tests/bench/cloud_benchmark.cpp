@@ -1,7 +1,6 @@
-// What the cloud's filter chain costs, beside the Point Cloud Library on the same points in the
-// same run, one thread; and whether both give the same. Then the same race of two clouds'
-// alignment.
-//   bench_cloud [ROUNDS]       GLINT_TEST_DATA: the folder with robot_scans/
+// Benchmark of the cloud's filter chain and the Point Cloud Library on the same points in the same
+// run, one thread, with a comparison of the results. Then the same for the alignment of two clouds.
+//  bench_cloud [ROUNDS]       GLINT_TEST_DATA: the folder with robot_scans/
 #include <dlfcn.h>
 
 #include <algorithm>
@@ -23,7 +22,7 @@
 namespace glint::bench {
 namespace {
 
-// PCL tries as many planes as it does unless told otherwise: more would only make it slower.
+// PCL's default number of plane hypotheses: more would only make it slower.
 constexpr CloudStepSettings k_settings{0.01f, 0.05f, 0.03f, 0.01f, 9};
 constexpr std::array<const char*, k_cloud_steps> k_names = {
     "voxel grid, 1 cm", "outliers, 9 in 5 cm", "smoothing, 3 cm, order 2", "largest plane"};
@@ -32,7 +31,7 @@ constexpr double k_same_voxels_least = 0.9999;
 constexpr double k_centroid_most_m = 1e-5;
 constexpr double k_smooth_most_m = 5e-5;
 
-// Five pictures of one camera, every fourth pixel, to two metres.
+// Points of five depth images of one camera, every fourth pixel, up to two metres.
 std::vector<float> scan_points(const std::filesystem::path& folder) {
   CameraModel camera;
   camera.lens = Lens::pinhole;
@@ -63,7 +62,7 @@ std::vector<float> scan_points(const std::filesystem::path& folder) {
   return xyz;
 }
 
-// Both null where PCL was not there.
+// Both are null without PCL.
 struct Rival {
   RunCloudSteps steps = nullptr;
   RunAlignment alignment = nullptr;
@@ -156,7 +155,7 @@ int run(int rounds) {
   const Rival rival = load_rival();
   CloudChain chain(k_settings, count);
   Side glint, pcl;
-  for (int round = 0; round <= rounds; ++round) {  // the first one warms up
+  for (int round = 0; round <= rounds; ++round) {  // round 0 is the warm-up
     glint.once([&](CloudStepResult& r) { chain.run(xyz.data(), count, r); }, count, round > 0);
     if (rival.steps != nullptr) {
       pcl.once([&](CloudStepResult& r) { rival.steps(xyz.data(), count, k_settings, r); }, count,

@@ -14,7 +14,7 @@
 namespace glint::bench {
 namespace {
 
-constexpr int k_slice = 4096;  // as a background group would call them
+constexpr int k_slice = 4096;  // slice of a background group
 
 void give(const PointCloud& cloud, int step, CloudStepResult& result) {
   result.counts[step] = cloud.count;
@@ -50,7 +50,7 @@ CloudChain::CloudChain(const CloudStepSettings& s, int points)
   Kernels& k = *kernels_;
   MovingLeastSquaresSettings smooth;
   smooth.radius_m = s.smooth_radius_m;
-  smooth.weights = NeighbourWeights::equal;  // as PCL has it
+  smooth.weights = NeighbourWeights::equal;  // PCL's weights
   PlaneSettings plane;
   plane.gate.threshold_m = s.plane_threshold_m;
   plane.planes_max = 1;

@@ -8,13 +8,13 @@
 
 namespace glint::bench {
 
-// Memory once, for clouds up to this many points.
+// Allocates once, for clouds up to this many points.
 class CloudChain {
  public:
   CloudChain(const CloudStepSettings& settings, int points);
   ~CloudChain();
   void run(const float* xyz, int count, CloudStepResult& result);
-  // What the last run ended with, with normals.
+  // Result of the last run, with normals.
   [[nodiscard]] const PointCloud& smoothed() const;
 
  private:

@@ -1,7 +1,7 @@
-// The rival of the cloud benchmark: the same steps by the Point Cloud Library, one thread.
+// The Point Cloud Library's side of the cloud benchmark: the same steps on one thread.
 //
-// A library of its own that is loaded when it runs: PCL is built with Eigen's vector layout, Glint
-// is not, and in one program either would call the other's functions.
+// It is a shared library, loaded at run time. PCL is built with Eigen's vector layout and Glint is
+// not; in one program each would call the other's functions.
 #include <pcl/ModelCoefficients.h>
 #include <pcl/filters/radius_outlier_removal.h>
 #include <pcl/filters/voxel_grid.h>

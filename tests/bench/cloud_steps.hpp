@@ -1,5 +1,5 @@
-// What both sides of the cloud benchmark are told, and what they give back. Plain C, so that the
-// rival's library, built with another layout of Eigen's types, meets Glint nowhere else.
+// Input and output of both sides of the cloud benchmark. It is plain C, as the PCL library is built
+// with another layout of Eigen's types.
 #pragma once
 
 extern "C" {
@@ -11,11 +11,11 @@ struct CloudStepSettings {
 
 enum { k_step_voxels, k_step_outliers, k_step_smooth, k_step_planes, k_cloud_steps };
 
-// One way through the chain. Points as x, y, z side by side; each step's points go to a buffer for
-// as many as came in, if one is given.
+// One run of the chain. Points are interleaved x, y, z. Each step writes its points to its buffer,
+// if any; a buffer has the capacity of the input.
 struct CloudStepResult {
   double seconds[k_cloud_steps];
-  int counts[k_cloud_steps];  // points after each step; of the last: on the largest plane
+  int counts[k_cloud_steps];  // points after each step; the last: points on the largest plane
   float* points[k_cloud_steps - 1];
 };
 

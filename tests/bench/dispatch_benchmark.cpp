@@ -1,7 +1,8 @@
-// What a call through the graph costs: four trivial nodes, listed in the wrong order, beside the
-// same four called by hand and beside oneTBB's flow graph. Exit 1: a bar is missed.
+// Benchmark of the cost of a call through the graph: four trivial nodes, listed in the wrong order,
+// compared with the same four called by hand and with oneTBB's flow graph. Exit 1: a limit is
+// missed.
 //
-//   build/bench_dispatch [ROUNDS]
+//  build/bench_dispatch [ROUNDS]
 #include <array>
 #include <cstdio>
 #include <memory>
@@ -16,7 +17,7 @@ namespace glint::bench {
 namespace {
 
 constexpr int k_rounds = 20'000;
-// Long enough that two readings of the clock hardly count: 16 us of the cheapest row.
+// Long enough to make the two readings of the clock negligible: 16 us of the fastest row.
 constexpr int k_untimed_activations = 4096;
 constexpr int k_traced_activations = 64;
 constexpr int k_tbb_activations = 16;
@@ -25,7 +26,7 @@ constexpr double k_untimed_most_ns = 2;
 constexpr double k_traced_most_ns = 60;
 constexpr double k_below_tbb_least = 30;
 
-// The compiler must believe that somebody reads and writes the object between two activations.
+// Makes the compiler assume that the object is read and written between two activations.
 template <class T>
 void seen(T& object) {
   asm volatile("" : : "r"(&object) : "memory");

@@ -1,7 +1,7 @@
-// Four trivial nodes, as a graph whose list stands in the wrong order and as a chain of calls.
+// Four trivial nodes, as a graph with its list in the wrong order and as a chain of calls.
 //
-// The bodies may be inlined, as a graph's are where the compiler sees them, or not, as a kernel's
-// are that lives in a file of its own: then what is left of a node is its call.
+// The bodies may be inlined, as a graph's bodies that the compiler sees; or not, as a kernel in
+// another file. In the second case the rest of a node's cost is its call.
 #pragma once
 
 #include <array>
@@ -68,7 +68,7 @@ using CalledGraph = GraphOf<CallB, CallC, CallD, CallE>;
 static_assert(graph::valid<InlinedGraph> && InlinedGraph::node_count == k_dispatch_nodes);
 static_assert(graph::valid<CalledGraph>);
 
-// What one would write without a graph: the same tokens, the same order, by hand.
+// The hand-written equivalent: the same tokens in the same order without a graph.
 template <class NodeB, class NodeC, class NodeD, class NodeE>
 struct Chain {
   A a;

@@ -1,4 +1,4 @@
-// Rows measured in turn, a batch each a round, so that whatever slows the machine slows all.
+// Rows measured in turn, one batch per round, so that a slow machine slows all rows alike.
 #pragma once
 
 #include <functional>
@@ -9,9 +9,9 @@ namespace glint::bench {
 
 struct DispatchRow {
   std::string name;
-  int nodes = 0;              // that one batch runs
+  int nodes = 0;              // nodes in one batch
   std::function<void()> run;  // one batch
-  std::vector<double> ns{};   // a node, one entry a round; ascending once measured
+  std::vector<double> ns{};   // ns per node, one entry per round; ascending once measured
   [[nodiscard]] double p50() const { return at(0.5); }
   [[nodiscard]] double at(double part) const;  // nearest rank
 };
@@ -19,11 +19,11 @@ struct DispatchRow {
 void measure_in_turn(std::vector<DispatchRow>& rows, int rounds);
 void print_rows(const std::vector<DispatchRow>& rows);
 
-// Prints one line; true if the bar is met.
+// Prints one line; returns true if the limit is met.
 [[nodiscard]] bool print_bar(const char* what, double found, const char* unit, double bar,
                              bool at_most);
 
-// Processor, kernel, compiler and flags of this run.
+// Prints processor, kernel, compiler and flags of this run.
 void print_machine();
 
 }  // namespace glint::bench

@@ -18,7 +18,7 @@ struct Message {
   int value = 0;
 };
 
-// The bodies of MakeB to MakeE; a chain of one-input nodes carries `b` along for MakeD.
+// The bodies of MakeB to MakeE; a chain of one-input nodes passes `b` on for MakeD.
 template <class Policy>
 struct FlowChain {
   explicit FlowChain(flow::graph& graph)

@@ -1,12 +1,12 @@
-// The rival: the same four nodes as a oneTBB flow graph, on one thread like ours.
+// The same four nodes as a oneTBB flow graph, on one thread.
 #pragma once
 
 #include <memory>
 
 namespace glint::bench {
 
-// `spawned`: every node is a task, the library's default. `lightweight`: its policy for tiny
-// bodies, which runs a node in the place of its sender.
+// `spawned`: every node is a task, the library's default. `lightweight`: the policy for short
+// bodies, which runs a node in the sender's task.
 enum class TbbPolicy { spawned, lightweight };
 
 class TbbFlow {
@@ -14,7 +14,7 @@ class TbbFlow {
   explicit TbbFlow(TbbPolicy policy);
   ~TbbFlow();
 
-  // Sends `count` messages through, each after the one before has arrived, and returns the last
+  // Sends `count` messages, each after the arrival of the previous one, and returns the last
   // result.
   int run(int count);
 

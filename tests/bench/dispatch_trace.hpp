@@ -1,5 +1,5 @@
-// What a timed and a traced node pay: two readings of the processor's counter, and a span in a
-// ring.
+// Cost of a timed and of a traced node: two readings of the processor's counter, and a span in a
+// ring buffer.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ namespace glint::bench {
 #endif
 }
 
-// The longest that each node took: what overrun detection needs.
+// Longest execution time of each node, for overrun detection.
 class TimeOnly {
  public:
   void on_node_begin(int /*node*/) noexcept { begin_ = counter(); }
@@ -39,7 +39,7 @@ class TimeOnly {
   std::array<std::uint64_t, 64> longest_{};
 };
 
-// The same, and every span kept until its place is needed again.
+// The same, and every span in a ring buffer.
 class TimeAndTrace {
  public:
   void on_node_begin(int /*node*/) noexcept { begin_ = counter(); }
@@ -51,7 +51,7 @@ class TimeAndTrace {
   }
 
  private:
-  static constexpr std::size_t k_spans = 4096;  // 160 KB: more than the first cache
+  static constexpr std::size_t k_spans = 4096;  // 160 KB: more than the first-level cache
   std::uint64_t begin_ = 0;
   std::size_t at_ = 0;
   std::vector<TraceSpan> ring_ = std::vector<TraceSpan>(k_spans);

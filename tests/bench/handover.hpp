@@ -1,11 +1,11 @@
-// How long it takes until one core sees what another has stored.
+// Measured communication delay between two cores.
 #pragma once
 
 #include <cstdint>
 
 namespace glint::bench {
 
-// Half the median of a store's way there and back between two cores. The caller runs on `from`.
+// Half the median round trip of a store between two cores. The caller runs on `from`.
 [[nodiscard]] std::int64_t measured_handover_ns(int from, int to);
 
 }  // namespace glint::bench

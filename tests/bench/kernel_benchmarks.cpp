@@ -1,4 +1,4 @@
-// Each kernel alone, on what it gets in the chain.
+// Benchmark of each kernel alone, on its input in the chain.
 #include <benchmark/benchmark.h>
 
 #include <memory>
@@ -19,7 +19,7 @@ const Sensor& sensor_of(const benchmark::State& state) {
   return state.range(0) == 8 ? short_throw() : ahat();
 }
 
-// A chain after some frames, its tokens as the kernels find them.
+// A chain after ten frames, with the tokens that are the kernels' input.
 struct Warm {
   explicit Warm(const Sensor& sensor) : chain(sensor.camera, sensor.tool), player(sensor) {
     for (int i = 0; i < 10; ++i) {

@@ -1,4 +1,4 @@
-// Filter and prediction of one tool, and a tick of sixteen: what a pose costs after its fit.
+// Benchmark of one tool's filter and prediction, and of a tick with sixteen tools.
 #include <benchmark/benchmark.h>
 
 #include <memory>
@@ -14,10 +14,10 @@ namespace {
 
 constexpr Duration k_gap = {22'222'222};
 constexpr Duration k_ahead = milliseconds(25);
-constexpr int k_swings = 90;  // frames of one walk to and fro: 2 s
+constexpr int k_swings = 90;  // 2 s of frames, four periods
 
-// A tool that swings 50 mm to and fro twice a second, measured with 1 mm and 0.3 degrees of noise
-// declared; or one that lies still.
+// A tool that swings 50 mm in each direction at 2 Hz, with declared noise of 1 mm and 0.3 degrees;
+// or a static tool.
 UncertainPose seen(int frame, bool moving) {
   constexpr double two_hertz = 2 * 2 * M_PI;
   UncertainPose pose;
@@ -31,7 +31,8 @@ UncertainPose seen(int frame, bool moving) {
   return pose;
 }
 
-// A frame's update of filter and rest window, then one prediction: integrated, with covariance.
+// A frame's update of the filter and the static detector, then one prediction: integrated, with
+// covariance.
 void filter_and_predict(benchmark::State& state) {
   const bool moving = state.range(0) != 0;
   auto motion = std::make_unique<ToolMotion>();
@@ -41,7 +42,7 @@ void filter_and_predict(benchmark::State& state) {
     return;
   }
   int frame = 0;
-  // A rest window as long as it gets.
+  // Until the static window has its maximal length.
   for (; frame < 4 * k_swings; ++frame) (void)motion->update(seen(frame, moving));
   for (auto _ : state) {
     benchmark::DoNotOptimize(motion->update(seen(++frame, moving)));
@@ -55,7 +56,7 @@ void filter_and_predict(benchmark::State& state) {
   state.counters["rests"] = motion->rests() ? 1 : 0;
 }
 
-// Both nodes of a tick, all sixteen tools with a pose, CAN's periodic frames due.
+// Both nodes of a tick: all sixteen tools have a pose, and CAN's periodic frames are due.
 void tick_of_sixteen(benchmark::State& state) {
   Limits limits;
   limits.tools = k_tools_max;

@@ -1,7 +1,8 @@
-// What two cores give a crowd of tools: the makespan that a plan foretells from each node's time on
-// its core, and what the planned executor then takes. Exit 1: a bar is missed.
+// Benchmark of a crowd of tools on two cores: the makespan that a schedule predicts from each
+// node's execution time on its core, and the measured time of the planned executor. Exit 1: a limit
+// is missed.
 //
-//   build/bench_plan [ROUNDS]
+//  build/bench_plan [ROUNDS]
 #include <sched.h>
 
 #include <array>
@@ -34,7 +35,7 @@ constexpr std::uint32_t k_spins_max = 100'000;
 constexpr double k_plan_part_most = 0.65;
 constexpr double k_beside_plan_most = 0.15;
 
-// What each node took in the newest activation.
+// Execution time of each node in the newest activation.
 class NodeTimes {
  public:
   void on_node_begin(int /*node*/) noexcept { begin_ = cycle_count(); }
@@ -56,7 +57,7 @@ double microseconds_of(Activate activate) {
   return static_cast<double>(cycle_count() - begin) * ns_per_cycle() * 1e-3;
 }
 
-// The frame group with `ns_of(node)` in its bounds' place.
+// The frame group with `ns_of(node)` instead of the bounds.
 template <class Times>
 TaskGroup group_of(const Times& ns_of) {
   TaskGroup group = task_structure_of(crowd_cell(k_crowd.tools)).groups[k_frame_group_index];
@@ -68,7 +69,7 @@ TaskGroup group_of(const Times& ns_of) {
 
 using Medians = std::array<double, static_cast<std::size_t>(Tracker::node_count)>;
 
-// Each node's median on this core.
+// Median execution time of each node on this core.
 Medians medians_on(int core, CrowdKernel& crowd, int rounds) {
   std::vector<std::vector<double>> ns(static_cast<std::size_t>(Tracker::node_count));
   {
@@ -88,8 +89,8 @@ Medians medians_on(int core, CrowdKernel& crowd, int rounds) {
   return medians;
 }
 
-// How many times as long each node takes on its core as on core 0: on a shared machine, what runs
-// beside one of its cores need not run beside the other.
+// Ratio of each node's time on its core to its time on core 0. On a shared machine, other load may
+// slow one core only.
 Medians slower_on_its_core(const graph::PlanTables<Tracker>& tables, CrowdKernel& crowd,
                            int rounds) {
   const Medians first = medians_on(0, crowd, rounds), second = medians_on(1, crowd, rounds);
@@ -103,7 +104,7 @@ Medians slower_on_its_core(const graph::PlanTables<Tracker>& tables, CrowdKernel
 }
 
 graph::PlanTables<Tracker> tables_of(const CoreOrders& orders) {
-  // Worker 0 begins with the graph's first node.
+  // Worker 0 must start with the graph's first node.
   graph::PlanTables<Tracker> tables;
   tables.workers = k_cores;
   const bool first = !orders[0].empty() && orders[0][0] == 0;
@@ -114,8 +115,8 @@ graph::PlanTables<Tracker> tables_of(const CoreOrders& orders) {
   return tables;
 }
 
-// Keeps a core from falling asleep, which costs whoever is released there next more than its nodes:
-// a board that is in a hurry turns its idle states off. Everything else goes before it.
+// Keeps a core out of its idle states, whose wake-up latency exceeds the execution time of the
+// nodes; a real-time board disables them. Every other thread has priority over it.
 class Awake {
  public:
   explicit Awake(int core)
@@ -148,8 +149,8 @@ bool run(int rounds) {
   const Medians slower = slower_on_its_core(tables, crowd, rounds);
   PlannedExecutor<Tracker> executor(tables, others, k_spins_max);
 
-  // Round by round the plan is foretold from what the nodes take on one core just then, so that
-  // whatever slows the machine slows both.
+  // Each round predicts the makespan from the nodes' times on one core in the same round, so that a
+  // slow machine slows both alike.
   std::vector<double> one_us, plan_us, two_us, beside;
   for (int round = 0; round < rounds; ++round) {
     const auto frame = static_cast<std::uint64_t>(round);

@@ -15,11 +15,11 @@ namespace {
 
 constexpr int k_rounds = 15;
 constexpr int k_frames_a_round = 64;
-constexpr double k_front_end_most = 110;  // times a plain threshold pass, 448x450 8 bit
+constexpr double k_front_end_most = 110;  // multiples of a plain threshold pass, 448x450 8 bit
 constexpr double k_with_roi_least = 20;
 constexpr double k_whole_frame_least = 8;
 
-// This thread's own time on the processor: what else the machine does hardly counts.
+// CPU time of this thread: other load on the machine hardly changes it.
 double thread_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -32,7 +32,7 @@ double seconds_of(const std::function<void()>& run, int frames) {
   return thread_seconds() - begin;
 }
 
-// One row's method with its own way through the frames.
+// A row with its own method and its own player of the frames.
 template <class Method, class Process>
 Row make_row(std::string name, const Sensor& sensor, std::shared_ptr<Method> method,
              Process process) {
@@ -67,7 +67,7 @@ std::vector<Row> rows_of(const Sensor& sensor) {
   };
   const double threshold = sensor.camera.threshold;
   std::vector<Row> rows;
-  // Always the same frame: the strictest measure for the seed's front end.
+  // Always the same frame: the strictest reference for the baseline's front end.
   const cv::Mat plane = plane_of(sensor.frames.front().view());
   rows.push_back({"plain cv::threshold, one frame again and again",
                   [plane, threshold, out = cv::Mat()]() mutable {
@@ -103,7 +103,7 @@ void measure_in_turn(std::vector<Row>& rows, int rounds, int frames) {
   for (int round = 0; round <= rounds; ++round) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double us = seconds_of(rows[i].run, frames) * 1e6 / frames;
-      if (round > 0) times[i].push_back(us);  // the first one warms up
+      if (round > 0) times[i].push_back(us);  // round 0 is the warm-up
     }
   }
   for (std::size_t i = 0; i < rows.size(); ++i) {

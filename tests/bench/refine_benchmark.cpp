@@ -1,5 +1,5 @@
-// The weighted fit from both starts beside its textbook form and beside the rigid fit with its
-// covariance, on views of the built-in pen in an AHAT camera.
+// Benchmark of the weighted pose fit from both initial poses, its textbook form, and the rigid fit
+// with covariance, on views of the built-in pen in an AHAT camera.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Dense>
@@ -50,7 +50,7 @@ std::vector<View> views_of(const PointTool& tool) {
   return views;
 }
 
-// As it stands in a textbook: the whole Jacobian, Eigen's own decomposition, ten steps.
+// Textbook Gauss-Newton: the full Jacobian, Eigen's decomposition, ten steps.
 Matrix6 textbook_fit(const View& view, const Pose& start, double& chi_square) {
   Pose pose = start;
   Matrix6 normal;

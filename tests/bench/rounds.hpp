@@ -1,4 +1,4 @@
-// The one argument of a benchmark that measures in rounds.
+// Command line argument ROUNDS of the benchmarks.
 #pragma once
 
 #include <charconv>
@@ -8,7 +8,8 @@
 
 namespace glint::bench {
 
-// `usual` without an argument; nothing, and one line on stderr, for what is no number from `least`.
+// Returns `usual` without an argument. Returns nothing, and prints one line on stderr, if the
+// argument is no number of at least `least`.
 [[nodiscard]] inline std::optional<int> rounds_of(int argc, char** argv, int usual, int least) {
   int rounds = usual;
   const bool given = argc == 2;

@@ -1,4 +1,4 @@
-// What the calling thread has computed so far: a race's clock, which other processes do not move.
+// CPU time of the calling thread: the clock of the benchmarks, independent of other processes.
 #pragma once
 
 #include <ctime>

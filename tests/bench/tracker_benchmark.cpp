@@ -1,5 +1,5 @@
-// Glint's chain against the published method, on the same frames, on one thread: first each row by
-// itself, then the ratios, measured in turn. Exit 1: a bar is missed.
+// Benchmark of Glint's chain and the published method on the same frames, one thread: first each
+// row alone, then the ratios, measured in turn. Exit 1: a limit is missed.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
