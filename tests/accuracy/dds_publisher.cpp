@@ -1,12 +1,12 @@
-// Publishes the messages that come on standard input, as they are: a ROS 2 driver's bytes from a
-// script that has no DDS. Nothing but Cyclone DDS and the types; its own configuration.
+// Publishes messages from standard input unchanged: a script without DDS sends the bytes of a ROS 2
+// driver. It uses Cyclone DDS and the types only, with a configuration of its own.
 //
-//   dds_publisher DOMAIN TYPE:QUALITY:TOPIC...
+//  dds_publisher DOMAIN TYPE:QUALITY:TOPIC...
 //
-// TYPE: image, info, pose, tf. QUALITY: reliable, best_effort, latched. TOPIC: as DDS has it.
-// A record of the input is two 32-bit numbers of this machine, the topic's number and how many
-// bytes, and the bytes of the message with its encapsulation. One without bytes waits until that
-// topic has a reader and writes a line. The end of the input is the publisher's.
+// TYPE: image, info, pose, tf. QUALITY: reliable, best_effort, latched. TOPIC: the DDS name. A
+// record of the input is two 32-bit numbers in native byte order, the topic's index and the number
+// of bytes, and the message with its encapsulation. A record of 0 bytes waits until the topic has a
+// reader and then prints a line. The end of the input ends the publisher.
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>
 
@@ -62,7 +62,8 @@ bool has_reader(dds_entity_t writer) {
   return status.current_count > 0;
 }
 
-// Cyclone's name for a type, which only its own messages carry: of an empty one that goes nowhere.
+// Cyclone's type object, which only messages of its own contain: read from an empty message on a
+// private topic.
 const ddsi_sertype* type_of(dds_entity_t participant, const dds_topic_descriptor_t* descriptor) {
   const std::string name = std::string("own_") + std::to_string(descriptor->m_size);
   const dds_entity_t topic =
@@ -77,7 +78,7 @@ const ddsi_sertype* type_of(dds_entity_t participant, const dds_topic_descriptor
     std::fprintf(stderr, "no message of %s\n", descriptor->m_typename);
     std::exit(1);
   }
-  return data->type;  // with the message, which stays
+  return data->type;  // owned by the message, which is never freed
 }
 
 bool write(const Output& output, const std::vector<char>& bytes) {

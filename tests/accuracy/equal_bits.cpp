@@ -1,7 +1,7 @@
-// What equal_bits builds with every compiler and optimisation: the hash of a recording's replay, or
-// of the simulator's frames.
-//   glint_equal_bits replay FILE WORKERS
-//   glint_equal_bits frames
+// Hash of a recording's replay, or of the simulator's frames; `equal_bits` builds it with every
+// compiler and optimisation level.
+//  glint_equal_bits replay FILE WORKERS
+//  glint_equal_bits frames
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

@@ -1,5 +1,5 @@
-// A real hand-held probe of six markers, a nearly symmetric grid, as unlabelled points: it must be
-// found in every frame, and at the same place as with the labels of the motion-capture system.
+// A real hand-held probe of six markers, a nearly symmetric grid, as unlabelled points. It must be
+// found in every frame, at the same position as with the labels of the motion-capture system.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -72,7 +72,7 @@ Frames frames_of(const C3dTrial& trial) {
   return frames;
 }
 
-// The trial as the file that a user would hand in: rows shuffled within their frame, no labels.
+// Writes the trial as a user's file: rows shuffled within their frame, no labels.
 void write_shuffled(const Frames& frames, double rate_hz, const std::string& path) {
   test::Random random(1);
   std::ofstream out(path);
@@ -92,7 +92,7 @@ void write_shuffled(const Frames& frames, double rate_hz, const std::string& pat
   }
 }
 
-// The probe as a tool file: its tip is its origin.
+// Writes the probe as a tool file with the tip at its origin.
 void write_tool(const Tool& probe, const std::string& path) {
   std::ofstream out(path);
   out.precision(17);
@@ -122,7 +122,7 @@ struct Counts {
   }
 };
 
-// Unlabelled, against the fit by the labels of the motion-capture system.
+// Replays the unlabelled points and compares with the fit by the motion-capture labels.
 Counts replayed(const Tool& probe, const Frames& frames, double rate_hz) {
   const std::string csv = testing::TempDir() + "probe_points_" + std::to_string(getpid()) + ".csv";
   write_shuffled(frames, rate_hz, csv);
@@ -164,7 +164,7 @@ class ProbePoints : public testing::Test {
     for (const C3dTrial& trial : trials_) ASSERT_EQ(trial.frames.size(), 140u);
   }
 
-  // Both trials, each frame changed.
+  // Both trials, with `change` applied to each frame.
   template <class Change>
   [[nodiscard]] Counts with(const Change& change) const {
     Counts counts;
@@ -176,7 +176,7 @@ class ProbePoints : public testing::Test {
     return counts;
   }
 
-  // All ways to hide so many of the six, in every frame the same.
+  // Every choice of `hidden` of the six markers, the same in every frame.
   [[nodiscard]] Counts with_hidden(int hidden) const {
     Counts counts;
     for (unsigned mask = 0; mask < 64; ++mask) {
@@ -216,7 +216,7 @@ TEST_F(ProbePoints, FourAreRightOrAmbiguous) {
   EXPECT_GT(counts.solved, 0);
 }
 
-// Whatever a frame misses, however the room lies, with more noise and backwards.
+// Random missing markers, a random rotation and translation, additional noise, and reversed time.
 TEST_F(ProbePoints, AreRightOrAmbiguousWhenHiddenByChanceTurnedAndNoisy) {
   for (const unsigned seed : {1u, 2u, 3u, 4u, 5u}) {
     for (const int hidden_max : {1, 2}) {
@@ -239,7 +239,8 @@ TEST_F(ProbePoints, AreRightOrAmbiguousWhenHiddenByChanceTurnedAndNoisy) {
   }
 }
 
-// The declared noise cannot tell single frames of it apart: apart in time, they are ambiguous.
+// Single frames are ambiguous at the declared noise. Frames far apart in time are decided
+// independently.
 TEST_F(ProbePoints, FramesFarApartAreDecidedAlone) {
   Counts counts;
   for (const C3dTrial& trial : trials_) counts += replayed(probe_, frames_of(trial), 2);

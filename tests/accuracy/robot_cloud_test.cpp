@@ -1,4 +1,4 @@
-// A UR5 found by the points that were exported of it, in simulated depth with the truth beside it.
+// A UR5, located by its exported points in simulated depth images with ground truth.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ struct Found {
   double error_mm = 0, sigma_mm = 0;
 };
 
-// Without other starts: what the alignment itself is worth.
+// Without alternative initial guesses: the accuracy of the alignment alone.
 Found found_in(const SimulatedScene& scene, int number) {
   Pose start = scene.T_world_base;
   start.translation += Vector3(0.05, -0.04, 0.06);

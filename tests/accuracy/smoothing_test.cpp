@@ -1,4 +1,4 @@
-// Smoothed clouds of simulated surfaces against the surfaces themselves.
+// Accuracy of smoothed point clouds of simulated surfaces.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,17 +15,17 @@
 namespace glint {
 namespace {
 
-constexpr double k_points_per_m2 = 2e5;  // long throw at 1 m: ten frames of 6 mm a pixel
+constexpr double k_points_per_m2 = 2e5;  // long throw at 1 m: ten frames, 6 mm a pixel
 constexpr double k_rms_part_most = 0.30;
 constexpr double k_bias_most_m = 0.0006;
 
 struct Surface {
   std::string name;
   double area_m2;
-  std::function<Vector3(double, double)> at;       // of two numbers from 0 to 1, even in area
+  std::function<Vector3(double, double)> at;       // area-uniform map of two numbers from 0 to 1
   std::function<Vector3(const Vector3&)> outward;  // unit normal
-  std::function<double(const Vector3&)> height;    // over the surface
-  std::function<bool(const Vector3&)> is_inside;   // a radius away from the surface's rim
+  std::function<double(const Vector3&)> height;    // signed distance from the surface
+  std::function<bool(const Vector3&)> is_inside;   // at least a radius inside the surface's rim
 };
 
 std::vector<Surface> surfaces() {
