@@ -1,4 +1,4 @@
-// What the check of symbols must catch: linked into nothing.
+// A forbidden call that the check of undefined symbols must detect. It is not linked.
 #include <cstdlib>
 
 void* one_block() { return std::malloc(64); }

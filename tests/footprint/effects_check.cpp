@@ -1,5 +1,6 @@
-// Compiled with -Wfunction-effects: the compiler follows both groups' activation through the graph
-// and every node down to what is declared nonblocking, and refuses what may block or allocate.
+// Compile-time check with -Wfunction-effects. The compiler follows the activation of both groups
+// through the graph and every node to functions declared nonblocking, and rejects blocking or
+// allocation.
 #include <cstdlib>
 
 #include "nodes/output.hpp"
@@ -12,7 +13,7 @@ void activate(MarkerTracker& graph) noexcept [[clang::nonblocking]] { graph.acti
 void activate(Output& graph) noexcept [[clang::nonblocking]] { graph.activate(); }
 
 #ifdef GLINT_MUTANT
-// What must be refused.
+// A node that must be rejected.
 struct AllocatingNode {
   void operator()(const Now& now, PoseSamples& samples) const noexcept {
     samples.count = std::malloc(64) != nullptr && now.number > 0 ? 1 : 0;

@@ -1,5 +1,5 @@
-// Static bytes of each node, and the deepest stack it was seen to use in ten thousand cycles, as
-// JSON on the standard output. tests/footprint/figures joins them with what the compiler says.
+// Measures the static bytes and the deepest stack of each node in ten thousand cycles, as JSON on
+// standard output. tests/footprint/figures joins them with the compiler's figures.
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -13,7 +13,7 @@
 namespace glint::footprint {
 namespace {
 
-// One graph's nodes, each on a stack of its own.
+// Each node of one graph on a stack of its own.
 template <class G>
 class PaintedNodes {
  public:
@@ -55,7 +55,7 @@ class PaintedNodes {
   std::vector<PaintedStack> stacks_;
 };
 
-// One graph's whole activation on one stack.
+// The activation of one whole graph on one stack.
 template <class G>
 class PaintedGraph {
  public:

@@ -38,7 +38,7 @@ Play make_play() {
   play.cell = default_cell();
   set_camera(play.cell, scenario.camera);
   play.cell.tools = tools;
-  // As much as the code can be asked for, so that every loop may run to its last.
+  // The largest budget, so that every loop can run to its maximum.
   play.cell.budget = {.tools = k_tools_max,
                       .blobs = k_blobs_max,
                       .runs_per_band = k_runs_per_band_max,
@@ -49,7 +49,7 @@ Play make_play() {
     play.crowd.push_back({rendered.pixels, rendered.head});
   }
   const CameraModel& camera = play.cell.camera.model;
-  // One run every second pixel; all of it bright; nothing; discs enough to fill every blob.
+  // Alternate pixels bright; all bright; all dark; discs that fill every blob.
   play.worst.push_back(painted(camera, [](int x, int y) { return (x + y) % 2 == 0; }));
   play.worst.push_back(painted(camera, [](int, int) { return true; }));
   play.worst.push_back(painted(camera, [](int, int) { return false; }));
@@ -72,7 +72,7 @@ const PlayedFrame& shown_in(std::uint32_t cycle) {
   if (cycle % k_worst_every == k_worst_every - 1) {
     return frames.worst[cycle / k_worst_every % frames.worst.size()];
   }
-  // To and fro, so that no tool ever jumps.
+  // Forwards and backwards, so that no tool jumps.
   const auto count = static_cast<std::uint32_t>(frames.crowd.size());
   const std::uint32_t at = cycle % (2 * count);
   return frames.crowd[at < count ? at : 2 * count - 1 - at];

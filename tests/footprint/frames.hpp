@@ -1,5 +1,5 @@
-// The frames that every test of this folder plays: a crowd of sixteen tools with strays, and
-// patterns that drive the image's loops to their maxima.
+// Frames for all tests of this folder: a crowd of sixteen tools with strays, and patterns that
+// drive the image loops to their maxima.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct Play {
 // Rendered at the first call.
 [[nodiscard]] const Play& play();
 
-// Which frame cycle `i` shows: the crowd to and fro, and now and then a worst one.
+// Frame of cycle `i`: the crowd forwards and backwards, with a worst-case frame at intervals.
 [[nodiscard]] const PlayedFrame& shown_in(std::uint32_t cycle);
 
 }  // namespace glint::footprint

@@ -1,6 +1,5 @@
-// Both rate groups with changing input, a cycle at a time: a frame, its estimates handed over, and
-// the ticks until the next one. What a session does beside the graphs (sinks, recorder) is not
-// here.
+// Runs both rate groups with changing input, one cycle at a time: a frame, its estimates passed on,
+// and the ticks until the next frame. The rest of a session (sinks, recorder) is not included.
 #pragma once
 
 #include <memory>
@@ -15,10 +14,10 @@
 namespace glint::footprint {
 
 inline constexpr std::uint32_t k_cycles = 10'000;
-// Every frame there is has been shown once, so that every page and path is warm.
+// Each frame is shown at least once, so that every page and path is warm.
 inline constexpr std::uint32_t k_warm_up_cycles = 4 * 128;
 
-// TickGraph: Output, or a graph with the same inputs and one node too many.
+// TickGraph: Output, or a graph with the same inputs and one additional node.
 template <class TickGraph = Output>
 class Groups {
  public:
@@ -38,12 +37,12 @@ class Groups {
     robot_.publish(1, 0);
   }
 
-  // One cycle; `run` is called with a graph whose inputs are set.
+  // Runs one cycle; calls `run` with each graph after setting its inputs.
   template <class Run>
   void cycle(std::uint32_t number, Run&& run) noexcept {
     if (number % 500 == 499) publish_tools(number);
     const PlayedFrame& shown = shown_in(number);
-    // Some stamps stand still or go back, so that every way through CheckFrame is taken.
+    // Some time stamps repeat or go backwards, to take every path through CheckFrame.
     const std::int64_t step = number % 97 == 96 ? number - 3 : number;
     const Time exposed{(step + 1) * k_period_ns};
     tracker_->template input<Frame>() = shown.pixels.view(exposed, exposed, number);
@@ -65,7 +64,8 @@ class Groups {
 
   [[nodiscard]] Tracker& tracker() noexcept { return *tracker_; }
   [[nodiscard]] TickGraph& tick() noexcept { return *tick_; }
-  // Poses that the tick group called measured: that the cycles did their work.
+  // Number of poses of the tick group that are marked measured: shows that the cycles processed
+  // tools.
   [[nodiscard]] int measured_now() const noexcept {
     int count = 0;
     const PoseSamples& samples = std::as_const(*tick_).template output<PoseSamples>();
@@ -79,7 +79,7 @@ class Groups {
   static constexpr std::int64_t k_period_ns = 22'222'222;
   static constexpr int k_ticks_a_frame = 5;
 
-  // All tools, or one fewer.
+  // Publishes all tools, or one fewer.
   void publish_tools(std::uint32_t number) noexcept {
     tools_.write_slot() = play().cell.tools;
     tools_.write_slot().count -= static_cast<int>(number / 500 % 2);

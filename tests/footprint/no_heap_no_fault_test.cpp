@@ -1,5 +1,5 @@
-// Ten thousand cycles of both groups ask for no memory and touch no page that is not there; and
-// where one node asks once, or touches one new page, that is seen.
+// Ten thousand cycles of both groups allocate no memory and cause no page fault. A node that
+// allocates once, or touches one new page, is detected.
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 
@@ -17,10 +17,10 @@ namespace {
 struct Seen {
   std::uint64_t allocations = 0;
   long faults = 0;
-  int measured = 0;  // most tools measured after any one cycle
+  int measured = 0;  // most tools measured after any cycle
 };
 
-// Warms up, then counts. run(graph) activates it.
+// Warms up, then counts. `run(graph)` activates the graph.
 template <class TickGraph, class Run>
 Seen count_over(std::uint32_t cycles, Groups<TickGraph>& groups, Run run) {
   for (std::uint32_t i = 0; i < k_warm_up_cycles; ++i) groups.cycle(i, run);
@@ -44,11 +44,11 @@ struct Extra {
   const void* at = nullptr;
 };
 
-// A mutant misbehaves in the middle of fewer cycles: nothing after that is of interest.
+// The mutant misbehaves in the middle of a shorter run; later cycles are irrelevant.
 constexpr std::uint32_t k_mutant_cycles = 1000;
 constexpr std::uint32_t k_bad_tick = 5 * k_warm_up_cycles + 2345;
 
-// The mutations: one node more, which misbehaves once.
+// Mutants: an additional node that misbehaves once.
 struct AllocateOnce {
   void operator()(const Now& now, Extra& extra) noexcept {
     if (now.number == k_bad_tick) block_ = std::malloc(64);
@@ -76,7 +76,7 @@ class Cycles : public testing::Test {
  protected:
   void SetUp() override {
     if (!AllocationCounter::available()) GTEST_SKIP() << "a sanitizer owns malloc";
-    (void)lock_memory();  // as a session does; where it is refused, nothing is paged out in a test
+    (void)lock_memory();  // as a session does; if refused, a test still pages nothing out
   }
 };
 
@@ -109,7 +109,7 @@ TEST_F(Cycles, BetrayANodeThatTouchesOneNewPage) {
       mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   ASSERT_NE(page, MAP_FAILED);
   groups.tick().node<TouchOnePage>().page = static_cast<char*>(page);
-  // All memory may be locked, also what is asked for later: let go of this page alone.
+  // Locking may include memory allocated later, so unlock this page only.
   ASSERT_EQ(munlock(page, size), 0);
   ASSERT_EQ(madvise(page, size, MADV_DONTNEED), 0);
   EXPECT_EQ(count_over(k_mutant_cycles, groups, activate_alone).faults, 1);

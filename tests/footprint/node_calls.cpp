@@ -6,7 +6,7 @@
 namespace glint::footprint {
 namespace {
 
-// The call graph names it with its Node, which is how a node's bound is found.
+// The call graph names this function with its Node, which identifies the node's bound.
 template <class G, class Node, int unit>
 [[gnu::noinline]] void call_node(G& graph) noexcept {
   graph::NoTrace trace;

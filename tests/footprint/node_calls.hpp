@@ -1,5 +1,5 @@
-// Each node of both graphs behind a function of its own, so that the stack under it can be bounded
-// by the compiler's call graph and painted at run time.
+// One function per node of both graphs, so that the compiler's call graph bounds its stack and a
+// painted stack measures it.
 #pragma once
 
 #include <span>
@@ -13,14 +13,14 @@ namespace glint::footprint {
 template <class G>
 struct NodeCall {
   std::string_view name;
-  void (*call)(G& graph) noexcept;  // all copies of a split, one after another
+  void (*call)(G& graph) noexcept;  // all partitions of a split, one after another
 };
 
-// In the order of execution.
+// In execution order.
 [[nodiscard]] std::span<const NodeCall<Tracker>> tracker_calls();
 [[nodiscard]] std::span<const NodeCall<Output>> output_calls();
 
-// The whole activation in one function, as an executor on one thread has it.
+// The whole activation in one function, as in a single-threaded executor.
 void activate_tracker(Tracker& graph) noexcept;
 void activate_output(Output& graph) noexcept;
 

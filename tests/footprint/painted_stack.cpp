@@ -32,7 +32,7 @@ PaintedStack::PaintedStack() {
   own_.uc_stack.ss_sp = memory_;
   own_.uc_stack.ss_size = k_bytes;
   own_.uc_link = nullptr;
-  // makecontext hands on ints only: the pointer goes in two halves.
+  // makecontext passes ints only, so the pointer is split into two halves.
   const auto self = reinterpret_cast<std::uintptr_t>(this);
   makecontext(&own_, reinterpret_cast<void (*)()>(&PaintedStack::enter), 2,
               static_cast<unsigned>(self >> 32), static_cast<unsigned>(self));

@@ -1,5 +1,4 @@
-// A stack of its own for a function, painted before, so that the deepest byte it ever touched can
-// be seen after.
+// A separate stack for a function, filled with a pattern to measure the maximal depth used.
 #pragma once
 
 #include <ucontext.h>
@@ -21,7 +20,7 @@ class PaintedStack {
   // Runs the function on this stack, in the calling thread.
   void run(Function function, void* argument) noexcept;
 
-  // Bytes below the place of the call that any run has written to.
+  // Largest number of bytes below the call that any run wrote to.
   [[nodiscard]] std::size_t used_bytes() const noexcept;
 
   static constexpr std::size_t k_bytes = 1024 * 1024;
@@ -31,7 +30,7 @@ class PaintedStack {
   void serve() noexcept;
 
   unsigned char* memory_;
-  std::uintptr_t top_ = 0;  // the stack pointer from which functions are called
+  std::uintptr_t top_ = 0;  // stack pointer at the call
   Function function_ = nullptr;
   void* argument_ = nullptr;
   ucontext_t caller_{};

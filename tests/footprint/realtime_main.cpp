@@ -1,5 +1,5 @@
-// Both groups under RealtimeSanitizer: whatever blocks or allocates inside a nonblocking function
-// ends the program. With the argument `allocate` a node is asked to.
+// Runs both groups under RealtimeSanitizer: a blocking call or allocation in a nonblocking function
+// ends the program. The argument `allocate` enables the mutant.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -9,11 +9,11 @@
 namespace glint::footprint {
 namespace {
 
-constexpr std::uint32_t k_realtime_cycles = 600;  // every frame there is, worst ones too
+constexpr std::uint32_t k_realtime_cycles = 600;  // every frame, including the worst-case ones
 
 void* volatile g_block = nullptr;
 
-// The mutation: a node that allocates in one tick, where it is asked to.
+// The mutant: a node that allocates in one tick if enabled.
 struct Extra {
   std::uint32_t number = 0;
 };
