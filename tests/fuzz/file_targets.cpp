@@ -1,4 +1,4 @@
-// Binary files: tools, arrays, pictures, clouds, meshes, robots.
+// Fuzz targets of binary files: tools, arrays, images, point clouds, meshes, robots.
 #include <algorithm>
 #include <filesystem>
 #include <string>
@@ -31,7 +31,7 @@ void read_pgm_file(Bytes bytes) {
          "as many pixels as its size says");
 }
 
-// libspng decodes it, after its size was compared.
+// Decoded by libspng, after a check of the size.
 void read_png_file(Bytes bytes) {
   CameraModel camera;
   camera.width = 8;
@@ -49,10 +49,10 @@ void read_robot_cloud_file(Bytes bytes) {
   (void)posed_cloud(robot, positions, "positions");
 }
 
-// assimp is in another process; its answer is not trusted either.
+// Input is the answer of the assimp process, which is untrusted.
 void read_mesh_bytes(Bytes bytes) { (void)mesh_of_bytes(text_of(bytes), "a.stl"); }
 
-// A name out of a robot's description.
+// Input is a mesh name in a robot description.
 void find_mesh_file(Bytes bytes) {
   const RobotFiles files{"/robot_description", {"/proc/self/fdinfo"}, Geometry::collision, "x"};
   const std::filesystem::path found = find_mesh(text_of(bytes), files);

@@ -1,5 +1,4 @@
-// libFuzzer's entry points: --target=NAME chooses what the bytes are read as, --list prints the
-// names.
+// libFuzzer's entry points: --target=NAME selects the target, --list prints the names.
 #include <array>
 #include <cstdio>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// What a fuzz target is: a name and a reader of bytes.
+// A fuzz target: a name and a reader of bytes.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ using Bytes = std::span<const std::uint8_t>;
 
 struct Target {
   const char* name;
-  // May throw InputError and nothing else; a crash, a leak or another exception is a finding.
+  // May throw InputError only; a crash, a leak or another exception is a finding.
   void (*read)(Bytes bytes);
 };
 
@@ -23,7 +23,7 @@ struct Target {
 
 [[nodiscard]] inline std::string text_of(Bytes bytes) { return {bytes.begin(), bytes.end()}; }
 
-// Ends the program, which is a finding, unless `holds`.
+// Aborts the program, which is a finding, unless `holds`.
 void expect(bool holds, std::string_view what);
 
 }  // namespace glint::fuzz

@@ -11,8 +11,8 @@
 namespace glint::fuzz {
 namespace {
 
-// Links in a folder of their own: a name with an ending for /proc/self/fd/N. The folder's name is
-// random, and libFuzzer learns from each comparison: readers get a path without it.
+// Symbolic links that give /proc/self/fd/N a name with an ending. The folder's name is random and
+// libFuzzer uses every comparison, so readers get a path without that name.
 class Files {
  public:
   Files() {

@@ -7,7 +7,7 @@
 
 namespace glint::fuzz {
 
-// The path of a file that holds these bytes and whose name has this ending ("" or ".png"). Valid
+// Returns the path of a file with these bytes and this ending of its name ("" or ".png"). Valid
 // until the next call with the same ending.
 [[nodiscard]] std::string file_of(Bytes bytes, const std::string& ending = "");
 

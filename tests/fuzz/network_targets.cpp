@@ -1,4 +1,4 @@
-// What comes over DDS, unpacked by Cyclone's own functions as a reader does it, and over CAN.
+// Fuzz targets of DDS messages, unpacked by Cyclone's functions as in a reader, and of CAN frames.
 #include <dds/ddsi/ddsi_cdrstream.h>
 
 #include <algorithm>
@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::uint32_t k_xcdr1 = 1;
 
-// As ddsi_serdata_to_sample: checks the lengths, then unpacks. `use` gets what was whole.
+// As ddsi_serdata_to_sample: checks the lengths, then unpacks. Calls `use` with valid messages
+// only.
 template <class Message, class Use>
 void unpack(Bytes bytes, const TopicType& type, Use use) {
   std::vector<char> data(bytes.begin(), bytes.end());

@@ -1,5 +1,5 @@
-// Recordings: the MCAP container, each of Glint's messages by itself, and what other programs
-// record.
+// Fuzz targets of recordings: the MCAP container, each Glint message, and recordings of other
+// programs.
 #include <filesystem>
 
 #include "kernels/wire/output_record.hpp"
@@ -27,7 +27,7 @@ void read_whole(Bytes bytes) { read_all(file_of(bytes), {}); }
 
 void read_tolerant(Bytes bytes) { read_all(file_of(bytes), {true, true}); }
 
-// The first byte chooses the message's type.
+// The first byte selects the message type.
 void read_message(Bytes bytes) {
   if (bytes.empty()) return;
   const Bytes message = bytes.subspan(1);

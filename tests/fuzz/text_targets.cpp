@@ -1,4 +1,4 @@
-// Files of text: TOML, INI, JSON, CSV, YAML, trajectories, CAN logs, joint positions.
+// Fuzz targets of text files: TOML, INI, JSON, CSV, YAML, trajectories, CAN logs, joint positions.
 #include <array>
 #include <string>
 #include <string_view>
@@ -29,7 +29,7 @@ constexpr const char* k_signature = "0x1+0x2";
 constexpr std::array<std::string_view, 2> k_loops = {"call", "runs"};
 
 void read_cell(Bytes bytes) {
-  CellFiles files;  // so that the cell opens no other file
+  CellFiles files;  // prevents the cell from opening other files
   files.tools.items[0] = default_pen();
   files.tools.count = 1;
   (void)cell_from_text(text_of(bytes), "cell.toml", &files);
@@ -74,10 +74,10 @@ void read_calibration(Bytes bytes) {
 
 void read_ini(Bytes bytes) { (void)tool_from_ini_text(text_of(bytes), "tool.ini"); }
 
-// A recording's attachment.
+// Input is a recording's attachment.
 void read_json_tools(Bytes bytes) { (void)tools_from_json(text_of(bytes), "run.mcap"); }
 
-// What a report asks of its files: each value as a list, a number and a text.
+// The reads of a report: each value as a list, a number and a text.
 void read_json_report(Bytes bytes) {
   const JsonView file = JsonView::of_file(file_of(bytes));
   for (const char* key : {"a", "frame_to_can_us", "rows"}) {
@@ -91,7 +91,7 @@ void read_points(Bytes bytes) { (void)points_from_text(text_of(bytes), "points.c
 
 void read_trajectory(Bytes bytes) { (void)trajectory_from_text(text_of(bytes), "pen.tum"); }
 
-// What is read is written, and read again as the same.
+// Round trip: a parsed line is written, and parsed again with the same result.
 void read_candump(Bytes bytes) {
   const std::string line = text_of(bytes);
   const auto record = parse_candump(line);
