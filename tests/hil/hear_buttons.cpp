@@ -1,7 +1,7 @@
-// hear_buttons INTERFACE IDENTIFIER FRAMES: waits for so many frames of buttons and prints what
-// changed: which button (0 draw, 1 delete_last, 2 undo, 3 finish) and whether it is held. Exit 0:
-// so many came, each stamped between start and end; 1: not; 3: the interface is missing. For
-// tests/hil/guest.
+// hear_buttons INTERFACE IDENTIFIER FRAMES: receives FRAMES button frames and prints each change:
+// the button (0 draw, 1 delete_last, 2 undo, 3 finish) and whether it is pressed. Exit 0: all
+// received, each time stamp between start and end; 1: otherwise; 3: the interface is missing. Used
+// by tests/hil/guest.
 #include <atomic>
 #include <chrono>
 #include <cstdio>

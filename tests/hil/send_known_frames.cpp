@@ -1,5 +1,6 @@
-// send_known_frames LOG_INTERFACE SINK...: the same frames to every sink, one pose a millisecond.
-// Exit 0: all sent; 1: some not; 3: an interface is missing. For tests/hil/guest.
+// send_known_frames LOG_INTERFACE SINK...: sends the same frames to every sink, one pose per
+// millisecond. Exit 0: all sent; 1: some not sent; 3: an interface is missing. Used by
+// tests/hil/guest.
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -35,7 +36,7 @@ CanFrames frames_of(int number, std::mt19937& random) {
   frames.add(heartbeat_frame(32, CanNodeState::operational));
   frames.add(emergency_frame(32, sample));
   frames.add(extended_frame(number));
-  CanFrame slow = frames.items[5];  // an FD frame without the fast data phase
+  CanFrame slow = frames.items[5];  // an FD frame without bit rate switching
   slow.bit_rate_switch = false;
   frames.add(slow);
   return frames;

@@ -1,5 +1,5 @@
-// guest_give FILE...: writes these files of an emulated machine into the folder where its emulator
-// was started, under their own names. Exit 1: one of them is not whole there.
+// guest_give FILE...: copies files of an emulated machine by semihosting into the emulator's
+// working folder, under the same names. Exit 1: a copy is incomplete.
 #include <stdio.h>
 #include <string.h>
 
@@ -15,7 +15,7 @@ static int give(const char* name) {
   size_t count;
   while (whole && (count = fread(bytes, 1, sizeof bytes, file)) > 0) {
     unsigned long write[3] = {(unsigned long)handle, (unsigned long)bytes, count};
-    whole = semihosting_call(k_sys_write, write) == 0;  // the bytes that were not written
+    whole = semihosting_call(k_sys_write, write) == 0;  // returns the number of bytes not written
   }
   whole = whole && !ferror(file);
   fclose(file);
