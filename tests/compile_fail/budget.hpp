@@ -1,4 +1,4 @@
-// Two chains with budgets and a board that prices them: the tick takes 1,000 ns, the frame's nodes
+// Two chains with budgets, and the cost table k_board: the tick takes 1,000 ns, the frame's nodes
 // at k_limits 2,621 ns (262,144 pixels at 10 ps) and 1,600 ns (16 tools at 100 ns).
 #pragma once
 

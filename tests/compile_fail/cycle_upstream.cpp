@@ -1,7 +1,7 @@
 // expect: Cycle<Estimates, Feeds
 #include "tokens.hpp"
 
-// Estimate and the node behind it only wait for the cycle; the message must name the cycle itself.
+// Estimate and its successor only depend on the cycle; the message must name the cycle itself.
 struct Feeds {
   void operator()(const Frame&, const Estimates&, Estimates&) noexcept {}
 };

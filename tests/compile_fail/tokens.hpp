@@ -1,4 +1,4 @@
-// What the cases have in common: tokens, and nodes that are right.
+// Tokens and correct nodes that the cases share.
 #pragma once
 
 #include "graph/graph.hpp"
