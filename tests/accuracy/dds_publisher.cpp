@@ -1,7 +1,7 @@
 // Publishes messages from standard input unchanged: a script without DDS sends the bytes of a ROS 2
 // driver. It uses Cyclone DDS and the types only, with a configuration of its own.
 //
-//  dds_publisher DOMAIN TYPE:QUALITY:TOPIC...
+//   dds_publisher DOMAIN TYPE:QUALITY:TOPIC...
 //
 // TYPE: image, info, pose, tf. QUALITY: reliable, best_effort, latched. TOPIC: the DDS name. A
 // record of the input is two 32-bit numbers in native byte order, the topic's index and the number

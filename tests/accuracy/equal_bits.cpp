@@ -1,7 +1,7 @@
 // Hash of a recording's replay, or of the simulator's frames; `equal_bits` builds it with every
 // compiler and optimisation level.
-//  glint_equal_bits replay FILE WORKERS
-//  glint_equal_bits frames
+//   glint_equal_bits replay FILE WORKERS
+//   glint_equal_bits frames
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

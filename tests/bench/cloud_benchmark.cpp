@@ -1,6 +1,6 @@
 // Benchmark of the cloud's filter chain and the Point Cloud Library on the same points in the same
 // run, one thread, with a comparison of the results. Then the same for the alignment of two clouds.
-//  bench_cloud [ROUNDS]       GLINT_TEST_DATA: the folder with robot_scans/
+//   bench_cloud [ROUNDS]       GLINT_TEST_DATA: the folder with robot_scans/
 #include <dlfcn.h>
 
 #include <algorithm>

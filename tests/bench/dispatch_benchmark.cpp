@@ -2,7 +2,7 @@
 // compared with the same four called by hand and with oneTBB's flow graph. Exit 1: a limit is
 // missed.
 //
-//  build/bench_dispatch [ROUNDS]
+//   build/bench_dispatch [ROUNDS]
 #include <array>
 #include <cstdio>
 #include <memory>

@@ -2,7 +2,7 @@
 // node's execution time on its core, and the measured time of the planned executor. Exit 1: a limit
 // is missed.
 //
-//  build/bench_plan [ROUNDS]
+//   build/bench_plan [ROUNDS]
 #include <sched.h>
 
 #include <array>
@@ -116,7 +116,7 @@ graph::PlanTables<Tracker> tables_of(const CoreOrders& orders) {
 }
 
 // Keeps a core out of its idle states, whose wake-up latency exceeds the execution time of the
-// nodes; a real-time board disables them. Every other thread has priority over it.
+// nodes; a real-time computer disables them. Every other thread has priority over it.
 class Awake {
  public:
   explicit Awake(int core)
