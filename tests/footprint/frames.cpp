@@ -49,7 +49,7 @@ Play make_play() {
     play.crowd.push_back({rendered.pixels, rendered.head});
   }
   const CameraModel& camera = play.cell.camera.model;
-  // Alternate pixels bright; all bright; all dark; discs that fill every blob.
+  // A checkerboard (a run every second pixel); all bright; all dark; discs that fill every blob.
   play.worst.push_back(painted(camera, [](int x, int y) { return (x + y) % 2 == 0; }));
   play.worst.push_back(painted(camera, [](int, int) { return true; }));
   play.worst.push_back(painted(camera, [](int, int) { return false; }));

@@ -82,7 +82,7 @@ TEST(CalibrationFiles, GiveACellTheUncertaintyOfItsRanges) {
   };
   const CameraUncertainty measured =
       uncertainty_by("offset_sigma_mm = 0.4\nmm_per_m_sigma = 2.0\n" + bias);
-  // Adds the focal length spread between units, 0.3 %, and the period of the range error.
+  // Adds the focal length error of another unit's lens, 0.3 %, and the periodic range error.
   EXPECT_NEAR(measured.range_offset_m, std::hypot(0.0004, 0.0015, 0.0007), 1e-12);
   EXPECT_NEAR(measured.range_scale, std::hypot(0.002, 0.003), 1e-12);
   EXPECT_THROW((void)uncertainty_by("offset_sigma_mm = -1\nmm_per_m_sigma = 2\n" + bias),

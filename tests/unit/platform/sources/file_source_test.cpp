@@ -227,7 +227,7 @@ TEST(FileSource, ReportsWhatEndedTheReading) {
   EXPECT_EQ(delivered.report.failures[0], "reading ended early: byte 7: cut");
 }
 
-// A frame counts if it arrives in time: 9 ms after the middle of its exposure.
+// The duration limits the arrival time, 9 ms after the middle of the exposure.
 TEST(FileSource, LeavesOutWhatArrivesAfterTheDuration) {
   std::vector<ReadFrame> frames;
   for (int i = 0; i < 100; ++i) frames.push_back(frame_at(20 * i));
