@@ -10,7 +10,7 @@
 namespace glint {
 namespace {
 
-// Two tools for two seconds at 250 Hz; the second one is static.
+// Two tools for two seconds at 250 Hz, 1 m apart along y.
 void write_run(const std::string& path, const std::vector<ButtonEvent>& events,
                ReferenceFrame frame = ReferenceFrame::robot) {
   RecordingWriter writer(path, sample_info(RecordingLevel::outputs));
