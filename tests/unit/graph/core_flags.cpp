@@ -1,4 +1,5 @@
-// Compiled without exceptions and type information: every template that a board instantiates.
+// Instantiates every template of a companion computer's build, compiled without exceptions and
+// RTTI.
 #include "small_graph.hpp"
 #include "yielding_rest.hpp"
 

@@ -38,7 +38,7 @@ TEST(Describe, ListsWhatFlowsWithInputsAndFeedbackMarked) {
   }
 }
 
-// The number itself: g++ and clang++ both run this test.
+// A literal: g++ and clang++ must compute the same signature.
 TEST(Describe, HasOneSignatureOnEveryCompiler) { EXPECT_EQ(Words::signature, 0x2832764870b6c935u); }
 
 struct SumBandToo {
@@ -64,7 +64,8 @@ TEST(Describe, ChangesTheSignatureWithTheWiring) {
   EXPECT_NE(Description<OtherOutput>::signature, Words::signature);
 }
 
-// A token of several parts is written by the first copy; what no node writes comes from outside.
+// The first copy of a split node is the writer of its token. A token without a writer is an input
+// (from -1).
 struct Twice {
   void operator()(const Previous<Parts<Sum, 2>>&, const Latest<Scale>&, Slice,
                   Sum&) const noexcept {}
@@ -85,7 +86,7 @@ TEST(Describe, MarksFeedbackOfPartsAndOutputsOfPartsByTheirFirstCopy) {
   EXPECT_EQ(edges[2].to, -1);
 }
 
-// A long chain beside a short one: levels are paths, not places in the list.
+// Two chains of different length: a node's level is its longest path, not its index in the list.
 template <class In, class Out>
 struct Pass {
   void operator()(const In&, Out&) const noexcept {}
@@ -99,7 +100,7 @@ TEST(Describe, GivesEachNodeTheLongestPathToItAsItsLevel) {
                      Pass<Row, Scaled>>;
   static_assert(Deep::level_count == 3);
   constexpr auto& nodes = Description<Deep>::nodes;
-  // In the order of execution: those listed first of all that are ready.
+  // Execution order: of all ready nodes the first in the list runs next.
   EXPECT_EQ(nodes[0].level, 0);
   EXPECT_EQ(nodes[1].level, 0);
   EXPECT_EQ(nodes[2].level, 1);

@@ -65,7 +65,7 @@ TEST(Graph, PreparesAllNodesAndNamesTheFirstThatFails) {
   EXPECT_EQ(prepared.reason, static_cast<int>(Ready::no_offset));
 }
 
-// Two nodes that cannot get ready, listed against the order they run in.
+// Two nodes whose prepare() fails, listed in the reverse of their execution order.
 template <class In, class Out, int reason>
 struct Unready {
   Ready prepare() const { return static_cast<Ready>(reason); }
@@ -110,7 +110,7 @@ TEST(Graph, ShowsATraceEveryCopyOfEveryNodeInOrder) {
   EXPECT_EQ(numbers, (std::vector<int>{0, 0, 1, -1, 2, -2, 3, -3}));
 }
 
-// Ends after a node, and notes what it was asked.
+// Boundary that ends the activation after `node` and records each call.
 struct EndAfter {
   int node;
   std::vector<int> asked;
@@ -138,7 +138,7 @@ TEST(Graph, EndsAnActivationAtTheNodeThatItsBoundaryNames) {
     }
     EXPECT_EQ(numbers, begun);
     EXPECT_EQ(boundary.asked, asked);
-    // The feedback of an activation that was ended early is that of the one before.
+    // An activation that ends early does not advance the feedback.
     const bool whole = last == SmallGraph::node_count - 1;
     EXPECT_EQ(graph.output<Total>().activations, before.activations + (whole ? 1 : 0));
     graph.activate();
@@ -198,7 +198,7 @@ TEST(Graph, BreaksTiesInTheOrderListed) {
   EXPECT_EQ(Description<OtherWay>::nodes[0].name, "MakeFirst");
 }
 
-// Reads its own last token while it writes the next: the two buffers must be two.
+// Reads its own last token while it writes the next one: this requires two buffers.
 struct Fibonacci {
   int last = 0;
   int value = 0;
@@ -217,7 +217,7 @@ TEST(Graph, KeepsThePreviousTokenWholeWhileTheNextIsWritten) {
   EXPECT_EQ(graph.output<Fibonacci>().value, 55);
 }
 
-// Feedback of parts: each copy goes on from what it wrote itself.
+// Feedback of parts: each copy reads the part that it wrote itself.
 struct Track {
   int value = 0;
 };

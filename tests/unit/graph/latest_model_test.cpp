@@ -1,4 +1,5 @@
-// Tries every interleaving of a writer and a reader on the triple buffer's own transition code.
+// Model checker for the triple buffer: explores every interleaving of a writer and a reader on its
+// own transition code.
 #include <gtest/gtest.h>
 
 #include "graph/latest.hpp"
@@ -7,7 +8,7 @@
 namespace glint::test::latest_model_test {
 namespace {
 
-// A slot of two words, so that a torn read shows.
+// A slot of two words: a torn read gives two different values.
 struct Slot {
   Word first, second;
 };
@@ -96,7 +97,7 @@ TEST(LatestModel, WouldFindAMissingMemoryOrder) {
   EXPECT_GT((verdict_of<graph::TripleIndex<ModelAtomic<false>>, 2, 2>().races), 0);
 }
 
-// A reader that takes without asking whether something newer waits.
+// Faulty reader: takes a slot without checking for a newer one.
 struct Careless : Ordered {
   [[nodiscard]] bool fresh() const { return true; }
 };
@@ -105,7 +106,7 @@ TEST(LatestModel, WouldFindAReaderThatGoesBackwards) {
   EXPECT_GT((verdict_of<Careless, 2, 2>().faults), 0);
 }
 
-// The obvious double buffer: the writer fills the slot that the reader may be in.
+// Faulty double buffer: the writer may fill the slot that the reader is reading.
 class Double {
  public:
   [[nodiscard]] int writer_slot() const { return writer_; }

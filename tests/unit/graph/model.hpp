@@ -1,9 +1,9 @@
-// A model of two threads that share memory: runs every interleaving of their atomic steps, and
-// knows which accesses the memory orders put in sequence.
+// Model checker for two threads with shared memory: explores every interleaving of their atomic
+// steps and detects data races by vector clocks (Mattern 1989).
 //
 // A state is a plain value with `void step(int thread)` and `bool finished(int thread)`. Each step
-// does at most one atomic operation or touches one word of data. Data is guarded by vector clocks
-// (Mattern 1989): an access that the orders do not put after the other thread's last one is a race.
+// does at most one atomic operation or one access to a word of data. An access is a race if the
+// memory orders do not put it after the other thread's last access.
 #pragma once
 
 #include <algorithm>
@@ -14,9 +14,9 @@
 
 namespace glint::test {
 
-using Clock = std::array<int, 2>;  // what a thread knows of its own and the other's progress
+using Clock = std::array<int, 2>;  // progress of each thread, as one thread has observed it
 
-// The thread that is taking a step, and what both know.
+// The thread that takes the current step, and the vector clocks of both.
 struct Clocks {
   std::array<Clock, 2> of{};
 };
@@ -28,7 +28,7 @@ inline Clock joined(const Clock& a, const Clock& b) {
 }
 inline Clock& model_clock() { return model_clocks->of[static_cast<std::size_t>(model_thread)]; }
 
-// Stands in for std::atomic. With `ordered` false every operation counts as relaxed.
+// Replaces std::atomic. If `ordered` is false, every operation is relaxed.
 template <bool ordered>
 class ModelAtomic {
  public:
@@ -44,7 +44,7 @@ class ModelAtomic {
   }
   std::uint32_t exchange(std::uint32_t value, std::memory_order order) {
     acquire(order);
-    release(order);  // what earlier exchanges released stays released: a release sequence
+    release(order);  // earlier exchanges stay released: a release sequence
     return std::exchange(value_, value);
   }
 
@@ -61,7 +61,7 @@ class ModelAtomic {
   Clock handed_over_{};
 };
 
-// A word of plain data; touching it says whether the access was a race.
+// A word of plain data. Each access returns whether it was a race.
 struct Word {
   int value = 0;
   Clock last{};
@@ -81,7 +81,7 @@ struct Verdict {
   long faults = 0;  // of the protocol: torn, out of order, stale, lost
 };
 
-// Every interleaving from this state on. A state collects its own races and faults.
+// Explores every interleaving from `state`. The state counts its own races and faults.
 template <class State>
 void explore(const State& state, Verdict& verdict) {
   bool ended = true;

@@ -1,4 +1,5 @@
-// A plan as an executor reads it: what it takes, what it refuses, who reads whose data.
+// Schedule tables of an executor: which nodes they accept, which faults they reject, and which node
+// reads which.
 #include "graph/plan_tables.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +21,8 @@ constexpr NodeSet set_of(std::initializer_list<int> nodes) {
   return set;
 }
 
-// Make is 0, Spread 1 to 5, SumUp 6 to 8, Merge 9. Feedback is of the last activation.
+// Node 0 is Make, 1 to 5 are Spread, 6 to 8 SumUp, 9 Merge. Feedback is the last activation's and
+// adds no need.
 TEST(Needs, AreAllCopiesOfEachWriterOfThisActivation) {
   EXPECT_EQ(
       needs<WideGraph>[0], NodeSet { 0 });
@@ -31,7 +33,7 @@ TEST(Needs, AreAllCopiesOfEachWriterOfThisActivation) {
     EXPECT_EQ(needs<WideGraph>[sum], set_of({1, 2, 3, 4, 5}));
   }
   EXPECT_EQ(needs<WideGraph>[9], set_of({0, 6, 7, 8}));
-  // ScaleRow reads inputs alone, AddUp its own last total.
+  // ScaleRow reads inputs only, AddUp its own last total.
   EXPECT_EQ(needs<SmallGraph>, (std::array<NodeSet, 4>{0, 1, 1, set_of({1, 2})}));
 }
 
@@ -115,7 +117,7 @@ TEST(PlanFault, FindsNoFirstNodeWhereWorkerZeroHasNone) {
   EXPECT_EQ(plan_fault(tables).error, PlanError::first_node);
 }
 
-// Each worker has one node that could run, but for what the other does later.
+// Deadlock: each worker's next node needs a node that another worker runs later.
 TEST(PlanFault, FindsWorkersThatWaitForEachOther) {
   Tables tables;
   tables.workers = 3;

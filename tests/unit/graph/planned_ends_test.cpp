@@ -1,4 +1,5 @@
-// Where an activation of the planned executor ends, what it reports, and who runs no more.
+// Early end of an activation in the planned executor: the last node, the reports, and the nodes
+// that do not run.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -55,7 +56,7 @@ TEST(PlannedEnds, AfterAnyNodeAsTheSerialExecutorDoes) {
   }
 }
 
-// Worker 0 has ended the activation before worker 1 was released.
+// Worker 0 ends the activation before worker 1 is released.
 TEST(PlannedEnds, RunNoNodeOnAnotherWorkerAfterwards) {
   auto graph = std::make_unique<WideGraph>();
   CountingRest rest;
@@ -78,7 +79,7 @@ TEST(PlannedEnds, RunNoNodeOnAnotherWorkerAfterwards) {
   EXPECT_EQ(planned.overruns(), 0U);
 }
 
-// Each node that another worker reads, and the end of each worker but the first.
+// Reported: each node that another worker reads, and the end of each worker except the first.
 TEST(PlannedEnds, ReportWhatAnotherWorkerWaitsForAndNoMore) {
   for (const int workers : {1, 2}) {
     auto graph = std::make_unique<WideGraph>();
@@ -94,7 +95,7 @@ TEST(PlannedEnds, ReportWhatAnotherWorkerWaitsForAndNoMore) {
     EXPECT_EQ(planned.lead(*graph, trace, always), WideGraph::node_count - 1);
     planned.settle(*graph);
     for (std::thread& other : others) other.join();
-    // Make and the Spreads; of the sums the one that worker 1 makes.
+    // Make, the Spreads, the sum of worker 1, and the end of worker 1.
     EXPECT_EQ(rest.reported.load(), workers == 1 ? 0U : 1U + 5U + 1U + 1U);
   }
 }
@@ -115,7 +116,8 @@ TEST(PlannedEnds, CountTheOverrunsOfEveryWorker) {
   EXPECT_GE(planned.overruns(), 1U);
 }
 
-// One node, and two that read it: the second of them is another worker's, and nobody's data.
+// One source and two readers. The second reader runs on the other worker, and no node reads its
+// output.
 struct Source {
   void operator()(Row& row) const noexcept { row.numbers.fill(1); }
 };
@@ -152,7 +154,7 @@ TEST(PlannedEnds, BeforeTheEndWhereTheOtherWorkersNodeIsMissing) {
   EXPECT_EQ(graph.output<Total>().value, 0) << "nothing was fed back";
 }
 
-// Says no after worker 0's last node, once the other worker has ended.
+// Returns false after worker 0's last node, once the other worker has ended.
 struct LateNo {
   std::thread* other;
   bool go_on(int at) {

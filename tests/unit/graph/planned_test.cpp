@@ -16,7 +16,8 @@ namespace {
 
 using Tables = PlanTables<WideGraph>;
 
-// Any order that the data allows, each node on any worker but the first, which leads.
+// Random schedule: any order that the data dependencies allow. The first node runs on worker 0, the
+// others on any worker.
 Tables random_plan(int workers, std::mt19937& random) {
   Tables tables;
   tables.workers = workers;
@@ -102,7 +103,7 @@ TEST(Planned, RefusesAnOrderThatIsNoPermutation) {
 
 TEST(Planned, RefusesAnOrderInWhichANodeWaitsForEver) {
   Tables tables = plan_by_rule<WideGraph>(1);
-  std::swap(tables.order[0][9], tables.order[0][8]);  // Merge ahead of a sum that it reads
+  std::swap(tables.order[0][9], tables.order[0][8]);  // Merge before a sum that it reads
   EXPECT_EQ(plan_fault(tables).error, PlanError::waits);
   EXPECT_EQ(plan_fault(tables).node, 9);
   std::swap(tables.order[0][9], tables.order[0][8]);
@@ -116,8 +117,8 @@ struct StopAfter {
 };
 
 TEST(Planned, LeavesNoTraceOfAnAbandonedActivationInWhatIsFedBack) {
-  // Make counts its calls, so the sums would differ if it were not run; Previous<Result> must not
-  // move with an activation that was not finished.
+  // Make counts its calls: the sums differ if it does not run. An unfinished activation must not
+  // advance Previous<Result>.
   for (const int workers : {1, 2, 4}) {
     auto expected = std::make_unique<WideGraph>();
     auto graph = std::make_unique<WideGraph>();
@@ -150,7 +151,8 @@ TEST(Planned, KeepsTheFeedbackOfAnActivationThatWasLateOnlyAfterItsLastNode) {
   }
 }
 
-// Goes on for a number of looks and then never again: a deadline that passes while worker 0 waits.
+// Boundary that returns true a number of times and then always false: a deadline that passes while
+// worker 0 waits.
 struct Patience {
   std::uint64_t looks;
   bool go_on(int) noexcept { return looks > 0 && looks-- > 0; }

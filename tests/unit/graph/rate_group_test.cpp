@@ -63,7 +63,7 @@ TEST(RateGroup, ReplaysTheRecordedVersionsAlthoughNewerOnesAreThere) {
   Fixture replay;
   for (int i = 0; i < 3; ++i) {
     if (i == 0) replay.publish(1, 1);
-    if (i == 1) replay.publish(3, 3);  // early: release 1 read version 1 and must do so again
+    if (i == 1) replay.publish(3, 3);  // too early: release 1 read version 1 and must read it again
     EXPECT_TRUE(replay.group.release_as(recorded[i])) << i;
     replay.group.activate();
     EXPECT_EQ(replay.graph.output<Total>().value, totals[i]) << i;
@@ -92,7 +92,7 @@ struct AddBoth {
 };
 using TwoRates = Graph<Inputs<Latest<Scale>, Row, Latest<Offset>>, Outputs<Sum>, AddBoth>;
 
-// Of two inputs each has a version of its own, in the order of Inputs<>.
+// Each of two inputs has its own version, in the order of Inputs<>.
 TEST(RateGroup, NotesAndReplaysTheVersionOfEachOfItsInputs) {
   TripleBuffer<Scale> scales;
   TripleBuffer<Offset> offsets;
@@ -114,7 +114,8 @@ TEST(RateGroup, NotesAndReplaysTheVersionOfEachOfItsInputs) {
   EXPECT_EQ(second.nominal_ns, 2'000);
   EXPECT_EQ(second.versions[0], 11U) << "nothing newer";
   EXPECT_EQ(second.versions[1], 22U);
-  // Newer ones of both: a replay moves only the input whose recorded version it does not hold.
+  // Both inputs have a newer version. A replay changes only the input that does not hold the
+  // recorded version.
   Choice recorded = second;
   recorded.activation = 9;
   recorded.nominal_ns = 9'000;

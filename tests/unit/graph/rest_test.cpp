@@ -1,4 +1,4 @@
-// How one worker waits: spins, looks, sleeps, and when a wait counts as an overrun.
+// Waiting of one worker: spins, checks, sleeps, and the number of sleeps that counts as an overrun.
 #include "graph/rest.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,8 @@
 namespace glint::graph::rest_test {
 namespace {
 
-// Counts what is asked of it. Of its sleeps the first ones end by a report, the others whole.
+// Counts its calls. A report ends the first `reported_sleeps` sleeps; the others last their full
+// time.
 struct ScriptedRest {
   std::uint32_t spins_allowed = 0;
   std::uint64_t reported_sleeps = 0;
@@ -33,7 +34,7 @@ struct Waited {
   std::uint64_t overruns = 0;
 };
 
-// Waits for what is there at look number `there_at`, and goes on for `patience` questions.
+// Waits until check number `there_at` succeeds, or until `patience` calls to continue are used up.
 Waited waited(ScriptedRest& rest, int there_at, int patience) {
   Waited result;
   std::atomic<std::uint64_t> overruns{0};
@@ -92,7 +93,8 @@ TEST(WaitFor, EndsBetweenTwoSleepsWhereItMayNotGoOn) {
   EXPECT_EQ(rest.sleeps, 4U);
 }
 
-// A report between the look and the sleep must end the sleep: it is given what was read before.
+// A report between the check and the sleep must end the sleep: the sleep receives the count that
+// was read before the check.
 TEST(WaitFor, SleepsByTheReportsThatItReadBeforeItLooked) {
   ScriptedRest rest;
   std::atomic<std::uint64_t> overruns{0};

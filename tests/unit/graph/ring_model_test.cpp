@@ -1,4 +1,5 @@
-// Tries every interleaving of a producer and a consumer on the ring's own transition code.
+// Model checker for the ring: explores every interleaving of a producer and a consumer on its own
+// transition code.
 #include <gtest/gtest.h>
 
 #include "graph/ring.hpp"
@@ -34,7 +35,7 @@ struct Model {
       if (index.has_room()) {
         producer_at = 1;
       } else {
-        faults += pushed - popped == N ? 0 : 1;  // dropped although there was room
+        faults += pushed - popped == N ? 0 : 1;  // dropped although a slot was free
         ++dropped;
         ++offered;
       }
@@ -57,7 +58,7 @@ struct Model {
       if (index.has_item()) {
         consumer_at = 1;
       } else {
-        faults += pushed == popped ? 0 : 1;  // found nothing although an item was there
+        faults += pushed == popped ? 0 : 1;  // found empty although an item was there
         ++tried;
       }
     } else if (consumer_at < 3) {
@@ -103,7 +104,7 @@ TEST(RingModel, WouldFindAMissingMemoryOrder) {
   EXPECT_GT((verdict_of<1, 2, 2, ModelAtomic<false>>().races), 0);
 }
 
-// One slot too few for what the counters admit.
+// Faulty ring: one slot fewer than the counters admit.
 struct Overfull : graph::RingIndex<2, ModelAtomic<true>> {
   using RingIndex::RingIndex;
   [[nodiscard]] int push_slot() const { return 0; }

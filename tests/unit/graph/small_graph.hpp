@@ -1,5 +1,5 @@
-// A small graph with one of everything, listed in the wrong order: sums a row of numbers in two
-// bands and keeps a running total.
+// Test graph with one of each kind of edge, listed out of execution order: sums a row of numbers in
+// two bands and keeps a running total.
 #pragma once
 
 #include <array>

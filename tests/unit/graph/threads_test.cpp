@@ -1,5 +1,5 @@
-// The hand-overs between real threads, for ThreadSanitizer; the counts are bounded and the results
-// do not depend on who is faster.
+// Inter-thread communication of real threads, for ThreadSanitizer. All counts are bounded, and the
+// results do not depend on timing.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -32,7 +32,7 @@ TEST(Threads, SampleWholeVersionsThatOnlyRise) {
     }
   });
   std::uint64_t last = 0;
-  while (last < k_versions) {  // ends: the writer publishes all of them, and the last one stays
+  while (last < k_versions) {  // ends: the writer publishes all versions, and the last one stays
     if (!buffer->sample()) {
       std::this_thread::yield();
       continue;
@@ -61,7 +61,7 @@ TEST(Threads, PassEveryItemThroughTheRingOrCountIt) {
   std::uint64_t last = 0;
   Message message;
   for (bool more = true; more;) {
-    more = !ended.load();  // asked before the ring is emptied, so that nothing is left behind
+    more = !ended.load();  // read before the ring is emptied, so that no item stays behind
     while (ring->pop(message)) {
       ASSERT_GT(message.words[0], last);
       last = message.words[0];
@@ -74,7 +74,7 @@ TEST(Threads, PassEveryItemThroughTheRingOrCountIt) {
   EXPECT_EQ(received + ring->dropped(), k_items);
 }
 
-// Two workers over many activations, released by a counter as a pool would do it.
+// Two workers over many activations. A counter releases them, as a worker pool does.
 TEST(Threads, ShareAGraphActivationAfterActivation) {
   constexpr int k_activations = 500;
   static SmallGraph graph;

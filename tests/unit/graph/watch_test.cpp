@@ -53,11 +53,11 @@ TEST(DeadlineWatch, NoticesOnlyAPassedDeadlineWithoutABound) {
   EXPECT_FALSE(watch.go_on(1));
 }
 
-// One nanosecond decides, with and without time that the remaining nodes need.
+// One nanosecond decides, with and without time reserved for the remaining nodes.
 TEST(DeadlineWatch, EndsOneNanosecondBeyondWhatFits) {
   struct Case {
     int node;
-    std::int64_t last_ns;  // at which what remains still fits
+    std::int64_t last_ns;  // latest time at which the remaining nodes still fit
   };
   for (const Case& c : {Case{0, 40}, Case{1, 70}, Case{2, 100}, Case{3, 100}}) {
     HandClock clock{c.last_ns};

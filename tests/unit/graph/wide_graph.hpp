@@ -1,4 +1,4 @@
-// A graph with two splits of different width and a feedback, whose sums depend on every node.
+// Test graph with two splits of different width and a feedback edge. Its sums depend on every node.
 #pragma once
 
 #include <array>

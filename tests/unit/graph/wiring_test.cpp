@@ -1,4 +1,4 @@
-// The order of nodes by what they read: levels, ties and cycles.
+// Topological order of nodes from the tokens that they read: levels, ties and cycles.
 #include "graph/wiring.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@ namespace {
 
 constexpr PortKind k_read = PortKind::read;
 
-// Node i writes token i. Nodes 2 and 3 read each other; 0 reads 3, and waits with them.
+// Node i writes token i. Nodes 2 and 3 form a cycle; node 0 reads 3 and is blocked too.
 constexpr std::array<int, 4> k_writer = {0, 1, 2, 3};
 constexpr std::array<PortRow, 4> k_cycle = {
     {{0, k_read, 3}, {1, PortKind::previous, 3}, {2, k_read, 3}, {3, k_read, 2}}};
@@ -21,7 +21,7 @@ TEST(SortUnits, NameANodeOnTheCycleAndWhatItWaitsFor) {
   EXPECT_EQ(order.cycle_token, order.cycle_unit == 2 ? 3 : 2);
 }
 
-// Node 3 reads inputs alone, 1 reads 3, 0 reads both; 2 reads 3, too.
+// Node 3 reads inputs only, node 1 reads 3, node 0 reads both, node 2 reads 3.
 constexpr std::array<PortRow, 6> k_tree = {{{0, k_read, 1},
                                             {0, k_read, 3},
                                             {1, k_read, 3},

@@ -15,7 +15,7 @@
 namespace glint::test::workers_test {
 namespace {
 
-// Hosts the workers in threads that live for one activation: slow, but nothing to go wrong.
+// Runs each worker in a thread that lives for one activation: slow but simple.
 template <int W>
 struct Threads {
   YieldingRest rest;
@@ -56,7 +56,7 @@ TEST(Workers, GiveTheSameBytesAsTheSerialExecutor) {
   EXPECT_EQ(sums_of<3>(), sums);
 }
 
-// Which thread ran each node last; every node has an entry of its own, so threads do not collide.
+// Thread that ran each node last. Each node has its own entry, so the threads do not race.
 struct Whereabouts {
   std::array<std::thread::id, 10>* threads;
   void on_node_begin(int node) noexcept {
@@ -94,7 +94,7 @@ struct CountingRest : YieldingRest {
   void report_progress() noexcept { ++reported; }
 };
 
-// Worker 1 starts only when worker 0 has slept as often as a wait may last.
+// Worker 1 starts only after worker 0 has slept k_sleeps_max times.
 TEST(Workers, SleepAfterTheirSpinsAndCountOneOverrunAWait) {
   CountingRest rest;
   rest.spins = 3;

@@ -1,4 +1,4 @@
-// A rest for tests: threads yield, whether they spin or sleep.
+// Waiting policy for tests: spin and sleep both yield.
 #pragma once
 
 #include <cstdint>
