@@ -7,7 +7,7 @@
 namespace glint {
 namespace {
 
-// One body before a resting head.
+// One reference body in front of a static head.
 class AnchorHeadByABody : public testing::Test {
  protected:
   AnchorHeadByABody() {
@@ -68,7 +68,7 @@ TEST_F(AnchorHeadByABody, TakesNoAmbiguousPoseForTheBodys) {
   EXPECT_FALSE(out_.state.known());
 }
 
-// Of a tool whose own frame lies beside the middle of its markers, and of a head that is turned.
+// Tool frame offset from the markers' mean, and a rotated head.
 TEST_F(AnchorHeadByABody, PlacesTheReferencesOwnFrameInTheWorld) {
   set_.items[0].markers_m = {Vector3(0.1, 0, 0), Vector3(0, 0.2, 0), Vector3(0, 0, 0.3)};
   body().T_camera_tool = {Quaternion(0.8, 0, 0.6, 0), Vector3(0.1, -0.2, 0.5)};
@@ -121,7 +121,8 @@ TEST_F(AnchorHeadByABody, KeepsWhatItKnowsInARefusedFrame) {
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1}}));
 }
 
-// How long the head moved unseen is unknown then: its correction counts for nothing any more.
+// After a clock restart the unobserved motion of the head is unknown: the node drops its
+// correction.
 TEST_F(AnchorHeadByABody, LosesItsCorrectionWhereTheClockRestarts) {
   for (int i = 1; i < 30; ++i) frame(i);
   body().reason = Reason::no_labeling;

@@ -21,7 +21,7 @@ FrameVerdict check(CheckFrame& node, const FrameStamp& stamp) {
   return verdict;
 }
 
-// All that a frame states of its time, each field another.
+// Every time field of a frame has a different value.
 TEST(StampFrame, TakesTheStampOffAFrame) {
   const std::vector<std::uint16_t> pixels(6 * 4);
   Frame frame;
@@ -46,7 +46,7 @@ TEST(StampFrame, TakesTheStampOffAFrame) {
   EXPECT_EQ(stamp.reason, Reason::frame_invalid);
 }
 
-// Of a frame of 6 by 4 pixels each plane missing, too wide or too high by itself.
+// A frame of 6 by 4 pixels: each plane in turn is missing, too wide or too high.
 TEST(StampFrame, RefusesEachPlaneThatIsMissingOrOfAnotherSize) {
   const std::vector<std::uint8_t> bytes(7 * 5);
   const std::vector<std::uint16_t> words(7 * 5);
@@ -77,7 +77,7 @@ TEST(StampFrame, RefusesEachPlaneThatIsMissingOrOfAnotherSize) {
   }
 }
 
-// Each frame raises one counter by one, and its verdict states its stamp.
+// Each frame increments one counter by one. Its verdict holds its time stamp.
 TEST(CheckFrame, CountsEachFrameOnceAndStatesItsStamp) {
   CheckFrame node;
   FrameStamp stamp = stamp_at(100, 7);
@@ -115,7 +115,7 @@ TEST(CheckFrame, CountsEachFrameOnceAndStatesItsStamp) {
   EXPECT_EQ(node.counts(), (graph::LoopCounts{{1}}));
 }
 
-// A refused frame is not what the next one is compared with.
+// The node compares a frame with the last accepted frame, not with a rejected one.
 TEST(CheckFrame, ComparesWithTheNewestAcceptedFrame) {
   CheckFrame node;
   (void)check(node, stamp_at(100, 7));
@@ -193,8 +193,8 @@ TEST(CheckFrame, CountsAResynchronisationAndGoesOnByTheNewClock) {
   EXPECT_FALSE(verdict.resynchronised);
 }
 
-// Eight refused frames in a row whose stamps advance: an accepted one, or one that does not
-// advance, begins the row anew.
+// Requires k_resync_frames (8) successive rejected frames with increasing stamps. An accepted
+// frame, or a stamp that does not increase, restarts the count.
 TEST(CheckFrame, NeedsAWholeRowOfAdvancingFramesToBelieveAClock) {
   CheckFrame node;
   (void)check(node, stamp_at(1000, 1));

@@ -1,4 +1,4 @@
-// What the nodes of naming hand to their kernels, and what they count of them.
+// Inputs and loop counts that the correspondence nodes pass to and read from their kernels.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -9,7 +9,7 @@
 namespace glint::correspond_counts_test {
 namespace {
 
-// Five tools of five markers; those that a test wants stand in view.
+// Five tools of five markers. `show` makes a tool visible.
 class CorrespondCounts : public testing::Test {
  protected:
   CorrespondCounts() {
@@ -42,7 +42,7 @@ class CorrespondCounts : public testing::Test {
     (*node_)(verdict_, *markers_, tools_, *predictions_, slice, *labelings_);
     return node_->counts();
   }
-  // By a call of the kernel under the settings that a prediction stands for.
+  // Calls the kernel directly, with the settings that the prediction implies.
   CorrespondWork directly(std::size_t tool, Labelings& out) {
     const Prediction& prediction = predictions_->tools[tool];
     CorrespondSettings gated = node_->settings;
@@ -67,7 +67,7 @@ class CorrespondCounts : public testing::Test {
   std::unique_ptr<glint::Correspond> node_ = std::make_unique<glint::Correspond>();
 };
 
-// With a prediction aside of the truth, and without.
+// With a prediction that is offset from the ground truth, and without one.
 TEST_F(CorrespondCounts, AreTheKernelsOwnAndSoAreTheLabelings) {
   show(1);
   show(2);
@@ -116,7 +116,8 @@ TEST_F(CorrespondCounts, AddUpOverTheToolsOfASlice) {
   EXPECT_EQ(second[1], 2) << "tools 1 and 3";
 }
 
-// One tool needs more than its share of the steps; what another left is enough, or is not.
+// One tool needs more than its share of the search steps. The steps that another tool leaves unused
+// suffice in the first case, not in the second.
 TEST_F(CorrespondCounts, OfStepsAreWhatTheToolsOfASliceMayShare) {
   show(1);
   const auto needed = static_cast<int>(run({1, 5})[6]);
@@ -190,8 +191,9 @@ class Assigned : public testing::Test {
   std::unique_ptr<glint::AssignMarkers> node_ = std::make_unique<glint::AssignMarkers>();
 };
 
-// Two tools want marker 0; the better fit has it. Rounds: one a tool that is served, one that finds
-// nothing. Tests by hand: both in the first round, the loser again in the second; rivals have none.
+// Tools compete for marker 0; the better fit wins it. Rounds: one for each tool that gets a
+// labeling, and one that finds none. Tests, counted by hand: both tools in the first round, the
+// loser again in the second. Alternative labelings need no test here.
 TEST_F(Assigned, MarkersGoToOneToolAndTheOthersAreToldWhy) {
   of(0).items[0] = labeling_of(0, 0.002, 0);
   of(0).count = 1;
@@ -211,7 +213,7 @@ TEST_F(Assigned, MarkersGoToOneToolAndTheOthersAreToldWhy) {
   EXPECT_EQ(node_->counts(), (graph::LoopCounts{{1, 3, work.rounds, work.tests}}));
 }
 
-// A rival counts as a test, and what an earlier frame had is gone.
+// An alternative labeling counts as a test. Those of earlier frames are cleared.
 TEST_F(Assigned, RivalsAreOfThisFrame) {
   of(1).items[0] = labeling_of(0, 0.001, 0);
   of(1).items[1] = labeling_of(0, 0.002, 1);
@@ -234,7 +236,7 @@ TEST_F(Assigned, RivalsAreOfThisFrame) {
   EXPECT_EQ(assignment_->rival[1].count, 0) << "a tool without a labeling has no rival";
 }
 
-// The rival's first marker is number 0 of the frame, which another tool's labeling holds.
+// The alternative's first marker is number 0 of the frame, which another tool's labeling holds.
 TEST_F(Assigned, RivalsTakeNoMarkerOfAnotherTool) {
   of(0).items[0] = labeling_of(0, 0.001, 0);
   of(0).count = 1;

@@ -1,4 +1,4 @@
-// The map's node: slices of bounded work, each picture once, and what it reports of them.
+// Node ExtendMap: bounded slices of work, each depth image exactly once, and its progress report.
 #include "nodes/extend_map.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr int k_side = 32;
 
-// A wall one metre before a small camera.
+// A wall at 1 m in front of a small camera.
 class ExtendMapTest : public testing::Test {
  protected:
   ExtendMapTest() {
@@ -27,7 +27,8 @@ class ExtendMapTest : public testing::Test {
     shown_.picture.camera.fx = shown_.picture.camera.fy = 40;
     shown_.picture.camera.cx = shown_.picture.camera.cy = 16;
   }
-  // All slices of a picture, each within what the node declares; how many steps.
+  // Runs all slices of a depth image. Checks each against the node's declared maximum. Returns the
+  // steps.
   int run(std::uint64_t number) {
     shown_.number = number;
     int steps = 0;
@@ -70,7 +71,7 @@ TEST_F(ExtendMapTest, MakesAMapWhenItIsAskedTo) {
   EXPECT_EQ(progress_.totals.pictures, 1);
 }
 
-// A picture that comes while another is under way is taken up after it.
+// An image that arrives while another is in progress is processed after it.
 TEST_F(ExtendMapTest, TakesUpTheNextPictureOnceItIsFree) {
   shown_.number = 1;
   node_(shown_, progress_);

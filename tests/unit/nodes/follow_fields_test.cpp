@@ -1,4 +1,4 @@
-// What a frame makes of a tool's motion: covariances, slices, and the fields of what is followed.
+// Node FollowMotion: covariances, slices and output fields of the tracked tools after one frame.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace glint::follow_fields_test {
 namespace {
 
-// Six tools; slice 1 of 4 has numbers 1 and 5.
+// Six tools. Slice 1 of 4 processes tools 1 and 5.
 class FollowFields : public testing::Test {
  protected:
   using Followed = graph::Parts<FollowedTools, k_tool_slices>;
@@ -21,7 +21,7 @@ class FollowFields : public testing::Test {
       Tool& tool = set_->items[t];
       tool.marker_count = 3;
       tool.markers_m = {Vector3(0, 0, 0.1), Vector3(0.06, 0, 0.1), Vector3(0, 0.06, 0.16)};
-      tool.tip_m = tool.middle_m();  // so that the covariance is that of the middle
+      tool.tip_m = tool.middle_m();  // so that the covariance is that of the markers' mean
       tool.identity = static_cast<std::uint32_t>(30 + t);
       FittedTool& fit = (*fitted_)[static_cast<int>(t) % k_tool_slices].tools[t];
       fit.reason = Reason::none;
@@ -82,7 +82,7 @@ TEST_F(FollowFields, OfASliceAreItsToolsInOrder) {
   EXPECT_EQ(node_.counts()[2], 2);
 }
 
-// What the token held of tools that are gone is cleared, once.
+// Clears the fields of removed tools, once.
 TEST_F(FollowFields, BeyondTheSlicesToolsAreAsTheyWereMade) {
   (void)frame(22);
   set_->count = 2;
@@ -98,7 +98,8 @@ TEST_F(FollowFields, BeyondTheSlicesToolsAreAsTheyWereMade) {
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1}}));
 }
 
-// The first pose is all that is known: its covariance about the world's axes, and the head's.
+// After the first pose: the covariance is the pose's, rotated into the world, plus the head's fresh
+// error.
 TEST_F(FollowFields, OfAFirstPoseAreItsCovarianceTurnedAndTheHeadsFreshError) {
   anchor_.now.fresh = test::random_covariance<6>(random_, 0.0003);
   anchor_.now.pivot_m = Vector3(2, 2, 2);
@@ -127,8 +128,8 @@ TEST_F(FollowFields, OfErrorsThatPosesShareAreTurnedIntoTheWorld) {
   EXPECT_LT((frame(22).correlated_covariance - sum).norm(), 1e-12);
 }
 
-// A pose whose markers alone leave a turn open is shown as the filter has it: any axis, at the
-// limit and just beyond.
+// Publishes the filter's pose where the markers alone leave a rotation undetermined: for each axis,
+// at the limit and just above it.
 TEST_F(FollowFields, AreTheFiltersWhereTheMarkersAloneLeaveATurnOpen) {
   const double limit = node_.sure.rotation_rad * node_.sure.rotation_rad;
   int number = 0;
@@ -142,7 +143,7 @@ TEST_F(FollowFields, AreTheFiltersWhereTheMarkersAloneLeaveATurnOpen) {
   }
 }
 
-// One marker of a known tool, in the frame that it is followed in.
+// One visible marker of a tracked tool, in its base frame.
 class FollowFew : public FollowFields {
  protected:
   void know() {
@@ -191,7 +192,7 @@ TEST_F(FollowFew, IsLessSureWhereTheHeadOrTheMarkerIs) {
   EXPECT_NEAR(place_variance(frame(132)), by_head, 0.3 * by_head);
 }
 
-// Along the camera's axis the marker is unsure, so that along it the tool stays unsure.
+// Along the camera's axis the marker's variance is large, so the tool's stays large along it.
 TEST_F(FollowFew, TurnsAMarkersCovarianceIntoTheWorld) {
   know();
   few_->tools[1].items[0].covariance_m2 = Vector3(1e-8, 1e-8, 1).asDiagonal();
@@ -206,7 +207,7 @@ TEST_F(FollowFew, TurnsAMarkersCovarianceIntoTheWorld) {
   EXPECT_GT(variance(Vector3::UnitZ()), 2 * variance(Vector3::UnitY()));
 }
 
-// In the camera's frame the world's correction moves nothing.
+// In the camera frame a correction of the world does not move the tool.
 TEST_F(FollowFields, InTheCamerasFrameStayWhereTheWorldMoves) {
   for (const bool head : {false, true}) {
     *followed_ = {};

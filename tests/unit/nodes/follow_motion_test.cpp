@@ -25,7 +25,7 @@ class FollowMotion : public testing::Test {
     anchor_.now.head.T_world_camera = {random_.rotation(), Vector3(1, 2, 3)};
     T_camera_tool_ = {random_.rotation(), Vector3(0, 0, 0.5)};
   }
-  // Gives the frame to the node; what it then knows becomes what it knew.
+  // Runs one frame. Its output becomes the next frame's previous output.
   void frame(bool found = true) {
     *followed_ = tried(found);
     (*last_)[0] = *followed_;
@@ -147,7 +147,7 @@ TEST_F(FollowMotion, GoesOnRestingWhenTheWorldIsFoundToLieElsewhere) {
   EXPECT_LT((tool().estimate.pose.translation - middle).norm(), 0.0005);
 }
 
-// The body that held the head's world is hidden: the world may step by centimetres a frame.
+// The reference body is hidden: the world frame may jump by centimetres a frame.
 TEST_F(FollowMotion, KnowsHowSureItIsWhereTheWorldStepsBetweenFrames) {
   constexpr double k_step_m = 0.02;
   AnchoredHead& now = anchor_.now;
@@ -179,7 +179,7 @@ TEST_F(FollowMotion, CountsTheHeadsFreshErrorAmongTheNoise) {
   EXPECT_GT(tool().estimate.covariance(0, 0), 2 * sure);
 }
 
-// The tool's first `count` markers, where they are.
+// The tool's first `count` markers at their true positions.
 void show_few(const Tool& tool, const Pose& T_camera_tool, int count, SeenFew& few) {
   few.tools[0].count = count;
   for (int m = 0; m < count; ++m) {
@@ -208,7 +208,7 @@ TEST_F(FollowMotion, GoesOnByOneOrTwoMarkersAndSaysWhich) {
   EXPECT_EQ(tool().few_mask, 0);
 }
 
-// A rest's mean knows nothing of where the world has gone since.
+// The static window's mean does not contain the jump of the world frame since.
 TEST_F(FollowMotion, GoesOnFromARestByTwoMarkersWhereTheWorldHasStepped) {
   for (int i = 0; i < 60; ++i) frame();
   ASSERT_TRUE(tool().motion.rests());
@@ -257,7 +257,7 @@ TEST_F(FollowMotion, LetsAPoseStandOnlyWithinBothLimits) {
     turn_sigma_rad_ = c.rotation_rad;
     anchor_.now.head.T_world_camera.rotation.setIdentity();
     T_camera_tool_.rotation.setIdentity();
-    set_->items[0].markers_m.fill(Vector3::Zero());  // the middle is the origin: no lever arm
+    set_->items[0].markers_m.fill(Vector3::Zero());  // mean at the origin: no lever arm
     tools_.set(*set_, 1, 0);
     frame();
     EXPECT_EQ(tool().reason, Reason::none);
@@ -297,7 +297,7 @@ TEST_F(FollowMotion, LetsNoPoseOfAFrameStandInTheNext) {
   EXPECT_FALSE(tool().stands) << "the frame was refused";
 }
 
-// The stamps begin anew, earlier than the newest that was followed, or a little later.
+// The time stamps restart, either before the newest processed one or shortly after it.
 TEST_F(FollowMotion, BeginsAnewWhereTheClockRestarts) {
   for (const int restarted_at : {1, 70}) {
     *last_ = {};

@@ -1,4 +1,5 @@
-// A robot whose links move: its model is posed in the slices of the picture that shows them.
+// Node FollowRobot with moving links: the slices of a depth image pose the model for that image,
+// then register it.
 #include "nodes/follow_robot.hpp"
 
 #include <gtest/gtest.h>
@@ -15,11 +16,11 @@ using test::k_truth;
 using test::Model;
 using test::SampledModel;
 
-constexpr int k_all = 1 << 28;  // steps in which a picture is done at once
+constexpr int k_all = 1 << 28;  // steps that finish a depth image in one slice
 constexpr double k_slide_m = 0.3;
 
-// The arm of boxes, every other point of it on a slide; where the picture has it, the slide stands
-// at k_slide_m, and where the node is given it, at 0.
+// Arm of boxes; every other point is on a slide. In the depth images the slide is at k_slide_m; in
+// the poses that the node receives it is at 0.
 class FollowRobotTest : public testing::Test {
  protected:
   FollowRobotTest() {
@@ -37,7 +38,7 @@ class FollowRobotTest : public testing::Test {
     shown_.T_root_link[1].translation.x() = k_slide_m;
   }
 
-  // Ready, its slices of so many steps, its model posed by the poses of this number.
+  // Prepared node with `steps` a slice; `links` poses its model.
   [[nodiscard]] FollowRobot node(int steps, ShownDepth::Links links) const {
     FollowRobot node;
     node.model = {sampled_.cloud(), links_};
@@ -58,7 +59,8 @@ class FollowRobotTest : public testing::Test {
     out.number = static_cast<std::uint64_t>(number);
     return out;
   }
-  // All slices of a picture: their steps, each within what the node declares.
+  // Runs all slices of a depth image. Checks each against the node's declared maximum. Returns the
+  // steps.
   static int run(FollowRobot& node, const ShownDepth& shown, RobotProgress& progress) {
     int steps = 0;
     do {
@@ -70,7 +72,7 @@ class FollowRobotTest : public testing::Test {
     return steps;
   }
   [[nodiscard]] int posing_steps() const {
-    return static_cast<int>(links_.size()) * k_posed_item_steps_max;  // another link each time
+    return static_cast<int>(links_.size()) * k_posed_item_steps_max;  // a new link each time
   }
 
   const Model model_;
@@ -83,7 +85,7 @@ class FollowRobotTest : public testing::Test {
 
 class FollowRobotInSlices : public FollowRobotTest, public testing::WithParamInterface<int> {};
 
-// What it says of a picture is what a node says that was posed right before it came.
+// The result equals that of a node that was posed just before the image arrived.
 TEST_P(FollowRobotInSlices, IsPosedBeforeItIsLookedFor) {
   FollowRobot posed = node(k_all, {&shown_, 1}), node = this->node(GetParam(), {&given_, 0});
   RobotProgress expected, progress;
@@ -146,7 +148,7 @@ TEST_F(FollowRobotTest, IsNotLookedForByPosesThatAreNotThereOrLackALink) {
   one.count = 1;
   EXPECT_LE(run(node, picture(2, {&one, 1}), progress), k_posed_item_steps_max);
   EXPECT_EQ(progress.unsure, 1);
-  // One point stands elsewhere now: nothing counts as posed.
+  // One point has moved: the model no longer counts as posed.
   EXPECT_EQ(run(node, picture(3, {nullptr, 0}), progress), 0);
   EXPECT_GT(run(node, picture(4, {&shown_, 1}), progress), posing_steps());
   EXPECT_EQ(progress.followed, 1);
@@ -176,7 +178,7 @@ TEST_F(FollowRobotTest, StatesWhenAndWhereItWasFollowed) {
   EXPECT_LT((progress.frame.T_world_robot.translation - k_truth.translation).norm(), 0.004);
 }
 
-// Refused and told: by how much it jumped, and nothing of where it was followed.
+// A jump is rejected. The node reports its size and keeps the last accepted state.
 TEST_F(FollowRobotTest, CountsAJumpAndStaysWhereItWas) {
   FollowRobot node = this->node(k_all, {&shown_, 1});
   node.T_world_robot.translation = k_truth.translation + Vector3(0.03, 0, 0);
@@ -197,7 +199,7 @@ TEST_F(FollowRobotTest, CountsAPictureThatShowsTooLittle) {
   RobotProgress progress;
   run(node, picture(1, {&shown_, 1}), progress);
   ASSERT_EQ(progress.followed, 1);
-  std::fill(depth_.begin(), depth_.end(), 0.4f);  // a hand before the lens
+  std::fill(depth_.begin(), depth_.end(), 0.4f);  // a hand in front of the lens
   run(node, picture(2, {&shown_, 1}), progress);
   EXPECT_NE(progress.last, FollowOutcome::followed);
   EXPECT_EQ(progress.followed, 1);

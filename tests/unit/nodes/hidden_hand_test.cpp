@@ -1,5 +1,6 @@
-// A tool in a moving hand that hides all but one or two of its markers for 0.2 s in each second:
-// candidate markers through the graph, judged against where the tool is.
+// Partial visibility end to end: a moving tool of which all but one or two markers are hidden for
+// 0.2 s of each second. Runs candidate markers through the graph and compares with the ground
+// truth.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -16,10 +17,10 @@ namespace {
 
 constexpr int k_frames = 45 * 20, k_cycle = 45, k_hidden_from = 20, k_hidden_until = 29;
 constexpr Duration k_period{22'222'222};
-constexpr double k_inside_999 = 22.46;  // chi square, 6 degrees of freedom
+constexpr double k_inside_999 = 22.46;  // chi-square quantile 0.999, 6 degrees of freedom
 constexpr double k_focal_px = 250;
 
-// Of poses that are called measured.
+// Counts over the poses with state `measured`.
 struct Standing {
   int standing = 0, gross = 0, wrong_mask = 0;
   void add(const Standing& other) {
@@ -31,7 +32,7 @@ struct Standing {
 
 struct Figures {
   int hidden = 0, updated = 0, inside = 0, returns = 0, jumps = 0;
-  Standing by_few, by_more;  // than two markers
+  Standing by_few, by_more;  // poses from one or two markers, and from more
   double squares_m2 = 0, nees = 0;
   void add(const Figures& other) {
     hidden += other.hidden;
@@ -88,7 +89,7 @@ class Hand {
   }
 
  private:
-  // 50 mm and 17 degrees about, at up to 1.3 Hz.
+  // Amplitude 50 mm and 17 degrees, up to 1.3 Hz.
   [[nodiscard]] Pose truth(int frame) const {
     const double t = 6.283185307179586 * time_of(frame).seconds();
     const auto wave = [&](double hertz, int phase) {
@@ -152,7 +153,7 @@ class Hand {
     const double angle = stated.pose.rotation.angularDistance(truth(frame).rotation);
     poses.add({1, off_m > 0.02 || angle > 0.26 ? 1 : 0, (track.marker_mask & ~shown) != 0 ? 1 : 0});
   }
-  // What was foretold of the first whole frame, against where the tool then is.
+  // Compares the prediction for the first frame after the occlusion with the ground truth.
   void judge_return(int frame, const Track& before, Figures& figures) const {
     ++figures.returns;
     const UncertainPose foretold =
@@ -208,8 +209,8 @@ TEST(HiddenHand, OneMarkerHoldsItsPlaceCoveredByItsCovariance) {
   EXPECT_EQ(held.jumps, 0);
 }
 
-// Three strays in a cube of 160 mm are 700 in a cubic metre. Three of them that agree by chance are
-// the fit's affair: RefinePose holds them to the followed motion.
+// Three false markers in a cube of 160 mm are 700 per cubic metre. If three of them match by
+// chance, RefinePose must reject them by the motion prediction.
 TEST(HiddenHand, StraysNearbyAreHardlyEverTakenAndNeverMakeAGrossPose) {
   Figures held, coasted;
   for (const int markers : {1, 2}) {

@@ -1,4 +1,4 @@
-// The nodes that touch pixels hand their settings to their kernels and count what these count.
+// Image nodes: each passes its settings to its kernel and returns the kernel's counts.
 #include "nodes/image_nodes.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ using graph::LoopCounts;
 
 constexpr int k_width = 96, k_height = 64;
 
-// Three bright squares in three bands, at half a metre.
+// Three bright squares in three bands, at 0.5 m.
 class ImageNodes : public testing::Test {
  protected:
   ImageNodes() {
@@ -34,7 +34,7 @@ class ImageNodes : public testing::Test {
     rois_.items[0] = {0, 0, 50, k_height};
     rois_.items[1] = {50, 0, k_width, k_height};
   }
-  // By the node of each band.
+  // Runs RoiThreshold for each band.
   void threshold() {
     RoiThreshold node;
     node.threshold = 1'000;

@@ -1,4 +1,4 @@
-// Boxes of tools as they were predicted: rounded, clamped, joined, and counted.
+// Node LocateRois: predicted boxes of tools are rounded, clamped, merged and counted.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -80,7 +80,7 @@ TEST_F(LocateBoxes, AreTheWholeFrameForAToolThatMayBeAnywhere) {
   prediction = seen;
   prediction.in_view = false;
   expect_only(whole);
-  // Beyond each border: no column or row is left.
+  // Beyond each border: the clamped box has no column or no row.
   const Vector2 beyond[][2] = {{{-20, 20}, {0, 40}},
                                {{k_width, 20}, {k_width + 9, 40}},
                                {{10, -20}, {30, 0}},
@@ -98,7 +98,8 @@ TEST_F(LocateBoxes, AreTheWholeFrameForAToolThatMayBeAnywhere) {
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1}}));
 }
 
-// On each side of a box one that touches it, then one that shares a pixel's row or column.
+// On each side of a box: first one that only touches it, then one that shares a row or column of
+// pixels.
 TEST_F(LocateBoxes, StayApartWhereTheyOnlyTouch) {
   struct Case {
     double x, y;
@@ -120,13 +121,14 @@ TEST_F(LocateBoxes, StayApartWhereTheyOnlyTouch) {
   }
 }
 
-// The last box meets the second; joined they meet the first, which was passed before.
+// The last box overlaps the second. Their union overlaps the first, which was checked before.
 TEST_F(LocateBoxes, AreJoinedWithThoseThatTheGrownBoxMeets) {
   add({0, 0}, {10, 10});
   add({5, 30}, {40, 40});
   add({30, 5}, {40, 35});
   expect_only({0, 0, 40, 40});
-  // The second with the first; the last with the first, the second, and the first again.
+  // Overlap tests: the second with the first; the last with the first, the second, and the first
+  // again.
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 3, 1 + 3}}));
 }
 
@@ -164,7 +166,7 @@ TEST_F(LocateBoxes, AreDisjointAndHoldEveryTool) {
   }
 }
 
-// A part of the frame and one box fewer than there are tools: the tracked ones first.
+// A partial frame, and one box fewer than tools: tracked tools come first.
 TEST_F(LocateBoxes, BesideAPartOfTheFrameAreThoseOfTrackedToolsFirst) {
   predictions_->narrowed = true;
   predictions_->turn = 4;
@@ -179,7 +181,7 @@ TEST_F(LocateBoxes, BesideAPartOfTheFrameAreThoseOfTrackedToolsFirst) {
   ASSERT_EQ(rois_.count, 1);
   const Roi part = rois_.items[0];
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1}}));
-  // Places in a row that the part leaves free.
+  // Positions in a row outside the searched part.
   const double y = part.y0 > 20 ? 5 : 70;
   add({5, y}, {10, y + 5}).missed_last = true;
   add({25, y}, {30, y + 5});
@@ -200,7 +202,7 @@ TEST_F(LocateBoxes, BesideAPartOfTheFrameAreThoseOfTrackedToolsFirst) {
   }
 }
 
-// Half or a quarter of the columns about a place that the golden ratio's multiples move.
+// Half or a quarter of the columns. The centre follows the multiples of the golden ratio.
 TEST_F(LocateBoxes, OfTheFrameArePartsThatTheGoldenRatioPlaces) {
   predictions_->narrowed = true;
   for (std::uint32_t turn = 1; turn <= 64; ++turn) {

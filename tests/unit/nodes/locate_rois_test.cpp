@@ -83,7 +83,8 @@ bool holds(const Rois& rois, int x, int y) {
   return false;
 }
 
-// What cannot be searched at once is searched bit by bit, and the tracked tool in every frame.
+// If a frame has too many runs, the node searches it part by part, and the tracked tool in every
+// frame.
 TEST_F(LocateRois, SearchesAllPartsOfAFrameThatHadTooManyRunsWithin45Frames) {
   track(0, Vector3(0, 0, 0.5));
   last_->tracks[1].reason = Reason::runs_full;

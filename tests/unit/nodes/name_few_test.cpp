@@ -1,4 +1,5 @@
-// Which tools' markers are looked for one by one, and which markers may be theirs.
+// Node NameFew (partial visibility): which tools are searched for single markers, and which markers
+// are candidates.
 #include "nodes/name_few.hpp"
 
 #include <gtest/gtest.h>
@@ -8,8 +9,8 @@
 namespace glint::name_few_test {
 namespace {
 
-// Two tools of three markers side by side, foretold where they are; the first has no labeling, and
-// two of its markers are in view: 1 and 2 of the frame are its 0 and 2.
+// Two tools of three markers side by side, predicted at their true poses. The first has no labeling
+// and two visible markers: markers 1 and 2 of the frame are its markers 0 and 2.
 class NameFewTest : public testing::Test {
  protected:
   NameFewTest() {
@@ -30,7 +31,7 @@ class NameFewTest : public testing::Test {
     for (Labeling& labeling : assignment_->labeling) labeling.marker.fill(-1);
     for (Labeling& labeling : assignment_->rival) labeling.marker.fill(-1);
     markers_->count = 3;
-    show(0, Vector3(0, 0.3, 0.5));  // a stray
+    show(0, Vector3(0, 0.3, 0.5));  // false marker
     show(1, place_of(0, 0));
     show(2, place_of(0, 2));
   }
@@ -41,7 +42,7 @@ class NameFewTest : public testing::Test {
     markers_->items[marker].ray = centre.normalized();
     markers_->items[marker].surface_range_m = centre.norm() - set_->items[0].centre_offset_m();
   }
-  // How many of the first tool's markers are named.
+  // Number of the first tool's markers that the node assigns.
   int named() {
     tools_.set(*set_, ++version_, 0);
     node_->operator()(verdict_, *markers_, tools_, *predictions_, *assignment_, seen_);
@@ -67,7 +68,7 @@ TEST_F(NameFewTest, NamesTheMarkersOfAToolWithoutALabeling) {
   EXPECT_EQ(few.items[1].of_tool, 2);
   EXPECT_LT((few.items[0].centre_m - place_of(0, 0)).norm(), 1e-12);
   EXPECT_LT((few.items[1].centre_m - place_of(0, 2)).norm(), 1e-12);
-  // Of two foretold tools each gate tries each marker, whose range counts once a tool.
+  // For two predicted tools each gate tests each marker; a marker's range counts once a tool.
   EXPECT_EQ(node_->counts(), (graph::LoopCounts{{1, 2, 6, 2 * (1 + 3) * 3}}));
 }
 
@@ -107,12 +108,13 @@ TEST_F(NameFewTest, LooksAtNoMoreMarkersThanTheCellHas) {
   EXPECT_EQ(named(), 1) << "the third is not looked at";
 }
 
-// The other tool's labeling and its rival, which it may yet prefer, keep their markers.
+// The other tool's labeling and its alternative both keep their markers: RefinePose may choose
+// either.
 TEST_F(NameFewTest, TakesNoMarkerThatAnotherToolsLabelingHolds) {
   for (const bool rival : {false, true}) {
     for (const int lowest : {1, 0}) {
       Labeling& labeling = rival ? assignment_->rival[1] : assignment_->labeling[1];
-      if (lowest == 0) show(0, place_of(0, 1));  // the frame's first marker is the tool's, too
+      if (lowest == 0) show(0, place_of(0, 1));  // marker 0 of the frame is one of the tool's, too
       if (lowest == 0) show(1, Vector3(0, 0.3, 0.5));
       labeling.marker[4] = static_cast<std::int16_t>(lowest);
       labeling.count = 3;
@@ -133,7 +135,7 @@ TEST_F(NameFewTest, TakesMarkersOfALabelingThatDoesNotHold) {
   EXPECT_EQ(named(), 2) << "its own, which was refused";
 }
 
-// A marker aside of its place is in the gate only where the markers' noise reaches that far.
+// The gate accepts an offset marker only if the estimated noise is large enough.
 TEST_F(NameFewTest, OpensItsGatesByTheNoiseThatWasSeen) {
   show(1, place_of(0, 0) + Vector3(0, 0, 0.02));
   EXPECT_EQ(named(), 1);

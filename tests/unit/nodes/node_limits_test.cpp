@@ -1,4 +1,4 @@
-// What each node may need at worst under a cell's limits, and what tokens make of a tool.
+// Worst-case loop counts of each node under a cell's limits, and derived fields of a tool.
 #include "nodes/node_limits.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ using graph::LoopCounts;
 constexpr Limits k_small{
     .tools = 5, .markers_per_tool = 3, .blobs = 65, .lens_steps = 13, .search_steps = 11};
 
-// Five tools in four slices: the first has two of them.
+// Five tools in four slices: the first slice has two.
 TEST(NodeLimits, ShareTheToolsAmongTheSlices) {
   const int expected[] = {2, 1, 1, 1};
   int sum = 0;
@@ -55,7 +55,7 @@ TEST(NodeLimits, BoundAToolSetAndItsTools) {
   }
 }
 
-// 65 blobs are 2,080 pairs and fill two words, a tool's three distances and 11 steps.
+// 65 blobs give 2,080 pairs and fill two words; a tool has three distances and 11 steps.
 TEST(WorstCounts, OfCorrespondAreProductsOfTheLimits) {
   EXPECT_EQ(glint::Correspond::worst(k_small),
             (LoopCounts{
@@ -86,8 +86,9 @@ TEST(WorstCounts, OfTheOtherNodesAreProductsOfTheLimits) {
   EXPECT_EQ(glint::PackCan::worst(k_small), (LoopCounts{{1, 5, 5, 3}}));
 }
 
-// Of a fit with one marker of three left out in turn, of the rival, of the motion's expectation and
-// of residuals: the more markers, the more; twice the tools, twice all.
+// Counts of the fit with each of three markers removed in turn, the alternative labeling, the fit
+// with the prediction, and the residuals. They grow with the markers; twice the tools give twice
+// the counts.
 TEST(WorstCounts, OfRefinePoseGrowWithToolsAndMarkers) {
   const LoopCounts one = glint::RefinePose::worst(k_small, {1, 4}),
                    two = glint::RefinePose::worst(k_small);
@@ -103,7 +104,7 @@ TEST(WorstCounts, OfRefinePoseGrowWithToolsAndMarkers) {
   EXPECT_GT(glint::RefinePose::worst(more, {1, 4})[4], 2 * one[4]);
 }
 
-// A tool of which middle and tip are apart, as the camera saw it.
+// A tool whose markers' mean and tip differ, as the camera sees it.
 class OfATool : public testing::Test {
  protected:
   OfATool() {
@@ -157,7 +158,7 @@ TEST_F(OfATool, TheTipIsAnArmFromTheMiddleWithAnErrorOfItsOwn) {
   EXPECT_LT((tip.systematic_of(of_middle, turn) - expected).norm(), 1e-15);
 }
 
-// By small shifts and turns of the pose, one at a time.
+// Numerical differentiation: small translations and rotations of the pose, one at a time.
 TEST_F(OfATool, APredictedMarkersPlaceMovesWithShiftAndTurn) {
   Prediction prediction;
   prediction.T_camera_tool.rotation = random_.rotation();

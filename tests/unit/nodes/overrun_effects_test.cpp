@@ -14,7 +14,7 @@ using graph::OverrunPolicy;
 
 constexpr Duration k_lost_after = milliseconds(250);
 
-// One tool that moves by 1 m/s along x, seen at 980 and 1000 ms, where x = 0.
+// One tool that moves at 1 m/s along x, seen at 980 and 1000 ms; x = 0 then.
 std::unique_ptr<Estimates> moving() {
   auto estimates = std::make_unique<Estimates>();
   estimates->tool_count = 2;
@@ -106,14 +106,14 @@ TEST(FrameOverrun, DeclaresEveryToolLostWhenItStops) {
   EXPECT_EQ(out->tracks[1].reason, Reason::overrun_stopped);
 }
 
-// In the world the tool goes on, and the head has moved meanwhile.
+// The tool continues in the world frame while the head moves.
 TEST(FrameOverrun, MovesAPredictedToolOnBeforeAHeadThatMoved) {
   OverrunFrame frame = frame_at(1020);
   frame.head.T_world_camera.translation = {0.5, 0, -1};
   frame.head.T_world_camera.rotation = Quaternion(std::sqrt(0.5), 0, 0, std::sqrt(0.5));
   auto out = std::make_unique<Estimates>();
   ASSERT_TRUE(substitute(OverrunPolicy::predict, frame, *moving(), *out));
-  // (0.02, 0, 0) less (0.5, 0, -1), a quarter turn back about z.
+  // (0.02, 0, 0) minus (0.5, 0, -1), rotated back by 90 degrees about z.
   const Vector3 seen = out->tracks[0].T_camera_tool.translation;
   EXPECT_LT((seen - Vector3(0, 0.48, 1)).norm(), 1e-12);
   frame.head.valid = false;
@@ -135,7 +135,7 @@ TEST(FrameOverrun, GoesOnNoLongerThanAToolIsKept) {
   EXPECT_EQ(out->tracks[0].reason, Reason::overrun_predicted);
 }
 
-// Neither speed nor acceleration moves it; what is known of where it was stays.
+// Velocity and acceleration are zero; the last pose stays.
 TEST(FrameOverrun, StopsEveryMotionOfAHeldTool) {
   auto in_time = moving();
   MotionState& motion = in_time->tracks[0].motion;
@@ -176,7 +176,7 @@ TEST(ReasonOfPolicy, IsItsOwn) {
   EXPECT_EQ(reason_of(OverrunPolicy::stop_safe), Reason::overrun_stopped);
 }
 
-// What left at tick 1000 ms, from a measurement 10 ms older, at 2 m/s along y; draw was held.
+// Output of the tick at 1000 ms: a measurement 10 ms old, moving at 2 m/s along y, draw held.
 std::unique_ptr<PoseSamples> left(int tool = 0) {
   auto samples = std::make_unique<PoseSamples>();
   samples->count = 1;
@@ -247,7 +247,7 @@ TEST(TickOverrun, LeavesALostSampleWhoseItIsAndNoPose) {
   EXPECT_TRUE(lost.angular_velocity_rad_s.isZero());
 }
 
-// Position first, then the turn about the tip, for as long as the tick is later.
+// Position first, then the rotation about the tip, over the time since the last tick.
 TEST(TickOverrun, MovesEachSampleOnAndSaysOfWhichFrameTheyAre) {
   auto in_time = left();
   in_time->any_frame = true;

@@ -11,7 +11,7 @@
 namespace glint {
 namespace {
 
-// Counts frames by identifier over one second of 250 Hz ticks, and what the node counted.
+// Frames by identifier over one second of ticks at 250 Hz, and the node's own counts.
 std::map<std::uint32_t, int> one_second(const PackCanSettings& settings, TrackState second_half,
                                         graph::LoopCounts* counted = nullptr) {
   PackCan node;
@@ -64,7 +64,7 @@ TEST(PackCan, CountsThePosesAndTheFramesOfItsOwn) {
   EXPECT_EQ(counted[3], seen.at(0x720) + seen.at(0x1AE) + seen.at(0x1AF));
 }
 
-// Ticks of one node, so many milliseconds after the start; which frames of its own each brings.
+// Ticks of one node at given times in ms after the start. Counts its own frames per tick.
 class OwnFrames : public testing::Test {
  protected:
   std::vector<CanFrame> at(std::int64_t ms) {
@@ -84,7 +84,7 @@ class OwnFrames : public testing::Test {
   std::unique_ptr<CanFrames> frames_ = std::make_unique<CanFrames>();
 };
 
-// A period counts from the tick that was due, and what was skipped is not made up for.
+// A period starts at the tick that was due. Skipped frames are not sent later.
 TEST_F(OwnFrames, AreDueAPeriodAfterTheLast) {
   EXPECT_EQ(count_at(0, 0x720), 1);
   EXPECT_EQ(count_at(99, 0x720), 0);
@@ -113,7 +113,7 @@ TEST_F(OwnFrames, OfTimeArePairsWhoseCounterRisesModuloSixteen) {
   }
 }
 
-// At changes of state only, of each tool by itself.
+// Only at changes of state, separately for each tool.
 TEST_F(OwnFrames, OfEmergencyComeWhereAToolIsLostOrFoundAgain) {
   samples_->count = 2;
   std::int64_t ms = 1;
@@ -146,7 +146,7 @@ TEST_F(OwnFrames, AreOfNoMoreToolsThanTheCellHas) {
   EXPECT_EQ(node_->counts()[1], 2);
 }
 
-// The states of the heartbeats over three seconds in which frames arrive up to `last_frame`.
+// States of the heartbeats over three seconds; frames arrive until `last_frame`.
 std::vector<int> heartbeats(Time first_frame, Time last_frame) {
   PackCan node;
   auto samples = std::make_unique<PoseSamples>();

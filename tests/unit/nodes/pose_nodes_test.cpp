@@ -7,7 +7,7 @@
 namespace glint {
 namespace {
 
-// One tool of three markers, none of which is in view.
+// One tool of three markers; none is visible.
 class Correspond : public testing::Test {
  protected:
   Correspond() {
@@ -25,7 +25,7 @@ class Correspond : public testing::Test {
     return labelings_->tools[0].reason;
   }
 
-  // The tool's markers, half a metre ahead and larger by this factor.
+  // The tool's markers at 0.5 m, scaled by `factor`.
   void show_scaled_by(double factor) {
     const Tool& tool = set_->items[0];
     for (std::size_t i = 0; i < 3; ++i) {
@@ -36,8 +36,8 @@ class Correspond : public testing::Test {
     markers_->count = 3;
   }
 
-  // By how much the tool's markers may stand too far apart and are still the tool's, where the
-  // noise is so many times the declared one.
+  // Largest relative scale error of the markers that is still accepted, by bisection. The noise is
+  // given in multiples of the declared noise.
   double largest_scale(double range_noises, double pixel_noises) {
     predictions_->noise.known = true;
     predictions_->noise.range_sigma_m = range_noises * node_->settings.range_sigma_m;
@@ -67,14 +67,14 @@ TEST_F(Correspond, NamesTheBudgetWhereItLeftOutSpotsOfAToolThatWasNotFound) {
   EXPECT_EQ(reason(Reason::none), Reason::runs_full) << "a part of the frame was searched";
 }
 
-// Spots near a prediction are kept whatever the budget is; runs are not.
+// The search keeps blobs near a prediction under any budget, but not runs.
 TEST_F(Correspond, BlamesABlobBudgetForNoToolThatWasPredicted) {
   predictions_->tools[0].has_prior = true;
   EXPECT_EQ(reason(Reason::blobs_full), Reason::too_few_markers);
   EXPECT_EQ(reason(Reason::runs_full), Reason::runs_full);
 }
 
-// Markers whose distances are off by more than the declared noise explains.
+// The error of the markers' distances exceeds the declared noise.
 TEST_F(Correspond, OpensItsGatesWithTheNoiseThatWasSeenAndNeverClosesThem) {
   show_scaled_by(1.2);
   EXPECT_NE(reason(Reason::none), Reason::none);
@@ -97,7 +97,7 @@ TEST_F(Correspond, OpensItsGatesAlsoByLittleMoreNoise) {
   EXPECT_GT(largest_scale(1.8, 1), 1.5 * as_declared);
 }
 
-// Across the ray pixels count as ranges do along it.
+// Across the ray, pixel noise opens the gate as range noise does along it.
 TEST_F(Correspond, OpensItsGatesWithThePixelsNoiseToo) {
   node_->settings.focal_px = 250;
   node_->settings.pixel_sigma_px = 0.1;
@@ -107,8 +107,8 @@ TEST_F(Correspond, OpensItsGatesWithThePixelsNoiseToo) {
   EXPECT_GT(largest_scale(1, 40), 1.1 * as_declared);
 }
 
-// Three markers are believed no farther from a prediction than the tool may have got and three
-// sigmas of their ranges.
+// Three markers are accepted only within the prediction's reach plus three standard deviations of
+// their ranges.
 TEST_F(Correspond, BelievesFewMarkersOnlyNearAPrediction) {
   Tool& tool = set_->items[0];
   tool.marker_count = 4;
@@ -127,7 +127,8 @@ TEST_F(Correspond, BelievesFewMarkersOnlyNearAPrediction) {
   }
 }
 
-// RefinePose may prefer either: a stray in the rivals of two tools would be both tools' marker.
+// RefinePose may choose any labeling: a false marker in the alternatives of two tools would be
+// assigned twice.
 TEST(AssignMarkers, GivesNoMarkerToTheLabelingsOfTwoTools) {
   const auto labeling = [](std::int16_t a, std::int16_t b, std::int16_t c, double turn) {
     Labeling out;

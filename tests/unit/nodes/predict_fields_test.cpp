@@ -1,4 +1,5 @@
-// Every field of a tick's sample, with and without a pose, each with its own value.
+// Node PredictTools: every field of a tick's sample, with and without a pose, each with a different
+// value.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -98,7 +99,7 @@ TEST_F(PredictFields, AreOfNoMoreToolsThanTheCellHas) {
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 2, 2}}));
 }
 
-// What stood in for a frame that was not in time is never called measured.
+// The substitute for a late frame never has state `measured`.
 TEST_F(PredictFields, OfASubstituteArePredicted) {
   EXPECT_EQ(at(1001).state, TrackState::measured);
   for (const Reason reason : {Reason::overrun_held, Reason::overrun_predicted}) {
@@ -124,7 +125,7 @@ TEST_F(PredictFields, KeepWhyATrackIsMissedInAnyFrame) {
   }
 }
 
-// A third of the trace of position and of rotation, each variance another.
+// A third of the trace of position and of rotation; each variance differs.
 TEST_F(PredictFields, OfSigmaAreRootsOfTheMeanVariance) {
   estimates_->tracks[1].head_covariance.diagonal() << 1e-6, 4e-6, 9e-6, 16e-6, 25e-6, 36e-6;
   const PoseSample& sample = at(1000);
@@ -132,7 +133,8 @@ TEST_F(PredictFields, OfSigmaAreRootsOfTheMeanVariance) {
   EXPECT_NEAR(sample.sigma_orientation_rad, std::sqrt(77e-6 / 3), 1e-12);
 }
 
-// Errors of the camera and of successive poses, and of the robot's place: none takes another off.
+// Systematic covariances of the camera, of successive poses and of the robot's registration add up;
+// none cancels another.
 TEST_F(PredictFields, OfSystematicErrorsAddUp) {
   test::Random random(4);
   Track& track = estimates_->tracks[1];

@@ -124,7 +124,8 @@ TEST_F(PredictTools, TurnsPoseSpeedsAndCovarianceIntoTheRobotsFrame) {
   EXPECT_LT((sample.pose.translation - Vector3(0, -0.1, 0.5)).norm(), 1e-12);
   EXPECT_LT((sample.pose.rotation * Vector3::UnitX() + Vector3::UnitY()).norm(), 1e-12);
   EXPECT_LT((sample.angular_velocity_rad_s - Vector3(2, -1, -3)).norm(), 1e-12);
-  // The tip's own: the middle's and what the turn adds, (1, 2, -3) x (0.1, 0, 0) in the world.
+  // Velocity of the tip: that of the markers' mean plus the rotation's, (1, 2, -3) x (0.1, 0, 0) in
+  // the world.
   const Vector3 in_world = Vector3(0.1, 0.2, 0.3) + Vector3(0, -0.3, -0.2);
   const Vector3 in_robot(in_world.y(), -in_world.x(), in_world.z());
   EXPECT_LT((sample.velocity_m_s - in_robot).norm(), 1e-12);
@@ -164,7 +165,7 @@ TEST_F(PredictTools, MovesOnByTheEquationsOfMotionWithGrowingUncertainty) {
   const Vector3 tip_velocity(1 - 0.2 * std::sin(turn), 0.2 * std::cos(turn), 0);
   EXPECT_TRUE(far.velocity_m_s.isApprox(tip_velocity, 1e-6));
   EXPECT_TRUE(far.angular_velocity_rad_s.isApprox(Vector3(0, 0, 2), 1e-9));
-  // The tip turns with the tool: 0.1 m of arm and 1e-3 rad make another 1e-4 m on two axes.
+  // Lever arm of the tip: 0.1 m and 1e-3 rad add 1e-4 m on two axes.
   EXPECT_NEAR(near.sigma_position_m, std::sqrt(1e-6 + 2.0 / 3 * 1e-8), 1e-9);
   const UncertainPose middle =
       predict_pose(track.motion, Time{} + milliseconds(1040), {}, NoiseScale{});
@@ -196,7 +197,7 @@ TEST_F(PredictTools, GivesTheSystematicPartBesideTheTotal) {
   track.calibration_covariance.diagonal() << 1e-6, 0.5e-6, 1e-6, 0, 4e-6, 0;
   track.correlated_covariance(1, 1) = 0.5e-6;
   const PoseSample sample = at(1000);
-  // The tip lies 0.1 m along x: a turn about y moves it along z.
+  // The tip is 0.1 m along x: a rotation about y moves it along z.
   EXPECT_NEAR(sample.systematic(2, 2), 1e-6 + 0.01 * 4e-6, 1e-15);
   EXPECT_NEAR(sample.systematic(0, 0), 1e-6, 1e-15);
   EXPECT_NEAR(sample.systematic(1, 1), 1e-6, 1e-15);
@@ -217,11 +218,12 @@ TEST_F(PredictTools, CountsTheTipAmongSystematicErrors) {
 
 TEST_F(PredictTools, CountsTheRobotsPlaceAmongSystematicErrors) {
   node_.settings.robot_covariance.diagonal() << 1e-6, 1e-6, 1e-6, 0, 0, 1e-6;
-  robot_.T_world_robot.translation = Vector3(0, -1, 0.5);  // 1 m beside the tip's middle
+  robot_.T_world_robot.translation = Vector3(0, -1, 0.5);  // 1 m beside the markers' mean
   robot_.T_world_robot.rotation = Quaternion(std::sqrt(0.5), 0, 0, std::sqrt(0.5));
   const PoseSample sample = at(1000);
   ASSERT_EQ(sample.frame, ReferenceFrame::robot);
-  // In the world a turn about z moves the middle along x, 1 m a radian, and the tip 0.1 m along y.
+  // In the world a rotation about z moves the markers' mean along x by 1 m per radian and the tip
+  // along y by 0.1 m.
   EXPECT_NEAR(sample.systematic(1, 1), 1e-6 + 1e-6, 1e-12);
   EXPECT_NEAR(sample.systematic(0, 0), 1e-6 + 0.01 * 1e-6, 1e-12);
   EXPECT_NEAR(sample.systematic(2, 2), 1e-6, 1e-12);
@@ -240,7 +242,7 @@ TEST_F(PredictTools, CountsTheStampsErrorWhereTheToolMoves) {
   EXPECT_NEAR(sample.systematic(5, 5), 0.002 * 0.002 * 4, 1e-12);
   EXPECT_NEAR(sample.systematic(0, 0), 0, 1e-15);
   EXPECT_NEAR(sample.age_sigma_s, 0.002, 1e-12);
-  // A frame may state an error of its own clock.
+  // A frame may state the standard deviation of its own time stamp.
   estimates_->tracks[0].stamp_sigma = milliseconds(3);
   const PoseSample other = at(1000);
   EXPECT_NEAR(other.age_sigma_s, std::sqrt(13e-6), 1e-12);

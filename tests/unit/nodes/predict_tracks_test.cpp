@@ -9,7 +9,7 @@ namespace {
 
 constexpr double k_half_pi = 1.57079632679489661923;
 
-// One tool half a metre away, seen at 1 s.
+// One tool at 0.5 m, seen at 1 s.
 class PredictTracks : public testing::Test {
  protected:
   PredictTracks() {
@@ -91,7 +91,7 @@ TEST_F(PredictTracks, HandsOnTheOddsOfTheMotion) {
 TEST_F(PredictTracks, CountsItsToolsThoseItMovedAndTheirMarkers) {
   predict();
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 1, 1, 3}}));
-  track().base = ReferenceFrame::world;  // and where the head is is not known
+  track().base = ReferenceFrame::world;  // the head's pose is unknown
   predict();
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 1, 0, 3}}));
   track().alive = false;
@@ -110,8 +110,8 @@ TEST_F(PredictTracks, GoesOnWithTheMotionThatTheFilterFollowed) {
   EXPECT_NEAR(across.y(), 0.040, 1e-3) << "turned about the markers' middle";
 }
 
-// Markers at 250 px focal length and half a metre: 25 px aside and 30 px below the middle, with the
-// reach and a marker's width about each.
+// Markers at a focal length of 250 px and 0.5 m: 25 px beside and 30 px below the centre, plus the
+// reach and a marker's width on each side.
 TEST_F(PredictTracks, BoundsItsMarkersWithTheReachAboutThem) {
   const Prediction& found = predict();
   EXPECT_TRUE(found.in_view);
@@ -136,7 +136,7 @@ TEST_F(PredictTracks, TakesNoMarkerForNearerThanFiveCentimetres) {
   EXPECT_NEAR(found.low_px.x(), 256 - 250 * 0.01 / 0.03 - around, 1e-6);
 }
 
-// Two of three markers are before the camera.
+// Two of three markers are in front of the camera.
 TEST_F(PredictTracks, IsNotInViewWithAMarkerThatHasNoPixel) {
   tool().markers_m[2].z() = -0.6;
   place({Quaternion::Identity(), Vector3(0, 0, 0.5)});
@@ -202,7 +202,8 @@ TEST_F(PredictTracks, ReachesAsFarAsTheCovarianceSaysBetweenAFloorAndACeiling) {
   sure_within(0.0025, 1e-4);
   EXPECT_NEAR(predict().reach_m, 8 * 0.0025, 5e-4);
   sure_within(1e-5, 0.05);
-  // The marker furthest from the middle is the least sure; the bound is a fifth too wide at most.
+  // The marker furthest from the mean has the largest standard deviation. The bound is at most a
+  // fifth too large.
   const double furthest = 8 * 0.05 * (tool().markers_m[0] - tool().middle_m()).norm();
   EXPECT_GE(predict().reach_m, furthest);
   EXPECT_LE(predict().reach_m, 1.2 * furthest);
@@ -226,7 +227,7 @@ TEST_F(PredictTracks, LooksNowhereElseOnlyForAToolWhoseSpeedItKnows) {
   EXPECT_TRUE(predict().only_near);
   for (int axis = 0; axis < 3; ++axis) {
     Vector3 unsure = Vector3::Constant(0.1);
-    unsure[axis] = 0.5;  // found once: as unsure as a hand's speed is
+    unsure[axis] = 0.5;  // found once: its standard deviation is that of a hand's speed
     fast_within(unsure.x(), unsure.y(), unsure.z());
     EXPECT_FALSE(predict().only_near) << axis;
     EXPECT_TRUE(predict().follows_motion);
@@ -263,7 +264,7 @@ TEST_F(PredictTracks, CountsWhatTheHeadsetsErrorMayHaveChangedBySince) {
   HeadNoise noise;
   noise.rest_position_m = 0.01;
   noise.rest_angle_rad = 0;
-  // That a body had just taken the error away makes no difference to what comes next.
+  // A correction by a reference body just before does not change the predicted growth.
   const UncertainPose body{head_.time, {}, Matrix6::Identity() * 1e-8};
   for (int sight = 0; sight <= k_anchor_frames; ++sight) {
     head_.time = Time{} + milliseconds(1 + sight);
@@ -273,7 +274,7 @@ TEST_F(PredictTracks, CountsWhatTheHeadsetsErrorMayHaveChangedBySince) {
   EXPECT_NEAR(predict(22).covariance(0, 0) - alone, 0.107029 * 1e-4, 1e-9);
 }
 
-// A hand's speed bounds how far the tool moves in the world, not how far the world moves.
+// The hand's speed bounds the tool's motion in the world, not the drift of the world frame.
 TEST_F(PredictTracks, ReachesAsFarAsTheHeadsetMayErr) {
   head_.valid = true;
   track().base = ReferenceFrame::world;

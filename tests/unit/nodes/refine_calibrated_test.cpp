@@ -1,4 +1,4 @@
-// What calibration takes off a pose, and what it leaves open.
+// Node RefinePose: calibration corrections of a pose, and the systematic covariance that remains.
 #include "tests/unit/nodes/refine_pose_scene.hpp"
 
 namespace glint {
@@ -10,7 +10,8 @@ using test::Random;
 
 class RefineCalibrated : public test::RefinePoseTest {};
 
-// Two tools of other markers in one frame: the camera's bias, already off, is that of the first's.
+// Two tools with different markers in one frame. The camera's bias, already subtracted, is that of
+// the first tool's markers.
 TEST_F(RefineCalibrated, TakesEachToolsOwnDepthBiasInPlaceOfTheCameras) {
   Random random(21);
   constexpr double k_camera_bias_m = 0.006;
@@ -38,8 +39,8 @@ TEST_F(RefineCalibrated, TakesEachToolsOwnDepthBiasInPlaceOfTheCameras) {
   }
 }
 
-// Another tracker's points have no peak: as dimmest of all markers they would stand metres too
-// near.
+// Points of another tracker have no peak value. Treated as the markers with the lowest signal, they
+// would be metres too near.
 TEST_F(RefineCalibrated, TakesNoDepthBiasOffAPointWithoutAnImage) {
   Random random(22);
   Tool tool = test::five_marker_pen();
@@ -77,7 +78,7 @@ TEST_F(RefineCalibrated, StatesWhatCalibrationLeavesOpen) {
   EXPECT_TRUE(run_one().systematic.correlated.sum().isZero());
   node_.uncertainty.range_offset_m = 0.004;
   const FittedTool& found = run_one();
-  // Along the ray to the markers' middle, by that much less what the tool's size in pixels holds.
+  // Along the ray to the markers' mean, reduced by what the tool's size in pixels constrains.
   const Vector3 ray = (truth * tool.middle_m()).normalized();
   const Matrix3 position = found.systematic.calibration.topLeftCorner<3, 3>();
   EXPECT_GT(std::sqrt(ray.dot(position * ray)), 0.4 * 0.004);
@@ -87,7 +88,7 @@ TEST_F(RefineCalibrated, StatesWhatCalibrationLeavesOpen) {
   EXPECT_GT(run_one().systematic.correlated.sum().trace(), 0);
 }
 
-// A point without an image is another tracker's: only the tool's own geometry is left open.
+// Points without an image come from another tracker: only the tool's own geometry contributes.
 TEST_F(RefineCalibrated, KnowsNoCameraOfPointsWithoutAnImage) {
   Random random(22);
   Tool tool = test::five_marker_pen();

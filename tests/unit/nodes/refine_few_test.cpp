@@ -1,4 +1,5 @@
-// What few markers say, or few whole ones, or what had to be forgiven.
+// Node RefinePose with few markers, partially occluded or merged markers, or after an inflated
+// covariance.
 #include <numbers>
 
 #include "kernels/pose/blob_size.hpp"
@@ -30,13 +31,13 @@ TEST_F(RefineFew, BelievesThreeMarkersOnlyWhereTheMotionCanHaveBroughtTheTool) {
   foretell(tool, truth, prediction);
   EXPECT_EQ(run_one().reason, Reason::none);
   foretell(tool, aside, prediction);
-  prediction.covariance *= 100;  // long hidden
+  prediction.covariance *= 100;  // after a long occlusion
   EXPECT_EQ(run_one().reason, Reason::none);
-  prediction = {};  // it is not known how it moved
+  prediction = {};  // unknown motion
   EXPECT_EQ(run_one().reason, Reason::none);
 }
 
-// What a marker's blob covers when it is `part` of its disc, in the pinhole's pixels.
+// Area of a marker's blob that covers `part` of its disc, in pixels of the pinhole camera.
 std::uint32_t area_of(const Tool& tool, const Pose& truth, int i, double part) {
   const Vector3 point = truth * tool.markers_m[static_cast<std::size_t>(i)];
   const double radius_px = 253 * tool.marker_radius_m / point.norm() + k_rim_px;
@@ -49,7 +50,7 @@ TEST_F(RefineFew, IsLessSureOfAMarkerWhoseBlobIsLargerThanTheOthers) {
   tool.marker_radius_m = 0.0055;
   const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
   add_tool(0, tool, truth, 0, random);
-  forget(0, 4);  // of five the bad one would be left out
+  forget(0, 4);  // with five the fit would remove the bad marker
   Marker& merged = marker_of(0, 1);
   int lens_steps = 0;
   merged.centroid_px.x() += 0.6;
@@ -86,7 +87,7 @@ TEST_F(RefineFew, BelievesFewWholeMarkersOnlyWhereTheMotionCanHaveBroughtTheTool
   EXPECT_EQ(run_one().reason, Reason::none);
 }
 
-// Two that are merged with another's light, or half behind a hand, leave three of five.
+// Two of five markers are merged or half occluded, so three isolated ones remain.
 TEST_F(RefineFew, CountsNoMarkerOfAnotherSizeAsWhole) {
   Random random(19);
   Tool tool = test::five_marker_pen();

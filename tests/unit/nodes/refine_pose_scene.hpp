@@ -1,4 +1,4 @@
-// The node RefinePose among labelled markers of tools that a pinhole camera sees.
+// Test fixture: node RefinePose with labelled markers of tools that a pinhole camera sees.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,7 +22,8 @@ class RefinePoseTest : public testing::Test {
     world_->assignment.reason.fill(Reason::too_few_markers);
   }
 
-  // Tool number t, its markers seen in the reverse of their order, with noise of `share` sigmas.
+  // Tool number t; its markers are listed in reverse order, with noise of `share` standard
+  // deviations.
   void add_tool(int t, const Tool& tool, const Pose& truth, double share, Random& random) {
     const auto at = static_cast<std::size_t>(t);
     set_.count = std::max(set_.count, t + 1);
@@ -91,7 +92,7 @@ inline Vector6 error_of(const FittedTool& found, const Pose& truth, const Vector
   return error;
 }
 
-// Foretold to 3 mm and 2 degrees at the middle of the markers.
+// Prediction with 3 mm and 2 degrees at the markers' mean.
 inline void foretell(const Tool& tool, const Pose& T_camera_tool, Prediction& prediction) {
   prediction.follows_motion = true;
   prediction.T_camera_tool = T_camera_tool;

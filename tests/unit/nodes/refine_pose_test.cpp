@@ -46,12 +46,12 @@ TEST_F(RefinePose, BeatsTheRigidFitOnNoisyMarkersAndSaysHowSureItIs) {
   std::printf("  tip: %.2f mm rms, %.2f of the rigid fit's; NEES/6 %.3f\n",
               1e3 * std::sqrt(squares / k_trials), part, nees);
   EXPECT_LT(part, 0.7);
-  EXPECT_LE(left_out, 3);      // 0.3 by chi-square's tail
-  EXPECT_NEAR(nees, 1, 0.05);  // 3,000 means of six squares: 0.01, 1 sigma
+  EXPECT_LE(left_out, 3);      // 0.3 expected by the tail of chi-square
+  EXPECT_NEAR(nees, 1, 0.05);  // 3,000 means of six squares: standard deviation 0.01
 }
 
-// Markers with three times the declared noise: their residuals show it, and once the frames before
-// have shown it, the pose is as unsure as it is wrong.
+// Markers with three times the declared noise. Their residuals show it; once the noise estimate
+// contains it, the covariance is consistent with the error.
 TEST_F(RefinePose, WeighsMarkersByTheNoiseThatWasSeenAndStatesTheirResiduals) {
   Random random(31);
   const Tool tool = test::random_tool(random, 6);
@@ -80,7 +80,7 @@ TEST_F(RefinePose, WeighsMarkersByTheNoiseThatWasSeenAndStatesTheirResiduals) {
   EXPECT_NEAR((sums.range.freedom + sums.pixel.freedom) / k_trials, 3 * 6 - 6, 0.01);
 }
 
-// In metres they would be: they tell nothing of pixels.
+// Their residuals would be in metres and state nothing about pixels.
 TEST_F(RefinePose, StatesNoResidualsOfPointsWithoutAnImage) {
   Random random(32);
   const Tool tool = test::random_tool(random, 6);
@@ -99,7 +99,7 @@ TEST_F(RefinePose, LeavesOutOneBadMarkerOfFiveAndTheMaskSaysSo) {
     const Tool tool = test::random_tool(random, 6);
     const Pose truth = test::tilted_pose(tool, 0.5, k_place, random);
     add_tool(0, tool, truth, 0, random);
-    forget(0, 1);  // so that the seen markers' numbers are not the tool's
+    forget(0, 1);  // so that the indices of the visible markers differ from the tool's
     marker_of(0, bad).surface_range_m += 0.05;
     const FittedTool& found = run_one();
     ASSERT_EQ(found.reason, Reason::none) << bad;
@@ -154,7 +154,7 @@ TEST_F(RefinePose, SaysWhyAToolHasNoPoseAndGivesNone) {
     return found.reason;
   };
   add_tool(0, flat, truth, 0, random);
-  marker_of(0, 1).surface_range_m += 0.03;  // of four none can be left out
+  marker_of(0, 1).surface_range_m += 0.03;  // with four markers the fit cannot remove one
   EXPECT_EQ(reason_of(), Reason::bad_fit);
   marker_of(0, 1).surface_range_m = -1;
   EXPECT_EQ(reason_of(), Reason::out_of_range);
@@ -206,7 +206,7 @@ TEST_F(RefinePose, FitsEachToolInOneSliceAlike) {
     EXPECT_EQ(sum[loop], together[loop]) << glint::RefinePose::k_loops[loop];
   }
   EXPECT_EQ(together[1], 7);
-  EXPECT_GE(together[2], 14);  // two starts each
+  EXPECT_GE(together[2], 14);  // two initial guesses each
 }
 
 TEST_F(RefinePose, NeverRunsItsLoopsMoreOftenThanItSays) {
@@ -222,7 +222,7 @@ TEST_F(RefinePose, NeverRunsItsLoopsMoreOftenThanItSays) {
       const Tool tool = test::random_tool(random, 5 + random.below(3));
       const Pose pose = test::tilted_pose(tool, random.within(0, 1.5), k_place, random);
       add_tool(t, tool, pose, 1, random);
-      // Of every other one few are whole, and where they are is expected.
+      // In every other trial few markers are isolated and the tool has a prediction.
       const bool few = trial % 2 == 1;
       Prediction& prediction = world_->predictions.tools[static_cast<std::size_t>(t)];
       prediction = {};
@@ -244,7 +244,7 @@ TEST_F(RefinePose, NeverRunsItsLoopsMoreOftenThanItSays) {
   EXPECT_GT(most[4], worst[4] / 2);
 }
 
-// By 14 degrees from face-on, with 15 mm and 0.3 px of noise, the mirrored pose is as likely.
+// At 14 degrees from face-on, with 15 mm and 0.3 px of noise, the mirrored pose is about as likely.
 TEST_F(RefinePose, IsAmbiguousWhereTheMirroredPoseIsNearlyAsLikelyUntilTheMotionDecides) {
   Random random(21);
   const Tool tool = test::flat_tool();
@@ -261,7 +261,7 @@ TEST_F(RefinePose, IsAmbiguousWhereTheMirroredPoseIsNearlyAsLikelyUntilTheMotion
     ambiguous += run_one().ambiguous() ? 1 : 0;
     foretell(tool, truth, prediction);
     decided += run_one().ambiguous() ? 0 : 1;
-    // Followed for long, and wrongly: what is foretold is the mirrored pose.
+    // Long tracked on the wrong branch: the prediction is the mirrored pose.
     foretell(tool, depth_flipped(truth, Vector3::UnitX(), test::mean_of_markers(tool)), prediction);
     prediction.odds = 0;
     const FittedTool& wrong = run_one();
@@ -274,7 +274,7 @@ TEST_F(RefinePose, IsAmbiguousWhereTheMirroredPoseIsNearlyAsLikelyUntilTheMotion
   EXPECT_GT(apart, 0.5 * k_trials);
 }
 
-// Three markers, 14 degrees from face-on: 3 mm of noise rule the mirrored pose out, 9 mm do not.
+// Three markers at 14 degrees from face-on: noise of 3 mm rejects the mirrored pose, 9 mm does not.
 TEST_F(RefinePose, IsAmbiguousUntilTheNoiseIsKnown) {
   Random random(24);
   const Tool tool = test::flat_tool();
@@ -294,7 +294,8 @@ TEST_F(RefinePose, IsAmbiguousUntilTheNoiseIsKnown) {
   EXPECT_GT(at_first, 0.4 * k_trials);
 }
 
-// All four markers whole, but their likeliest pose is surer than their ranges.
+// All four markers are isolated, but the standard deviation of their most likely pose is below that
+// of their ranges.
 TEST_F(RefinePose, StatesOfAFlatToolFaceOnWhatItsRangesShow) {
   Random random(23);
   const Tool tool = test::flat_tool();
@@ -359,7 +360,7 @@ TEST_F(RefinePose, IsLessSureOfMarkersThatAreOffByMoreThanTheirNoise) {
   const Pose truth = test::tilted_pose(tool, 0.7, k_place, random);
   add_tool(0, tool, truth, 0, random);
   const Matrix6 sure = run_one().covariance;
-  const double off[] = {0.008, -0.007, 0.009, -0.008, 0.007};  // some five sigmas, all of them
+  const double off[] = {0.008, -0.007, 0.009, -0.008, 0.007};  // about five sigmas each
   for (int i = 0; i < tool.marker_count; ++i) marker_of(0, i).surface_range_m += off[i];
   const FittedTool& found = run_one();
   ASSERT_EQ(found.reason, Reason::none);

@@ -1,5 +1,5 @@
-// One fit of a tool against another of the same: with a marker left out or never seen, with other
-// noise, with a rival, with an expectation.
+// Metamorphic tests of RefinePose: two fits of the same tool, with a marker removed or never seen,
+// with other noise, with an alternative labeling, with a prediction.
 #include "kernels/pose/depth_flip.hpp"
 #include "kernels/pose/expected_pose.hpp"
 #include "tests/unit/nodes/refine_pose_scene.hpp"
@@ -13,7 +13,7 @@ using test::Random;
 
 class RefineRelations : public test::RefinePoseTest {
  protected:
-  // Each marker with a noise of its own.
+  // A different noise for each marker.
   void vary_noise() {
     for (int i = 0; i < set_.items[0].marker_count; ++i) {
       Marker& marker = marker_of(0, i);
@@ -28,7 +28,7 @@ class RefineRelations : public test::RefinePoseTest {
   }
 };
 
-// Whatever stands behind the bad marker in the list keeps its own weight, name and share.
+// Markers after the removed one in the list keep their weight, label and share.
 TEST_F(RefineRelations, AMarkerLeftOutIsAsOneThatWasNotSeen) {
   Random random(41);
   for (int bad = 0; bad < 6; ++bad) {
@@ -83,7 +83,8 @@ TEST_F(RefineRelations, ResidualsBeyondTheNoiseWidenThePoseBySquares) {
   EXPECT_EQ(run_one().reason, Reason::bad_fit) << "beyond four times the noise";
 }
 
-// Before the noise is known its variance may be ten times the declared: a tenth of the evidence.
+// Before the noise is estimated, its variance may be ten times the declared one: a tenth of the
+// evidence.
 TEST_F(RefineRelations, UnknownNoiseTakesOddsByTheFactorOfItsDoubt) {
   Random random(21);
   const Tool tool = test::flat_tool();
@@ -108,7 +109,7 @@ TEST_F(RefineRelations, UnknownNoiseTakesOddsByTheFactorOfItsDoubt) {
   EXPECT_GT(compared, 10);
 }
 
-// Two fits more, and no marker of the rival is left out.
+// Two more fits; no marker of the alternative labeling is removed.
 TEST_F(RefineRelations, ARivalIsFittedAndCountedBesideTheLabeling) {
   Random random(22);
   const Tool tool = test::random_tool(random, 5);
@@ -130,7 +131,7 @@ TEST_F(RefineRelations, ARivalIsFittedAndCountedBesideTheLabeling) {
   EXPECT_EQ(run_one().reason, Reason::none) << "a rival that has no pose takes nothing away";
 }
 
-// Where a rival cannot even be weighed the labeling stands alone.
+// If the alternative labeling cannot be evaluated, the labeling stands alone.
 TEST_F(RefineRelations, ARivalWithAMarkerBehindTheCameraCountsForNothing) {
   Random random(23);
   const Tool tool = test::random_tool(random, 5);
@@ -147,7 +148,7 @@ TEST_F(RefineRelations, ARivalWithAMarkerBehindTheCameraCountsForNothing) {
   EXPECT_EQ(node_.counts(), counts);
 }
 
-// One fit near where the tool is expected, of the markers that are seen.
+// One more fit, of the visible markers, linearised at the prediction.
 TEST_F(RefineRelations, AnExpectationOfFewMarkersCostsOneFitMore) {
   Random random(20);
   const Tool tool = test::five_marker_pen();
@@ -167,7 +168,7 @@ TEST_F(RefineRelations, AnExpectationOfFewMarkersCostsOneFitMore) {
 
 TEST_F(RefineRelations, FewerStepsAreTakenWhereTheyAreSet) {
   Random random(25);
-  const Tool tool = test::flat_tool();  // of four none is left out
+  const Tool tool = test::flat_tool();  // with four markers the fit removes none
   add_tool(0, tool, test::tilted_pose(tool, 0.7, k_place, random), 1, random);
   (void)run_one();
   const std::int64_t steps = node_.counts()[3];
@@ -180,7 +181,7 @@ TEST_F(RefineRelations, FewerStepsAreTakenWhereTheyAreSet) {
   EXPECT_EQ(node_.counts()[3], steps) << "no more than worst() counts on";
 }
 
-// The surprise beside what is usual is what the covariance grows by.
+// The covariance is inflated by the squared Mahalanobis distance over its expectation (6).
 TEST_F(RefineRelations, ThreeMarkersGrowUnsureByTheirSurprise) {
   Random random(17);
   Tool tool = test::five_marker_pen();
@@ -207,7 +208,7 @@ TEST_F(RefineRelations, ThreeMarkersGrowUnsureByTheirSurprise) {
   EXPECT_GT(grown, 0);
 }
 
-// Its mean error is taken off what a filter receives, too.
+// The measured mean error is subtracted from the pose for the filter as well.
 TEST_F(RefineRelations, AMeasuredMeanErrorIsTakenOffBothPoses) {
   Random random(20);
   const Tool tool = test::five_marker_pen();

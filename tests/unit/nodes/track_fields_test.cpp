@@ -1,4 +1,5 @@
-// Every field of a track after a pose, after few markers and after none, each with its own value.
+// Node TrackTools: every field of a track after a pose, with partial visibility and without
+// markers, each with a different value.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 namespace glint::track_fields_test {
 namespace {
 
-// Tool 5 of six, which is number 1 of slice 1, before a head that knows where it is.
+// Tool 5 of six, which is tool 1 of slice 1, with a known head pose.
 class TrackFields : public testing::Test {
  protected:
   static constexpr std::size_t k_tool = 5;
@@ -42,7 +43,7 @@ class TrackFields : public testing::Test {
     follow.estimate = test::random_state(random_);
     follow.noise = {1.25, 2.5};
     follow.few_mask = 0;
-    // A second pose that the first did not foretell: by how much is not its business.
+    // A second pose that differs from the prediction; the size of the difference is irrelevant.
     const ToolMotionSettings settings;
     RestSums sums;
     UncertainPose seen;
@@ -66,7 +67,7 @@ class TrackFields : public testing::Test {
           *out_);
     return out_->tracks[k_tool];
   }
-  // By one or two markers alone.
+  // A frame with one or two visible markers.
   const Track& few(std::int64_t ms, bool stands) {
     followed().reason = found().reason = Reason::too_few_markers;
     followed().few_mask = 0b10;
@@ -128,13 +129,14 @@ TEST_F(TrackFields, OfAPoseInTheCamerasFrameAreTheCameras) {
   EXPECT_TRUE(track.head_covariance.isZero());
 }
 
-// The surprise is never less than what was foretold.
+// The published NIS over its dimension is at least 1.
 TEST_F(TrackFields, OfAnExpectedPoseHaveNoSurprise) {
   followed().motion = MotionTrack{};
   EXPECT_EQ(frame(22).surprise, 1);
 }
 
-// The pose before, while it is of the same frame and recent: at the limit and just beyond.
+// The previous pose is published while it is recent and has the same base: at the limit and just
+// above it.
 TEST_F(TrackFields, OfThePoseBeforeAreThereWhileItIsRecentAndOfTheSameBase) {
   node_.settings.velocity_gap_max = milliseconds(40);
   for (const std::int64_t gap : {40, 41}) {
@@ -176,7 +178,7 @@ TEST_F(TrackFields, OfFewMarkersAreTheFiltersAndKeepWhatThreeGave) {
   EXPECT_EQ(track.motion.covariance, followed().estimate.covariance);
   EXPECT_DOUBLE_EQ(track.surprise, chi_square() / 3) << "of a point's three numbers";
   EXPECT_EQ(track.head_covariance, anchor_.now.lasting_at(followed().estimate.pose.translation));
-  // In the camera's frame the head adds nothing.
+  // In the camera frame the head adds no covariance.
   *out_ = {};
   anchor_.now.head.valid = false;
   followed().base = ReferenceFrame::camera;
@@ -213,7 +215,7 @@ TEST_F(TrackFields, GoFurtherThanTheLimitNoMore) {
   EXPECT_EQ(lost.newest.time, Time{});
 }
 
-// The world turned out to lie elsewhere; what the camera alone knows stays.
+// A correction of the world frame moves the fields in it; those of the camera stay.
 TEST_F(TrackFields, MoveAlongWithTheWorld) {
   (void)frame(22);
   const Track before = frame(44);
@@ -272,7 +274,7 @@ TEST_F(TrackFields, BeyondTheToolsAreCleared) {
   EXPECT_EQ(out_->tool_count, 4);
 }
 
-// By the whole Jacobian of turn and lever, where the kernels leave out its ones and zeros.
+// Reference: the full Jacobian of rotation and lever arm. The kernels skip its ones and zeros.
 TEST_F(TrackFields, GiveTheTipsCovarianceAboutTheCamerasAxes) {
   Track track = frame(22);
   FittedTool fit = found();

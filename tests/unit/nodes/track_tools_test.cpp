@@ -80,7 +80,7 @@ TEST_F(TrackToolsInTime, EstimatesTheNoiseFromPosesAndFromNothingElse) {
   EXPECT_TRUE(out_->noise.known) << "and what was known stays";
 }
 
-// With it every pose may be imprecise.
+// With so large a noise estimate every pose may be `imprecise`.
 TEST_F(TrackToolsInTime, ComesBackFromTooLargeANoise) {
   (*fitted_)[0].tools[0].residuals = {{4e-4, 1}, {4, 4}};
   for (int i = 0; i < 1000; ++i) (void)found();
@@ -130,13 +130,13 @@ TEST_F(TrackToolsInTime, FollowsAnAmbiguousPoseWithoutGivingItOut) {
   const Track settled = found();
   EXPECT_TRUE(settled.seen_now);
   EXPECT_FALSE(settled.doubted);
-  // A tool with settled odds is predicted while a frame is ambiguous ...
+  // A tool with a settled hypothesis is predicted through an ambiguous frame ...
   fit.odds = 5;
   followed().ambiguous = true;
   const Track again = found(false);
   EXPECT_FALSE(again.doubted || again.seen_now);
   EXPECT_EQ(again.newest.time, settled.newest.time);
-  // ... but not where it turned out to be the other one.
+  // ... but not if the other hypothesis was chosen.
   fit.turned = true;
   EXPECT_TRUE(found(false).doubted);
 }
