@@ -1,4 +1,4 @@
-// Deadlines, rows and frames of an assessment, each by itself.
+// Parts of a schedule's assessment, each by itself: deadlines, rows and frames.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -13,7 +13,7 @@ using test::k_ms;
 using test::k_us;
 using test::small_question;
 
-// Each deadline at its bound, then 1 us below it: one line names what is late.
+// Each deadline at its bound, then 1 us below it: exactly one line names what misses its deadline.
 TEST(Assessment, HoldsUpToEachDeadlineAndNamesWhatIsLateBeyond) {
   const Question question = small_question();
   const Assessment within = assess(question);
@@ -53,7 +53,8 @@ TEST(Assessment, HoldsUpToEachDeadlineAndNamesWhatIsLateBeyond) {
   }
 }
 
-// Of each group the rows are the whole response but for its jitter; two cores wake up twice.
+// The rows of a group add up to its response without the jitter. A group on two cores has two
+// wake-ups.
 TEST(Assessment, SplitsEachResponseIntoItsRowsOnTwoCores) {
   Question question = small_question();
   question.model.cores = 2;
@@ -94,7 +95,7 @@ TEST(Assessment, TakesTheFirstWriteAloneForFrameToCanAndNoneWhereNoneIsWritten) 
   }
 }
 
-// Own frames at the tick's rate carry poses; of these the slowest counts.
+// Own frames at the tick's rate carry poses. The slowest of them determines the bound.
 TEST(Assessment, EndsTheChainWithTheSlowestFrameThatCarriesAPose) {
   Question question = small_question();
   const Assessment alone = assess(question);
@@ -115,7 +116,7 @@ TEST(Assessment, EndsTheChainWithTheSlowestFrameThatCarriesAPose) {
   EXPECT_EQ(bus_ns(more), *more.can[1].response_ns - tick_ns);
   EXPECT_LT(bus_ns(more), *more.can[0].response_ns - tick_ns) << "the heartbeat is slower";
   EXPECT_GT(bus_ns(more), bus_ns(alone)) << "one frame more goes ahead";
-  // A second pose frame, shorter and less urgent: it waits for the first one, too.
+  // A second pose frame, shorter and of lower priority: it waits for the first as well.
   CanMessage second = rare;
   second.name = "buttons";
   second.identifier = 0x1A4;
@@ -156,7 +157,7 @@ TEST(Assessment, HasNoChainToABusThatIsFull) {
   EXPECT_EQ(found.chains[0].name, "frame_to_can");
 }
 
-// What the tick sends comes as late as the tick; what others send does not.
+// The tick's response is jitter of the frames that the tick sends, and of no others.
 TEST(Assessment, AddsTheTicksResponseToTheJitterOfItsOwnFramesAlone) {
   Question question = small_question();
   question.frames[0].jitter_ns = 7 * k_us;

@@ -24,12 +24,12 @@ TEST(Assessment, AddsEachStageOnceAndKeepsEstimatesApart) {
   }
   EXPECT_EQ(to_can.total_ns, sum);
   EXPECT_EQ(to_can.estimate_ns, estimates);
-  // Frame: 100 us of nodes and one tick of 50. The tick: 50.
+  // Frame group: 100 us of nodes and one tick of 50 us. Tick group: 50 us.
   EXPECT_EQ(to_can.stages[1].ns, 150 * k_us);
   EXPECT_EQ(to_can.stages[3].ns, 4 * k_ms);
   EXPECT_EQ(to_can.stages[5].ns, 50 * k_us);
-  // Estimates: waking 20, the tick's two writes of 5 and one interrupt of 2 while the frame group
-  // runs; waking 20, an interrupt of 2, a write of 5.
+  // Estimates for the frame group: wake-up 20, two writes of the tick of 5 each, one interrupt
+  // of 2. Of the tick group: wake-up 20, interrupt 2, write 5.
   EXPECT_EQ(to_can.stages[0].ns, 20 * k_us);
   EXPECT_EQ(to_can.stages[2].ns, 12 * k_us);
   EXPECT_EQ(to_can.estimate_ns, (20 + 12 + 20 + 2 + 5) * k_us);
@@ -42,7 +42,7 @@ TEST(Assessment, GivesReactionTimeAndDataAgeFromMidExposureToTheLastBit) {
   EXPECT_EQ(to_bus.stages[0].ns, 1 * k_ms);
   EXPECT_EQ(to_bus.stages[1].ns, 8 * k_ms);
   EXPECT_EQ(to_bus.stages[2].ns, 400 * k_us);
-  // Its own 135 bits, the other node's 135 in front of them and one that began before.
+  // Its own 135 bits, 135 of the other node before it, and one frame that began earlier.
   EXPECT_EQ(to_bus.stages.back().ns, 270 * k_us);
   EXPECT_EQ(to_bus.maximum_reaction_time_ns, to_bus.total_ns + 20 * k_ms);
   EXPECT_EQ(to_bus.maximum_data_age_ns, to_bus.total_ns + 16 * k_ms);
@@ -64,20 +64,20 @@ TEST(Sensitivity, FindsTheFactorThatAnIndependentSearchFinds) {
   Question question = small_question();
   question.model.system = {};
   question.model.groups[0].deadline_ns = 1 * k_ms;
-  // The frame group: 400 us of jitter, 50 of the tick; 600 - 50 are left for 100 us of nodes.
+  // Frame group: 400 us of jitter and 50 of the tick. 600 - 50 us remain for 100 us of nodes.
   const auto group = largest_factor(question, [](std::size_t g, std::size_t) { return g == 0; });
   ASSERT_TRUE(group);
   EXPECT_NEAR(*group, 5.5, 0.001);
   EXPECT_NEAR(slack_percent(*group), 450, 0.1);
-  // One node of 60 us alone: 600 - 50 - 40 are left.
+  // One node of 60 us alone: 600 - 50 - 40 us remain.
   const auto node =
       largest_factor(question, [](std::size_t g, std::size_t n) { return g == 0 && n == 0; });
   EXPECT_NEAR(*node, 510.0 / 60, 0.001);
-  // Everything: 600 / 150.
+  // All nodes: 600 / 150.
   const auto all = largest_factor(
       question, [](std::size_t, std::size_t) { return true; }, true);
   EXPECT_NEAR(*all, 4.0, 0.001);
-  // What was found holds, a little more does not.
+  // The returned factor holds; a slightly larger one does not.
   for (const double factor : {*all, *all * 1.001}) {
     Question scaled_question = question;
     scaled_question.model = scaled(
@@ -97,8 +97,8 @@ TEST(Sensitivity, IsNegativeWhereADeadlineIsMissedAndNoneWhereNothingHelps) {
   EXPECT_FALSE(largest_factor(question, [](std::size_t, std::size_t) { return true; }));
 }
 
-// A chain by brute force: frames arrive and ticks come at any phase, every group takes its
-// response; no pose is later on the wire than the bound, none is sent that is older than its age.
+// Chain by brute force: frames and ticks have any phase, and each group takes its worst-case
+// response. No pose reaches the bus after the bound, and none is older than the maximum data age.
 TEST(Assessment, NoPhaseOfFramesAndTicksIsLaterThanTheChainsBounds) {
   Question question = small_question();
   question.model.system = {};
@@ -110,7 +110,7 @@ TEST(Assessment, NoPhaseOfFramesAndTicksIsLaterThanTheChainsBounds) {
     const auto published = [&](int n) {
       return phase + n * 20 * k_ms + 1 * k_ms + 8 * k_ms + 400 * k_us + frame_ns;
     };
-    // Tick k looks at 4k; a frame that is published at that very moment has just missed it.
+    // Tick k reads at 4k ms. A frame published at exactly that time misses it.
     const auto first_tick = [&](int n) { return (published(n) / (4 * k_ms) + 1) * 4 * k_ms; };
     const std::int64_t mid = phase + 0;
     const std::int64_t wire = tick_ns + 270 * k_us;

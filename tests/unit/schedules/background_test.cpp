@@ -1,5 +1,5 @@
-// A third group that runs in slices: lowest whatever its deadline, placed where it blocks least,
-// seen in responses, stages and slack.
+// Background group that runs in slices: lowest priority whatever its deadline, allocated to the
+// core where it blocks least; its effect on responses, stages and slack.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ TEST(BackgroundPlan, IsOptimalForEachOfThreeGroupsOnOneCoreAndOnSeveral) {
   }
 }
 
-// Two nodes that could run side by side, but there is one thread for what runs in slices.
+// The two nodes are independent, but one thread runs all slices.
 TEST(BackgroundPlan, KeepsASlicesNodesOnOneCore) {
   TaskModel model = three_groups(2);
   TaskNode second = model.groups[k_background].nodes[0];
@@ -105,8 +105,8 @@ TEST(BackgroundPlan, IsRefusedWithSlicesAboveAnotherGroup) {
             "slices gives way");
 }
 
-// The frame group uses both cores, so that its response is the same wherever the slices are. Where
-// it is the tightest, the tick, less tight, decides.
+// The frame group uses both cores, so its response does not depend on the slices' core. The tick
+// decides even where the frame group has less slack.
 TEST(BackgroundPlan, PutsSlicesOnTheCoreWhereTheTickDoesNotRun) {
   TaskModel model = three_groups(2);
   for (const std::int64_t frame_deadline : {22'222 * k_us, 800 * k_us}) {
@@ -178,7 +178,7 @@ TEST(BackgroundSlack, EndsWhereALongerSliceMakesAGroupLate) {
   const Grows slices = [](std::size_t group, std::size_t) { return group == k_background; };
   const auto factor = largest_factor(question, slices);
   ASSERT_TRUE(factor);
-  // The tick's 4 ms less its own 50 us are what a slice of 300 us may grow to.
+  // A slice of 300 us may grow to the tick's 4 ms minus its own 50 us.
   EXPECT_NEAR(*factor, 3'950.0 / 300, 0.01);
   question.model = scaled(question.model, *factor * 1.001, slices);
   EXPECT_FALSE(assess(question).holds());
@@ -201,7 +201,7 @@ TEST(BackgroundSlack, TakesASliceOfSeveralNodesForLongerWithAnyAndShorterOnlyWit
   EXPECT_EQ(slice(0.5, true), 100);
 }
 
-// Slices that cannot be interrupted at all: the worst that blocking stands for.
+// Slices that cannot be preempted at all: the worst case of blocking.
 TEST(BackgroundResponse, OfNoGroupIsExceededInAThousandSimulatedSets) {
   std::mt19937_64 random(22);
   double closest = 0;

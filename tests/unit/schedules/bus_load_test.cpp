@@ -16,7 +16,8 @@ void append(Bits& bits, std::uint64_t value, int width) {
   for (int i = width; i-- > 0;) bits.push_back((value >> i & 1U) != 0);
 }
 
-// Stuff bits that a bus really inserts: after five equal bits the opposite one, which counts on.
+// Stuff bits that the bus inserts: after five equal bits the opposite one, which counts for the
+// next.
 int stuffing_of(const Bits& bits) {
   int inserted = 0;
   int run = 0;
@@ -43,7 +44,7 @@ std::uint64_t crc15(const Bits& bits) {
   return crc;
 }
 
-// The whole of a classic frame with an 11-bit identifier, bit by bit.
+// Length of a classic frame with an 11-bit identifier, bit by bit.
 int classic_length(std::uint32_t identifier, const std::vector<std::uint8_t>& data) {
   Bits bits;
   append(bits, 0, 1);
@@ -78,7 +79,7 @@ TEST(BusLoad, NoClassicFrameIsLongerThanItsBound) {
   }
 }
 
-// The pattern that stuffs most: five equal bits, then four of the other kind, and so on.
+// Worst case of bit stuffing: five equal bits, then four of the other value, and so on.
 Bits hardest(int count) {
   Bits bits;
   bool value = false;
@@ -106,7 +107,7 @@ TEST(BusLoad, CountsBothPhasesOfAnFdFrame) {
   EXPECT_EQ(step, 32 + 8 + 4 + 1);
 }
 
-// Each length and kind of identifier; the fields as ISO 11898-1 counts them.
+// Every length and both kinds of identifier; fields as in ISO 11898-1.
 TEST(BusLoad, CountsEveryFieldOfFramesOfAnyLengthAndIdentifier) {
   for (const bool extended : {false, true}) {
     const int classic = extended ? 54 : 34, arbitration = extended ? 36 : 17;
@@ -141,7 +142,7 @@ TEST(BusLoad, TakesALengthThatNoFrameHasForTheNearest) {
   }
 }
 
-// Poses at the tick rate, ten heartbeats of one byte and two time frames of eight a second.
+// A second: poses at the tick rate, ten heartbeats of one byte, two time frames of eight bytes.
 TEST(BusLoad, AddsUpEveryFrameOfASecond) {
   for (const CanFormat format : {CanFormat::classic, CanFormat::fd}) {
     const bool fd = format == CanFormat::fd;
@@ -196,12 +197,12 @@ TEST(BusLoad, RefusesSixteenToolsInClassicFrames) {
 }
 
 TEST(BusLoad, StatesWhatIsNeededAndWhatWouldHelp) {
-  // 32 poses of 675 bits, and 920 bits of the node's own, a second.
+  // 32 poses of 675 bits a second, and 920 bits of the node's own.
   EXPECT_EQ(check_bus_load({16, 2, CanFormat::classic}, {10e3, 4e6}).value_or(""),
             "CAN: 16 tools at 2 Hz in classic frames need 225 % of the bus (1126.0 ms of each "
             "tick's 500.0 ms); expected at most 100 %: fewer tools, a lower tick_hz, a higher bit "
             "rate or FD frames");
-  // 36 bits at 25 kbit/s and 678 at 1 Mbit/s make 2.118 ms; the node's own frames 37 ms a second.
+  // 36 bits at 25 kbit/s and 678 at 1 Mbit/s take 2.118 ms; the node's own frames 37 ms a second.
   EXPECT_EQ(check_bus_load({1, 500, CanFormat::fd}, {25e3, 1e6}).value_or(""),
             "CAN: 1 tool at 500 Hz in FD frames need 110 % of the bus (2.2 ms of each tick's 2.0 "
             "ms); expected at most 100 %: fewer tools, a lower tick_hz, a higher bit rate");
@@ -216,7 +217,7 @@ TEST(BusLoad, RefusesABitRateOfZeroOrLess) {
     EXPECT_EQ(check_bus_load({1, 250, CanFormat::fd}, {1e6, rate}), complaint);
     EXPECT_FALSE(check_bus_load({1, 250, CanFormat::classic}, {1e6, rate}));
   }
-  // Any other is a rate, if too low a one.
+  // Any other value is a valid rate, even if too low.
   EXPECT_NE(check_bus_load({1, 250, CanFormat::classic}, {0.5, 4e6}), complaint);
   EXPECT_NE(check_bus_load({1, 250, CanFormat::fd}, {1e6, 0.5}), complaint);
 }

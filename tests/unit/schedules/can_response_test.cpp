@@ -32,8 +32,8 @@ TEST(CanResponse, OfDavis2007sThreeMessagesAre2And3And3AndAHalfMilliseconds) {
   EXPECT_EQ(found[0].frame_ns, 1 * k_ms);
   EXPECT_EQ(found[0].response_ns, 2 * k_ms);
   EXPECT_EQ(found[1].response_ns, 3 * k_ms);
-  // The first of C's frames takes 3 ms; the original analysis stopped there. The second takes more
-  // than its deadline of 3.25 ms.
+  // C's first frame takes 3 ms, where the original analysis stopped. Its second one exceeds its
+  // deadline of 3.25 ms.
   EXPECT_EQ(found[2].response_ns, 3'500'000);
 }
 
@@ -51,7 +51,7 @@ TEST(CanResponse, AFifoDelaysAnUrgentFrameByAllThatMayStandBeforeIt) {
   for (CanMessage& message : messages) message.period_ns = message.deadline_ns = 20 * k_ms;
   messages[0].node = messages[1].node = messages[2].node = 7;
   const auto by_priority = can_responses(messages, {.nominal = 125e3});
-  EXPECT_EQ(by_priority[0].response_ns, 2 * k_ms);  // one frame of any kind, then its own
+  EXPECT_EQ(by_priority[0].response_ns, 2 * k_ms);  // one frame of any priority, then its own
   for (CanMessage& message : messages) message.fifo = true;
   const auto queued = can_responses(messages, {.nominal = 125e3});
   EXPECT_EQ(queued[0].response_ns, 3 * k_ms);
@@ -59,7 +59,8 @@ TEST(CanResponse, AFifoDelaysAnUrgentFrameByAllThatMayStandBeforeIt) {
   EXPECT_EQ(queued[0].queued_ns, 2 * k_ms);
 }
 
-// Its frames come twice as often as another node's may hold the bus: each once, a first in 3 ms.
+// The FIFO's frames are queued at twice the rate at which another node's frames may hold the bus.
+// Each waits for at most one of every other: response within 3 ms.
 TEST(CanResponse, AFifoThatFillsMostOfTheBusHasABound) {
   std::vector<CanMessage> messages = davis_2007();
   messages[0].period_ns = 20 * k_ms;
@@ -107,8 +108,8 @@ TEST(CanResponse, HasNoBoundOnAnOverloadedBus) {
   }
 }
 
-// At 125 kbit/s each frame takes 1 ms, a bit 8 us. All of a queue count at the level of B, its
-// least urgent; C blocks, D goes ahead of both whenever it comes.
+// At 125 kbit/s a frame takes 1 ms, a bit 8 us. All frames of a FIFO have the priority of B, its
+// lowest. C blocks; D precedes both at every release.
 TEST(CanResponse, OfAQueueCountsWhatIsMoreUrgentThanItsLeastUrgentFrame) {
   std::vector<CanMessage> messages = davis_2007();
   messages.push_back(messages[0]);
@@ -125,13 +126,13 @@ TEST(CanResponse, OfAQueueCountsWhatIsMoreUrgentThanItsLeastUrgentFrame) {
     return can_responses(messages, {.nominal = 125e3});
   };
   for (const std::size_t m : {0U, 1U}) {
-    // C, D, the other, its own; and where D comes every 3 ms, D again.
+    // C, D, the other frame of the queue, its own; with D every 3 ms, D again.
     EXPECT_EQ(found(4 * k_ms, 0)[m].response_ns, 4 * k_ms) << m;
     EXPECT_EQ(found(3 * k_ms, 0)[m].response_ns, 5 * k_ms) << m;
     EXPECT_EQ(found(3 * k_ms, 0)[m].queued_ns, 4 * k_ms) << m;
     EXPECT_EQ(found(4 * k_ms, 2 * k_ms)[m].response_ns, (m == 0 ? 6 : 4) * k_ms) << "its own";
   }
-  // D waits for one frame that began, and for A once, early by what it may wait behind B.
+  // D waits for one frame that began, and for A once. A's jitter is its wait behind B.
   EXPECT_EQ(found(20 * k_ms, 0)[3].response_ns, 3 * k_ms);
   EXPECT_EQ(found(20 * k_ms, 0)[3].queued_ns, 0);
 }
@@ -152,8 +153,8 @@ TEST(CanResponse, AQueuesWaitBringsItsFramesCloserTogether) {
   messages[0].period_ns = 5 * k_ms;
   messages[0].node = messages[1].node = 7;
   messages[0].fifo = messages[1].fifo = true;
-  // Either queued frame waits for one of C and the other of the queue: 2 ms. C begins after 2 ms;
-  // A comes again after 5 - 2 ms at the earliest, and after 2 ms where its period is 4 ms.
+  // Each queued frame waits for one of C and for the other of the queue: 2 ms. C begins after 2 ms;
+  // A is released again after 5 - 2 ms at the earliest, or after 2 ms with a period of 4 ms.
   auto found = can_responses(messages, {.nominal = 125e3});
   EXPECT_EQ(found[0].queued_ns, 2 * k_ms);
   EXPECT_EQ(found[2].response_ns, 3 * k_ms);
@@ -163,7 +164,8 @@ TEST(CanResponse, AQueuesWaitBringsItsFramesCloserTogether) {
   EXPECT_EQ(found[2].response_ns, 4 * k_ms) << "a second A within the bit after which C begins";
 }
 
-// Which of two that share an identifier wins is left open: each may go ahead of the other.
+// Two nodes share an identifier: arbitration between them is undefined, so each may delay the
+// other.
 TEST(CanResponse, AnIdentifierThatTwoNodesUseDelaysEither) {
   std::vector<CanMessage> messages = davis_2007();
   for (CanMessage& message : messages) {
@@ -209,7 +211,7 @@ TEST(CanResponse, HasABoundAtFullLoad) {
   EXPECT_EQ(none[1].frame_ns, 1 * k_ms) << "its length is stated all the same";
 }
 
-// A frame that holds the bus for longer than any busy period that is looked at.
+// One frame occupies the bus for longer than the longest busy period that the analysis examines.
 TEST(CanResponse, OfNoFrameIsBoundedWhereOneHasNoBound) {
   for (const bool fifo : {false, true}) {
     std::vector<CanMessage> messages = davis_2007();
@@ -222,7 +224,7 @@ TEST(CanResponse, OfNoFrameIsBoundedWhereOneHasNoBound) {
     EXPECT_EQ(found[0].frame_ns, 101'000 * k_ms);
     EXPECT_EQ(found[2].frame_ns, 1 * k_ms);
   }
-  // The last one's releases may all come at once; the others would have a bound.
+  // The last message's releases may all come at once; without it the others have a bound.
   for (const bool fifo : {false, true}) {
     std::vector<CanMessage> messages = davis_2007();
     for (CanMessage& message : messages) message.period_ns = 20 * k_ms;
@@ -236,8 +238,8 @@ TEST(CanResponse, OfNoFrameIsBoundedWhereOneHasNoBound) {
   EXPECT_TRUE(can_responses({}, {}).empty());
 }
 
-// The bits that two frames put on the bus, SOF and stuffing apart: the first that differs decides,
-// and 0 wins.
+// Arbitration fields of two frames without SOF and stuff bits: the first differing bit decides, and
+// 0 wins.
 TEST(CanResponse, OrdersIdentifiersAsArbitrationDoes) {
   std::mt19937 random(11898);
   const auto on_the_bus = [](const CanMessage& message) {

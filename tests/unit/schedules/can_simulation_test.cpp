@@ -1,4 +1,5 @@
-// CAN bounds against the simulation of random message sets, one node of each with a FIFO.
+// Worst-case CAN response times against a simulation of random message sets; one node of each set
+// has a FIFO.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -54,8 +55,8 @@ TEST(CanSimulation, NoResponseOfAThousandMessageSetsIsAboveItsBound) {
     ++set;
     std::vector<std::int64_t> worst(messages.size(), 0);
     for (int run = 0; run < 6; ++run) {
-      // Half of the runs begin with all frames together and as late as can be, just after one of
-      // the longest began.
+      // Half of the runs start at the critical instant: all frames together with maximum jitter,
+      // just after one of the longest frames began.
       const bool together = run % 2 == 0;
       std::vector<std::int64_t> first(messages.size());
       const std::size_t early = random() % messages.size();
@@ -79,7 +80,7 @@ TEST(CanSimulation, NoResponseOfAThousandMessageSetsIsAboveItsBound) {
       ++judged;
       with_fifo += messages[m].fifo ? 1 : 0;
       above += worst[m] > *bounds[m].response_ns ? 1 : 0;
-      // The frame that blocks began a nanosecond before.
+      // The blocking frame began a nanosecond earlier.
       reached += worst[m] >= *bounds[m].response_ns - 1 ? 1 : 0;
       near_bound += double(worst[m]) >= 0.9 * double(*bounds[m].response_ns) ? 1 : 0;
       ratios.push_back(double(*bounds[m].response_ns) / double(worst[m]));

@@ -1,5 +1,5 @@
-// A CAN bus, frame by frame: nodes with priority queues or first-in first-out queues, arbitration
-// among what they offer. It knows no formula.
+// CAN bus simulation, frame by frame: nodes with priority or FIFO queues, and arbitration among the
+// heads of the queues. Independent of the analysis.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,9 @@
 
 namespace glint {
 
-// `first[m]` is frame m's first nominal release; `late(m, n)` its lateness (0..jitter); frames take
-// `length(m, n)`. Gives each frame's longest response from its nominal release.
+// `first[m]` is message m's first nominal release, `late(m, n)` the jitter of its release n,
+// `length(m, n)` the duration of a frame. Returns each message's longest response from its nominal
+// release.
 template <class Late, class Length>
 std::vector<std::int64_t> simulate_bus(const std::vector<CanMessage>& messages,
                                        const std::vector<std::int64_t>& first, std::int64_t until,
@@ -29,7 +30,7 @@ std::vector<std::int64_t> simulate_bus(const std::vector<CanMessage>& messages,
 
   const auto let_in = [&](std::int64_t now) {
     for (;;) {
-      // In the order of arrival; of those that come together, as they stand.
+      // In order of arrival; simultaneous arrivals in the order of the list.
       const auto next = std::min_element(arrival.begin(), arrival.end());
       if (*next > now) return;
       const auto m = static_cast<std::size_t>(next - arrival.begin());
@@ -51,7 +52,7 @@ std::vector<std::int64_t> simulate_bus(const std::vector<CanMessage>& messages,
       if (queue.empty()) continue;
       auto offered = queue.begin();
       if (!messages[offered->message].fifo) {
-        // The most urgent; of one identifier the oldest.
+        // Highest priority; of equal identifiers the oldest.
         for (auto other = queue.begin(); other != queue.end(); ++other) {
           if (more_urgent(*other, *offered)) offered = other;
         }

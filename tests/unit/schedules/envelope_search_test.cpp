@@ -1,4 +1,4 @@
-// How the search for an envelope ends: pivots, stalls, scales, and the weights that it minimises.
+// Simplex search for a cost envelope: pivots, stalls, scaling, and the weights of its objective.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ TEST(EnvelopeSearch, EndsWithAFaultAfterThePivotsThatItIsGiven) {
   const Envelope found = fit_envelope(problem);
   ASSERT_TRUE(found);
   ASSERT_GT(found.pivots, 2);
-  problem.pivots_max = found.pivots + 1;  // the last look finds nothing to improve
+  problem.pivots_max = found.pivots + 1;  // the last step finds no improvement
   EXPECT_EQ(fit_envelope(problem).fault, EnvelopeFault::none);
   EXPECT_EQ(fit_envelope(problem).cost, found.cost);
   problem.pivots_max = found.pivots;
@@ -50,7 +50,8 @@ TEST(EnvelopeSearch, EndsWithAFaultAfterThePivotsThatItIsGiven) {
   EXPECT_EQ(cut.cost, (decltype(cut.cost){})) << "costs of no optimum are none";
 }
 
-// Weights of one loop alone: most pivots gain nothing. Both rules end, at one bound.
+// The objective weights one loop alone, so most pivots are degenerate. Both pivot rules end at the
+// same bound.
 TEST(EnvelopeSearch, EndsAtTheSameBoundByBlandsRule) {
   std::mt19937 random(6);
   for (int trial = 0; trial < 30; ++trial) {
@@ -87,7 +88,7 @@ TEST(EnvelopeSearch, OfCallsThatCostNothingIsNothing) {
   EXPECT_EQ(envelope.cost, (decltype(envelope.cost){}));
 }
 
-// Seconds in place of nanoseconds, and counts or weights a million times as large.
+// Seconds instead of nanoseconds, and counts or weights a million times as large.
 TEST(EnvelopeSearch, DoesNotDependOnAnyUnit) {
   std::mt19937 random(9);
   const std::vector<ObservedCall> calls = random_calls(random, 100);
@@ -125,7 +126,7 @@ TEST(EnvelopeSearch, UsesNoLoopBeyondItsOwn) {
   EXPECT_EQ(envelope.cost[2], 0);
 }
 
-// Of calls the mean of counts over cost, of sizes the sum.
+// From calls: the mean of counts over cost. From problem sizes: the sum.
 TEST(BalancedWeights, AreShareOfCostAtSizesAndOnAverageAtCalls) {
   const std::vector<ObservedCall> calls = {
       {{{1, 8}}, 4}, {{{1, 6}}, 2}, {{{1, 100}}, 0}, {{{1, 100}}, -1}};

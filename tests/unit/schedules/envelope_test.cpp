@@ -16,7 +16,7 @@ double bound_of(const Envelope& envelope, const EnvelopeProblem& problem) {
   return sum;
 }
 
-// Calls whose cost is exactly the counts times these costs.
+// Calls whose cost is exactly the scalar product of their counts and these costs.
 std::vector<ObservedCall> exact_calls(int how_many, double call, double run, double pixel) {
   std::mt19937 random(1);
   std::vector<ObservedCall> calls;
@@ -40,8 +40,8 @@ TEST(Envelope, FindsTheCostsThatCallsWereMadeFrom) {
   EXPECT_NEAR(envelope.cost[2], 0.25, 1e-6);
 }
 
-// Either loop can carry the call's cost: the first is a little dearer for the large problem, the
-// second ten times as dear for the small one.
+// Either loop can carry the call's cost. The first is slightly more expensive for the large
+// problem, the second ten times as expensive for the small one.
 TEST(Envelope, ASmallProblemsBoundCountsAsMuchAsALargeOnes) {
   const std::array<ObservedCall, 1> calls = {{{{{1, 1}}, 1}}};
   const std::array<ProblemSize, 2> sizes = {{{{{1000, 980}}, 1000}, {{{1, 10}}, 1}}};

@@ -13,7 +13,7 @@
 namespace glint::exact_schedule_test {
 namespace {
 
-// Every assignment to cores and every order on each, by hand and without any bound.
+// Exhaustive reference: every allocation to cores and every order on each, without pruning.
 std::int64_t brute_force(const TaskGroup& group, int cores, std::int64_t handover) {
   std::int64_t best = INT64_MAX;
   std::vector<int> sequence(group.nodes.size());
@@ -39,7 +39,7 @@ std::int64_t brute_force(const TaskGroup& group, int cores, std::int64_t handove
 TEST(ExactSchedule, AgreesWithBruteForceOnSmallGraphs) {
   std::mt19937_64 random(1974);
   for (int i = 0; i < test::repetitions(240, 48); ++i) {
-    // Few different bounds: many nodes look alike, and must not be taken for copies.
+    // Few distinct bounds: many nodes look equal but must not be treated as copies.
     const TaskGroup group = random_group(random, 3 + i % 3, 15 + 15 * (i % 4), i % 2 == 0 ? 2 : 9);
     const std::int64_t handover = i % 3 * 3;
     const int cores = 2 + i % 2;
@@ -68,7 +68,7 @@ TEST(ExactSchedule, IsNeverLongerThanTheList) {
     EXPECT_LE(found.least_possible_ns, found.makespan_ns);
     shorter += found.makespan_ns < list ? 1 : 0;
   }
-  EXPECT_GT(shorter, 0);  // otherwise the search would be of no use
+  EXPECT_GT(shorter, 0);  // otherwise the search would gain nothing
   std::printf("shorter than the list in %d of 300\n", shorter);
 }
 
@@ -100,8 +100,8 @@ TEST(ExactSchedule, SaysHowFarFromTheOptimumItMayBeWhereTheSearchIsCut) {
   EXPECT_TRUE(cut.optimal || cut.least_possible_ns < cut.makespan_ns);
 }
 
-// Copies one, two: the second beside the first or behind it. Behind it, and with a third copy, no
-// sequence is better than the list's; of cores that are untouched the first alone is tried.
+// Symmetry breaking. Copy two runs beside copy one or after it; after it, and with a third copy, no
+// sequence beats the list schedule. Of the empty cores only the first is tried.
 TEST(ExactSchedule, TriesEqualNodesInOneOrderAndOneOfTheUntouchedCores) {
   const auto searched = [](int copies, int cores) {
     return exact_schedule(staged_group({{"Copy", copies, 10}}), cores, 0).searched;
@@ -122,7 +122,7 @@ TEST(ExactSchedule, TakesNodesThatReadTheSameInAnyOrderForCopies) {
   EXPECT_GT(searched({0}), searched({0, 1}));
 }
 
-// Four sequences as above, then the search was exhausted, if a fifth was allowed.
+// Four sequences as above. A fifth step, if allowed, finds the search exhausted.
 TEST(ExactSchedule, ProvesTheOptimumByAnExhaustedSearchAlone) {
   const TaskGroup group = staged_group({{"Copy", 3, 10}});
   for (const std::int64_t allowed : {1, 3, 4, 5, 100}) {
@@ -144,8 +144,8 @@ TEST(ExactSchedule, KeepsToOneCoreWhereHandingOverCostsMoreThanItGains) {
 }
 
 TEST(MakespanBound, NoOptimumIsBelowIt) {
-  // One node, three copies on two cores, one node: the copies need two rounds, or three with none
-  // handed over.
+  // One node, three copies on two cores, one node. The copies need two rounds, or three on one
+  // core.
   const TaskGroup group = staged_group({{"A", 1, 10}, {"B", 3, 10}, {"C", 1, 10}});
   EXPECT_EQ(least_between(30, 2, 0), 15);
   EXPECT_EQ(least_between(30, 2, 5), 20);
@@ -153,7 +153,7 @@ TEST(MakespanBound, NoOptimumIsBelowIt) {
   EXPECT_EQ(least_makespan(group, 2, 0), 35);
   EXPECT_EQ(least_makespan(group, 2, 5), 40);
   EXPECT_EQ(least_makespan(group, 1, 5), 50);
-  // Without a path between them the work alone counts, rounded up.
+  // Without a precedence path only the work counts, rounded up.
   EXPECT_EQ(least_makespan(staged_group({{"Copy", 5, 7}}), 2, 5), 18);
   EXPECT_EQ(least_makespan(staged_group({{"Copy", 2, 7}}), 4, 5), 7);
 }

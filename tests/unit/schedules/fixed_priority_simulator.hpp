@@ -1,5 +1,5 @@
-// One core, preemptive fixed priorities, event by event: what the analysis is held against. It
-// knows no formula: it only ever runs the most urgent work that is there.
+// Event simulation of one core with preemptive fixed priorities, the reference for the
+// response-time analysis and independent of it.
 #pragma once
 
 #include <algorithm>
@@ -12,14 +12,14 @@ namespace glint {
 struct SimulatedTask {
   std::int64_t cost = 0;
   std::int64_t period = 0;
-  std::int64_t jitter = 0;  // largest
-  std::int64_t slice = 0;   // once running it cannot be preempted for so long; 0: at once
+  std::int64_t jitter = 0;  // maximum
+  std::int64_t slice = 0;   // non-preemptive time from each start; 0: preemptive
   std::int64_t first = 0;   // nominal time of the first release
 };
 
-// Tasks in order of urgency, most urgent first. `late(task, n)` says by how much release n comes
-// after its nominal time (0..jitter), `cost(task, n)` what it takes. Gives each task's longest
-// response, from the nominal release, of all activations that ended before `until`.
+// `tasks` are in order of decreasing priority. `late(task, n)` is the jitter of release n
+// (0..jitter), `cost(task, n)` its execution time. Returns each task's longest response from the
+// nominal release, over all activations that end before `until`.
 template <class Late, class Cost>
 std::vector<std::int64_t> simulate(const std::vector<SimulatedTask>& tasks, std::int64_t until,
                                    Late late, Cost cost) {
@@ -40,7 +40,7 @@ std::vector<std::int64_t> simulate(const std::vector<SimulatedTask>& tasks, std:
       while (arrival[t] <= now) {
         pending[t].push_back({nominal_of(t, number[t]), cost(t, number[t])});
         ++number[t];
-        // Releases of one task keep their order.
+        // Releases of a task stay in order.
         arrival[t] = std::max(arrival[t], nominal_of(t, number[t]) + late(t, number[t]));
       }
     }
@@ -52,7 +52,7 @@ std::vector<std::int64_t> simulate(const std::vector<SimulatedTask>& tasks, std:
       continue;
     }
     Job& job = pending[running].front();
-    // A slice that has begun is finished; arrivals within it are let in afterwards.
+    // A started slice runs to its end; arrivals during it are queued afterwards.
     const std::int64_t slice = std::min(job.left, tasks[running].slice);
     const std::int64_t ran = std::max(slice, std::min(job.left, next - now));
     now += ran;

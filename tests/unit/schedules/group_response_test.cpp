@@ -1,4 +1,4 @@
-// Responses of groups that share several cores, each part worked out by hand.
+// Response times of groups that share several cores, each part calculated by hand.
 #include "schedules/group_response.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t k_gap = 100'000;
 
-// Groups in the order of their urgency, each of one node a core.
+// Groups in order of decreasing priority, each with one node per core.
 struct Placed {
   TaskModel model;
   Plan plan;
@@ -51,7 +51,8 @@ TEST(GroupResponses, StateWhatTheyAreOf) {
   EXPECT_EQ(found[1].response_ns, 20 + 10);
 }
 
-// The urgent group holds each of its cores for its whole response, and wakes two times.
+// The group of higher priority occupies each of its cores for its full response and has two
+// wake-ups.
 TEST(GroupResponses, OfALessUrgentGroupCountAWideOneOnEachCoreThatBothUse) {
   Placed placed(2);
   placed.add("wide", 100, {0, 1});
@@ -89,7 +90,7 @@ TEST(GroupResponses, CountTheWritesOfTheirOwnAndOfWhatPreemptsThem) {
   EXPECT_EQ(found[1].response_ns, 200 + 50 + 130);
 }
 
-// On each core the longest slice below; on several cores one after the other.
+// Blocking on each core is the longest slice of lower priority; over several cores it adds up.
 TEST(GroupResponses, AreBlockedByTheLongestSliceOfEachCore) {
   Placed placed(2);
   placed.add("both", 100, {0, 1});
@@ -115,7 +116,7 @@ TEST(GroupResponses, HaveNoBoundBelowAGroupThatHasNone) {
   placed.add("starving", 60, {0, 1});
   placed.add("below", 1, {1});
   placed.add("elsewhere", 1, {0});
-  placed.model.groups[0].min_gap_ns = 100;  // the whole core
+  placed.model.groups[0].min_gap_ns = 100;  // uses the core fully
   const auto found = placed.responses();
   EXPECT_EQ(found[0].response_ns, 100);
   EXPECT_FALSE(found[1].response_ns);

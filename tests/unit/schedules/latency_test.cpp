@@ -1,4 +1,4 @@
-// Stages, totals and deadlines of the chains, where each part takes another time.
+// Latency chains: stages, totals and deadlines, with a different duration for each part.
 #include "schedules/latency.hpp"
 
 #include <gtest/gtest.h>

@@ -29,7 +29,7 @@ TEST(NodeBounds, GiveEachCopyOfASplitTheSameBound) {
   EXPECT_EQ(bounds, (std::array<std::int64_t, 3>{2, 2, 2}));
 }
 
-// Copy i takes every third tool from i on.
+// Copy i processes every third tool, starting with tool i.
 struct UnevenSpots {
   static constexpr std::array<std::string_view, 2> k_loops = {"call", "tools"};
   [[nodiscard]] static constexpr graph::LoopCounts worst(const Limits& limits) noexcept {

@@ -117,8 +117,8 @@ TEST(PlanCheck, SaysWhatIsWrong) {
   }
 }
 
-// A greedy executor's anomalies cannot happen with fixed orders: whatever nodes really take, and
-// whenever more urgent work holds a core, the group is done within its bound.
+// Fixed orders exclude the scheduling anomalies of a greedy executor: for any execution times and
+// any preemption by higher priority, the group ends within its bound.
 TEST(GroupResponse, IsNeverExceededBySimulatedActivationsOnSeveralCores) {
   std::mt19937_64 random(1999);
   double closest = 0;
@@ -136,7 +136,8 @@ TEST(GroupResponse, IsNeverExceededBySimulatedActivationsOnSeveralCores) {
     const auto bounds = group_responses(model, plan);
     if (!bounds[0].response_ns) continue;
 
-    // Nanosecond by nanosecond. The urgent group's releases begin with the group's own.
+    // Simulates each nanosecond. The first release of the higher-priority group is simultaneous
+    // with the group's own.
     const auto orders = core_orders(plan, 0);
     const int urgent_core = [&] {
       for (const PlannedNode& node : plan.nodes) {
@@ -180,7 +181,7 @@ TEST(GroupResponse, IsNeverExceededBySimulatedActivationsOnSeveralCores) {
     EXPECT_LE(now, *bounds[0].response_ns) << i;
     closest = std::max(closest, double(now) / double(*bounds[0].response_ns));
   }
-  EXPECT_EQ(closest, 1.0);  // some activations do reach their bound
+  EXPECT_EQ(closest, 1.0);  // some activations reach their bound
 }
 
 TEST(GroupResponse, CountsWakeUpsInterruptsWritesAndSlices) {
@@ -196,7 +197,7 @@ TEST(GroupResponse, CountsWakeUpsInterruptsWritesAndSlices) {
   EXPECT_EQ(group_responses(model, plan)[1].blocking_ns, 70'000);
 }
 
-// The first worker wakes at the release and then wakes the others.
+// The first worker wakes at the release, then wakes the others.
 TEST(GroupResponse, CountsOneWakeUpOnOneCoreAndTwoOnSeveral) {
   for (const int cores : {1, 2}) {
     TaskModel model;
@@ -210,7 +211,8 @@ TEST(GroupResponse, CountsOneWakeUpOnOneCoreAndTwoOnSeveral) {
   }
 }
 
-// The urgent group may wake late and its next activation in time: both fall into one window.
+// Jitter and wake-up delay one release of the higher-priority group but not the next: both fall
+// into one window.
 TEST(GroupResponse, CountsAnUrgentGroupsJitterAndWakeUpAmongItsReleases) {
   TaskModel model;
   model.groups.push_back(staged_group({{"Slow", 1, 83}}));
@@ -224,7 +226,8 @@ TEST(GroupResponse, CountsAnUrgentGroupsJitterAndWakeUpAmongItsReleases) {
     model.system.wake_up_ns = wake_up_ns;
     return group_responses(model, plan)[0].response_ns;
   };
-  // Own work and wake-up, and one or two releases of the urgent group within that and its lateness.
+  // Own work and wake-up, plus the one or two releases of the higher-priority group in that time
+  // plus its jitter.
   EXPECT_EQ(response(0, 0), 83 + 10);
   EXPECT_EQ(response(0, 3), 86 + 10);
   EXPECT_EQ(response(0, 4), 87 + 2 * 10) << "97 + 4 are more than its gap";
@@ -235,7 +238,7 @@ TEST(GroupResponse, CountsAnUrgentGroupsJitterAndWakeUpAmongItsReleases) {
 
 TEST(Synthesis, GivesTheTickTheHigherPriorityOnlyWhereItNeedsIt) {
   TaskModel model = small_model(1);
-  model.groups[0].deadline_ns = 1'000'000;  // now the frame is the more urgent one
+  model.groups[0].deadline_ns = 1'000'000;  // now the frame group has the higher priority
   model.groups[1].deadline_ns = 4'000'000;
   const Plan plan = synthesize(model);
   EXPECT_GT(plan.groups[0].priority, plan.groups[1].priority);

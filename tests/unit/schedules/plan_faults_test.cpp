@@ -1,4 +1,4 @@
-// Each fault of a plan by its whole text, at the limit and just beyond.
+// Each fault of a schedule with its full message, at the limit and just beyond.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -12,7 +12,7 @@ namespace {
 
 using Faults = std::vector<std::string>;
 
-// Frame: A, then B on its core and C on the other; tick: T beside them.
+// Frame group: A, then B on the same core and C on the other. Tick group: T.
 TaskModel two_groups() {
   TaskModel model;
   model.cores = 2;
@@ -161,7 +161,7 @@ TEST(PlanFaults, OfOrderAreDataThatIsNotThereAndNodesThatOverlap) {
   });
 }
 
-// Both of frame's nodes on one core leave the tick a core of its own.
+// With both of the frame group's nodes on one core, the tick has its own core.
 TEST(PlanFaults, OfCapacityAreACoreAboveItsTimeAndAnActivationBeyondTheNext) {
   const auto apart = [](Plan& p) { p.nodes[2] = {0, 2, 0, 150, 190}; };
   expect_faults({

@@ -1,4 +1,4 @@
-// Random groups of nodes, and one like the tracker: forks of copies between single nodes.
+// Random groups of nodes, and fork-join groups like the tracker's: copies between single nodes.
 #pragma once
 
 #include <random>
@@ -30,7 +30,7 @@ struct Stage {
   std::int64_t bound_ns = 0;
 };
 
-// Each copy of a stage reads all copies of the one before.
+// Each copy of a stage reads all copies of the previous stage.
 inline TaskGroup staged_group(const std::vector<Stage>& stages) {
   TaskGroup group;
   group.name = "frame";

@@ -1,4 +1,4 @@
-// The recurrence against event by event simulation of random task sets.
+// Response-time recurrence against an event simulation of random task sets.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ std::vector<SimulatedTask> random_tasks(std::mt19937_64& random) {
     tasks[t].cost = std::max<std::int64_t>(
         1, static_cast<std::int64_t>(load * share[t] / shares * double(tasks[t].period)));
   }
-  // Least urgent work that gives way only every so often: blocking for all others.
+  // Lowest-priority work that can be preempted only between slices: it blocks all others.
   if (between(0, 1) == 0) tasks.back().slice = between(1, tasks.back().cost);
   return tasks;
 }
@@ -52,8 +52,9 @@ TEST(ResponseSimulation, NoResponseOfAThousandTaskSetsIsAboveItsBound) {
     std::vector<SimulatedTask> tasks = random_tasks(random);
     std::vector<std::int64_t> worst(tasks.size(), 0);
     for (int run = 0; run < 4; ++run) {
-      // Once the critical instant: all together, the first as late as can be, then on time, while
-      // the least urgent began its slice just before. Then any phases, lateness and costs.
+      // First run, critical instant: all released together, the first with maximum jitter and then
+      // on time; the lowest-priority task began its slice just before. Other runs: random phases,
+      // jitter and costs.
       const bool critical = run == 0;
       for (SimulatedTask& task : tasks) {
         task.first = critical ? tasks.front().period - task.jitter
@@ -101,7 +102,7 @@ TEST(ResponseSimulation, NoResponseOfAThousandTaskSetsIsAboveItsBound) {
       judged, k_task_sets, above, reached, ratios[ratios.size() / 2], unbounded);
   EXPECT_EQ(above, 0);
   EXPECT_EQ(unbounded, 0);
-  // A bound that is hardly ever reached would speak against the simulation.
+  // If the bound is rarely reached, the simulation does not cover the worst case.
   EXPECT_GT(reached, judged / 2);
 }
 

@@ -7,7 +7,7 @@
 namespace glint::response_time_test {
 namespace {
 
-// Joseph and Pandya's recurrence at compile time: what a board's build asserts.
+// Joseph and Pandya's recurrence at compile time, as the build of a companion computer asserts it.
 constexpr std::array<Interference, 2> k_two = {{{3, 7, 0}, {3, 12, 0}}};
 static_assert(response_time({5, 20, 0, 0}, k_two)->response_ns == 20);
 
@@ -19,8 +19,8 @@ TEST(ResponseTime, OfBurnsAndWellingsThreeTasksAre3And6And20) {
   EXPECT_EQ(response_time({5, 20, 0, 0}, k_two)->preempted_ns, 15);
 }
 
-// Lehoczky 1990, the set (26,70), (62,100): the first activation ends after 114, the fifth 118
-// after its release, and the busy period has seven.
+// Lehoczky 1990, set (26,70), (62,100): the first activation ends after 114, the fifth 118 after
+// its release; the busy period has seven activations.
 TEST(ResponseTime, OfLehoczkysSetIsWorstInTheFifthActivation) {
   constexpr std::array<Interference, 1> k_urgent = {{{26, 70, 0}}};
   const auto found = response_time({62, 100, 0, 0}, k_urgent);
@@ -31,11 +31,11 @@ TEST(ResponseTime, OfLehoczkysSetIsWorstInTheFifthActivation) {
 
 TEST(ResponseTime, AddsJitterAndBlocking) {
   constexpr std::array<Interference, 1> k_urgent = {{{2, 10, 3}}};
-  // 4 of its own, 3 of blocking, two releases of the other within 11 + 3.
+  // Own work 4, blocking 3, two releases of the other within 11 + 3.
   EXPECT_EQ(response_time({4, 50, 5, 3}, k_urgent)->response_ns, 5 + 4 + 3 + 2 * 2);
 }
 
-// Not const: the compiler would follow the recurrence to its end, which takes it ten seconds.
+// Not const: the compiler would evaluate the recurrence to its end, which takes ten seconds.
 TEST(ResponseTime, HasNoBoundAboveFullLoad) {
   std::array<Interference, 1> urgent = {{{6, 10, 0}}};
   EXPECT_FALSE(response_time({5, 10, 0, 0}, urgent));
@@ -43,8 +43,8 @@ TEST(ResponseTime, HasNoBoundAboveFullLoad) {
   EXPECT_FALSE(response_time({5, 10, 0, 0}, undeclared));
 }
 
-// Lehoczky's fifth activation: 518 after the begin of the busy period, of which five own ones are
-// 310 and eight of the urgent task's 208.
+// Lehoczky's fifth activation ends 518 after the start of the busy period: 310 for five of its own
+// activations, 208 for eight of the higher-priority task's.
 TEST(ResponseTime, StatesWhatPreemptionTookOfTheWorstActivation) {
   constexpr std::array<Interference, 1> k_urgent = {{{26, 70, 0}}};
   EXPECT_EQ(response_time({62, 100, 0, 0}, k_urgent)->preempted_ns, 8 * 26);
@@ -68,7 +68,7 @@ TEST(BusyWindow, EndsAtItsLimitAndNotBefore) {
   }
 }
 
-// From 5: 11, 14, 17, 20, and 20 again.
+// Iterates from 5: 11, 14, 17, 20, 20.
 TEST(BusyWindow, TakesAStepForEachLookAndEndsWithTheLast) {
   for (const int allowed : {5, 4}) {
     int steps = allowed;

@@ -1,4 +1,5 @@
-// What grows by a factor, and the search for the largest factor that holds.
+// Sensitivity analysis: which bounds the factor scales, and the search for the largest factor that
+// meets all deadlines.
 #include "schedules/sensitivity.hpp"
 
 #include <gtest/gtest.h>
@@ -55,7 +56,8 @@ TEST(Scaled, ByOneChangesNothing) {
   EXPECT_EQ(same.system.wake_up_ns, 101);
 }
 
-// Holds up to a limit: the answer is at most the limit, and close below it, after few questions.
+// For a predicate that holds up to a limit, the result is at most the limit and close to it, after
+// few evaluations.
 TEST(LargestFactor, IsTheLimitWithinATenThousandthAndHolds) {
   for (const double limit : {0.003, 0.25, 0.999, 1.0, 1.001, 1.38, 17.0, 400.0, 999.0}) {
     int asked = 0;

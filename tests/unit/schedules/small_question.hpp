@@ -1,4 +1,4 @@
-// A small plan to assess: two groups on one core and two CAN frames.
+// A small schedule to assess: two groups on one core and two CAN frames.
 #pragma once
 
 #include "random_groups.hpp"

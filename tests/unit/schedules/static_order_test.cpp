@@ -1,4 +1,4 @@
-// Starts and ends of nodes in given orders, levels, list schedules and bounds from below.
+// Static orders: start and end times, levels, list schedules and lower bounds.
 #include "schedules/static_order.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 using Times = std::vector<std::int64_t>;
 
-// A of 10, then B of 20 and C of 30 side by side, then D of 5.
+// A (10), then B (20) and C (30) in parallel, then D (5).
 TaskGroup diamond() {
   TaskGroup group;
   group.nodes = {
@@ -48,7 +48,7 @@ TEST(TimesOf, RunOneNodeAfterTheOtherOnOneCore) {
 
 TEST(TimesOf, AreNoneWhereOrdersAndDataWaitForEachOther) {
   EXPECT_FALSE(times_of(diamond(), {{1, 0, 2, 3}}, 0)) << "B before what it reads";
-  // Each core's first node reads what the other's second makes.
+  // Deadlock: each core's first node reads the output of the other core's second.
   TaskGroup crossed;
   crossed.nodes = {
       {"A", 0, 1, 1, {}}, {"B", 0, 1, 1, {}}, {"C", 0, 1, 1, {0}}, {"D", 0, 1, 1, {1}}};
@@ -69,9 +69,10 @@ TEST(Levels, AreTheLongestPathsToTheEnd) {
 }
 
 TEST(ListSchedule, TakesTheHighestLevelFirstToTheCoreWhereItStartsFirst) {
-  // C is of a higher level than B, and goes where A ran; B starts earlier on the other core.
+  // C has a higher level than B and runs on A's core. B starts earlier on the other core.
   EXPECT_EQ(list_schedule(diamond(), 2, 4), (CoreOrders{{0, 2, 3}, {1}}));
-  // Where a hand-over lasts as long as C, B goes behind C: of cores that tie the first.
+  // If the inter-core communication delay equals C's duration, B runs after C: of equal cores the
+  // first is chosen.
   EXPECT_EQ(list_schedule(diamond(), 2, 30), (CoreOrders{{0, 2, 1, 3}, {}}));
   EXPECT_EQ(list_schedule(diamond(), 2, 29), (CoreOrders{{0, 2}, {1, 3}}));
 }
@@ -82,7 +83,7 @@ TEST(ListSchedule, KeepsTheListedOrderAmongEqualLevels) {
   EXPECT_EQ(list_schedule(equal, 3, 0), (CoreOrders{{0, 3}, {1}, {2}}));
 }
 
-// By a search of its own, from each node along what reads it.
+// Reference: an independent search from each node along its readers.
 TEST(Reach, IsWhateverNeedsANodeDirectlyOrNot) {
   std::mt19937_64 random(11);
   for (int i = 0; i < 50; ++i) {
@@ -123,10 +124,10 @@ TEST(Tails, AddWorkBetweenANodeAndALaterOneOnAllCores) {
   };
   EXPECT_EQ(tails(0), (Times{35, 20, 20, 20, 10}));   // 30 of the copies on two cores
   EXPECT_EQ(tails(5), (Times{40, 20, 20, 20, 10}));   // (30 + 10) / 2
-  EXPECT_EQ(tails(50), (Times{50, 20, 20, 20, 10}));  // one after the other
+  EXPECT_EQ(tails(50), (Times{50, 20, 20, 20, 10}));  // in sequence
 }
 
-// Nothing comes after the copies that could wait for a hand-over.
+// No node after the copies reads them, so no inter-core delay counts.
 TEST(Tails, AddAllWorkThatFollowsANodeToTheEnd) {
   const TaskGroup fan = staged_group({{"A", 1, 10}, {"B", 5, 10}});
   EXPECT_EQ(tails_of(fan, reach_of(fan), 2, 1'000), (Times{35, 10, 10, 10, 10, 10}));

@@ -1,4 +1,4 @@
-// Priorities and places that a synthesised plan gives, worked out by hand.
+// Priorities and allocations of a synthesised schedule, calculated by hand.
 #include "schedules/synthesis.hpp"
 
 #include <gtest/gtest.h>
@@ -39,13 +39,13 @@ TEST(Priorities, OfEqualDeadlinesKeepTheListedOrder) {
             (std::vector<int>{48, 45, 42}));
 }
 
-// The jitter leaves the longer deadline 5 for work of 5, the shorter one has 10.
+// Jitter leaves 5 of the longer deadline for work of 5; the shorter deadline leaves 10.
 TEST(Priorities, LeaveTheOrderOfDeadlinesWhereOnlyAnotherIsInTime) {
   TaskGroup late = one_node("late", 5, 20);
   late.jitter_ns = 15;
   EXPECT_EQ(priorities({one_node("early", 5, 10), late}), (std::vector<int>{45, 48}));
   EXPECT_EQ(priorities({late, one_node("early", 5, 10)}), (std::vector<int>{48, 45}));
-  // One more below both, which only it can be.
+  // A third group below both: only it can have the lowest priority.
   EXPECT_EQ(priorities({one_node("last", 5, 900), one_node("early", 5, 10), late}),
             (std::vector<int>{42, 45, 48}));
 }
@@ -84,7 +84,8 @@ int core_of(const Plan& plan, int group) {
   return -1;
 }
 
-// Beside the frame the tick would delay it; slices beside the tick would make the tick late.
+// On the frame group's core the tick would delay it. On the tick's core the slices would make the
+// tick miss its deadline.
 TEST(Synthesis, PutsEachGroupWhereTheTightestResponseIsBest) {
   TaskModel model;
   model.groups = {one_node("frame", 100, 200), one_node("tick", 50, 60),
@@ -116,7 +117,7 @@ TEST(Synthesis, AvoidsAPlaceWithoutABound) {
   EXPECT_NE(core_of(plan, 0), core_of(plan, 1));
 }
 
-// Bounds of another board: same orders, other times.
+// Bounds of another board file: the same orders, other times.
 TEST(Retimed, KeepsOrdersAndTakesTheModelsBounds) {
   TaskModel model;
   model.cores = 2;
