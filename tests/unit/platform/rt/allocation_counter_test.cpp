@@ -13,7 +13,7 @@
 namespace glint::test {
 namespace {
 
-// What a compiler cannot see through: it would leave out an allocation that nobody uses.
+// Volatile, so that the compiler keeps an allocation whose block is not used.
 void* volatile g_block = nullptr;
 
 template <class F>

@@ -22,11 +22,11 @@ struct Stream {
 
 struct Outcome {
   double rms_ms = 0;
-  std::vector<double> errors_ms;  // of what was mapped, in order
-  std::vector<double> sigmas_ms;  // as stated with each
+  std::vector<double> errors_ms;  // errors of the mapped time stamps, in order
+  std::vector<double> sigmas_ms;  // standard deviations as stated with each
 };
 
-// Frames exposed at a steady rate by the device's clock, delivered late by the jitter.
+// Frames exposed at a constant rate of the device's clock; the delivery delay has jitter.
 Outcome run(const Stream& stream, ClockMap& map, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   Outcome outcome;
@@ -78,7 +78,8 @@ TEST(ClockMap, FollowsOffsetAndDriftUnderJitter) {
   }
 }
 
-// From the first stamp on. A drift leaves one error for seconds, so that the share is of all runs.
+// Starts with the first time stamp. A drift keeps the error constant for seconds, so the share
+// inside is taken over all runs.
 TEST(ClockMap, StatesHowFarAStampMayBeOff) {
   double inside = 0, all = 0, squares = 0, stated = 0;
   for (const double rate : {45.0, 15.0, 5.0}) {
@@ -117,7 +118,8 @@ TEST(ClockMap, RefusesAStepAndThenFollowsTheNewClock) {
   }
 }
 
-// A few stamps off by a second are refused, and the others mapped as if they were not there.
+// Single time stamps that are off by a second are rejected and do not change the mapping of the
+// others.
 TEST(ClockMap, RefusesSingleStampsWithoutAStep) {
   ClockMap map(k_delay);
   Stream stream;
@@ -129,7 +131,7 @@ TEST(ClockMap, RefusesSingleStampsWithoutAStep) {
   EXPECT_LT(outcome.rms_ms, 0.5);
 }
 
-// By the arrival alone, until there is more: never later than it.
+// Before it has enough time stamps the map uses the arrival time and never returns a later one.
 TEST(ClockMap, BeginsWithTheDeclaredDelay) {
   ClockMap map(k_delay);
   EXPECT_EQ(map.map(Time{500}, Time{} + milliseconds(100)), Time{} + milliseconds(91));

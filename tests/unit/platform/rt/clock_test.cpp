@@ -11,7 +11,7 @@
 
 #include "platform/rt/periodic_loop.hpp"
 
-// In place of the C library's, which it calls but where a test refuses.
+// Replaces the C library's function, which it calls unless a test makes it fail.
 namespace {
 std::atomic<bool> g_sleep_is_refused{false};
 }  // namespace
@@ -26,7 +26,7 @@ extern "C" int clock_nanosleep(clockid_t clock, int flags, const timespec* until
 namespace glint {
 namespace {
 
-// As a filter of system calls refuses it.
+// Fails as under a filter of system calls.
 struct RefusedSleep {
   RefusedSleep() { g_sleep_is_refused = true; }
   ~RefusedSleep() { g_sleep_is_refused = false; }
@@ -60,7 +60,7 @@ TEST(Clock, SleepsNoShorterThanAsked) {
   const Time wake = monotonic_now() + milliseconds(2);
   EXPECT_TRUE(sleep_until(wake));
   EXPECT_GE(monotonic_now(), wake);
-  EXPECT_TRUE(sleep_until({0}));  // long past: returns
+  EXPECT_TRUE(sleep_until({0}));  // already past: returns at once
 }
 
 TEST(Clock, ReportsThatTheSystemRefusesToSleep) {
@@ -99,7 +99,7 @@ TEST(PeriodicLoop, SkipsWhatIsOwedForTooLongAndSaysSo) {
   EXPECT_EQ(loop.skipped(), 30u);
 }
 
-// A loop of 1 kHz that has run for 49.7 days.
+// A 1 kHz loop after 49.7 days.
 TEST(PeriodicLoop, KeepsItsPeriodBeyondTwoToThe32Ticks) {
   constexpr std::uint64_t k_wrap = std::uint64_t{1} << 32;
   const Duration period = milliseconds(1);

@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-// A machine as its files describe it: by default one that spoils nothing.
+// A machine as described by its files; by default correctly configured.
 class MachineCheckTest : public testing::Test {
  protected:
   MachineCheckTest() {
@@ -33,7 +33,7 @@ class MachineCheckTest : public testing::Test {
     std::filesystem::create_directories(path.parent_path());
     std::ofstream(path) << text << "\n";
   }
-  // The one line that the change makes.
+  // The single finding after the change.
   std::string only() {
     const MachineCheck check = check_machine({1}, root_);
     EXPECT_EQ(check.spoils.size(), 1u);

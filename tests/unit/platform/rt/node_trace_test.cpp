@@ -68,7 +68,7 @@ TEST(TraceWriter, WritesItsHeaderAndEverySpanOfEveryRing) {
 
 TEST(PageFaults, OfAnArmedThreadAreCounted) {
   constexpr std::size_t k_pages = 64;
-  munlockall();  // a test before in this process locked memory, so that pages come at once
+  munlockall();  // an earlier test in this process locked memory, which maps pages at once
   const std::uint64_t before = PageFaultCounter::count();
   void* const fresh =
       mmap(nullptr, k_pages * 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

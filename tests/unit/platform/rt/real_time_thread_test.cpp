@@ -36,7 +36,7 @@ TEST(RealTimeThread, ReportsWhatItGotBeforeItsBodyRuns) {
   EXPECT_EQ(report.refused.empty(), report.pinned && report.real_time) << report.refused;
 }
 
-// A priority that there is not is refused everywhere, also to whoever has all rights.
+// An invalid priority is refused on every machine, even to a privileged process.
 TEST(RealTimeThread, RunsIdleWhereItIsToGiveWayAndItsPriorityIsRefused) {
   for (const bool idle_otherwise : {true, false}) {
     int policy = -1;

@@ -32,7 +32,7 @@ TEST(Release, WakesAWaitingThreadForEachPostAndShowsItWhatWasWritten) {
   std::jthread other([&] {
     for (int i = 1; i <= k_posts; ++i) {
       there.wait();
-      if (value != i) return;  // the last value then tells
+      if (value != i) return;  // the last value then shows the failure
       value = -i;
       back.post();
     }

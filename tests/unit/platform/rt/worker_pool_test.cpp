@@ -73,7 +73,7 @@ struct Twice {
 
 TEST(ParallelExecutor, LeavesItsThreadsAsleepForAGraphWithoutASplit) {
   ParallelExecutor<2> two({{"worker"}}, 1000);
-  for (int i = 0; i < 100; ++i) {  // each graph is gone before a late worker could look at it
+  for (int i = 0; i < 100; ++i) {  // each graph is destroyed before a late worker could access it
     graph::Graph<Inputs<Total>, Outputs<Doubled>, Twice> graph;
     graph.input<Total>().value = i;
     graph.activate(two);
@@ -87,7 +87,7 @@ struct Caller {
 struct Slept {
   bool value = false;
 };
-// Part 1 ends when the thread of part 0 sleeps, or after a time in which it should have.
+// Part 1 ends when the thread of part 0 sleeps, or after a time limit.
 struct AwaitSleep {
   void operator()(const Caller& caller, Slice slice, Slept& slept) const noexcept {
     const std::string path = "/proc/self/task/" + std::to_string(caller.thread) + "/stat";
