@@ -1,4 +1,4 @@
-// What a frame says of the buttons, and what is made of frames that say nothing.
+// Decoding of button frames, including invalid frames.
 #include "platform/can/button_frames.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ struct Heard {
   ButtonFrames frames{k_identifier, [this](const ButtonEvent& event) { events.push_back(event); }};
 };
 
-// A frame as it comes from the kernel, of so many bytes.
+// A frame as the kernel delivers it, `size` bytes long.
 std::optional<CanFrame> from_kernel(std::uint32_t id, std::uint8_t length, std::size_t size) {
   canfd_frame raw{};
   raw.can_id = id;
@@ -40,7 +40,7 @@ std::optional<CanFrame> from_kernel(std::uint32_t id, std::uint8_t length, std::
 TEST(ButtonFrames, SayEachChangeOfEachButtonOnce) {
   Heard heard;
   heard.frames.hear(held(0b0001), {10});
-  heard.frames.hear(held(0b0001), {20});  // again and again: nothing new
+  heard.frames.hear(held(0b0001), {20});  // repeated: no event
   heard.frames.hear(held(0b1010), {30});
   heard.frames.hear(held(0b0000), {40});
   const std::vector<ButtonEvent> expected{
@@ -56,7 +56,7 @@ TEST(ButtonFrames, SayEachChangeOfEachButtonOnce) {
 TEST(ButtonFrames, ReleaseWhatASilentSenderHeld) {
   Heard heard;
   heard.frames.hear(held(0b1001), {0});
-  heard.frames.hear(held(0b1001), {5'000'000'000});  // again: the timeout starts anew
+  heard.frames.hear(held(0b1001), {5'000'000'000});  // repeated: the timeout restarts
   heard.frames.release_if_silent(Time{5'000'000'000} + k_button_timeout);
   EXPECT_EQ(heard.events.size(), 2u) << "released before its timeout";
   const Time late = Time{5'000'000'001} + k_button_timeout;
@@ -66,7 +66,7 @@ TEST(ButtonFrames, ReleaseWhatASilentSenderHeld) {
   EXPECT_EQ(heard.events[2], (ButtonEvent{late, Button::draw, false}));
   EXPECT_EQ(heard.events[3], (ButtonEvent{late, Button::finish, false}));
   EXPECT_EQ(heard.frames.counts().released, 2u);
-  heard.frames.hear(held(0b0001), late + milliseconds(2));  // the sender is back
+  heard.frames.hear(held(0b0001), late + milliseconds(2));  // the sender sends again
   EXPECT_EQ(heard.events.back(), (ButtonEvent{late + milliseconds(2), Button::draw, true}));
 }
 
@@ -130,7 +130,7 @@ TEST(FrameOfSocketCan, KeepsEveryFieldAndNoByteBeyondItsLength) {
         canfd_frame raw{};
         raw.can_id = k_identifier;
         raw.len = length;
-        raw.flags = static_cast<std::uint8_t>(flags);  // of a classic frame: padding
+        raw.flags = static_cast<std::uint8_t>(flags);  // flags of a classic frame: padding
         for (std::size_t i = 0; i < sizeof raw.data; ++i)
           raw.data[i] = static_cast<std::uint8_t>(i + 7);
         std::array<std::uint8_t, sizeof raw> bytes{};
@@ -147,7 +147,7 @@ TEST(FrameOfSocketCan, KeepsEveryFieldAndNoByteBeyondItsLength) {
   }
 }
 
-// A frame of 11 bits keeps none of the identifier's upper bits.
+// A frame with an 11-bit identifier keeps none of the upper bits.
 TEST(FrameOfSocketCan, HasTheIdentifierOfItsKind) {
   const auto classic = from_kernel(0x1FFFFFFFU, 1, CAN_MTU);
   ASSERT_TRUE(classic);

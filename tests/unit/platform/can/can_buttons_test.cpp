@@ -1,4 +1,4 @@
-// The reading of frames, from a pair of sockets in place of a bus.
+// Reading of button frames from a socket pair instead of a bus.
 #include "platform/can/can_buttons.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ Time board_now() {
   return Time{std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec} - k_unix_minus_board;
 }
 
-// One end hears, the other is the pen.
+// One end is the reader, the other the pen.
 class Pair {
  public:
   explicit Pair(ButtonFrames::OnButton on_button, Duration timeout = k_button_timeout)
@@ -40,7 +40,7 @@ class Pair {
     raw.data[0] = bits;
     ASSERT_EQ(::send(pen_.get(), &raw, sizeof raw, 0), static_cast<ssize_t>(sizeof raw));
   }
-  // Begins as a good frame does.
+  // Starts with the bytes of a valid frame.
   void send_bytes(std::size_t size) const {
     std::vector<std::uint8_t> bytes(std::max(size, sizeof(can_frame)));
     can_frame raw{};
@@ -70,14 +70,14 @@ class Pair {
   CanButtons buttons_;
 };
 
-// An emulated system call may not know how.
+// An emulated kernel may not support time stamps.
 bool sockets_stamp_arrivals() {
   const Descriptor socket(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const int on = 1;
   return ::setsockopt(socket.get(), SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on) == 0;
 }
 
-// A frame that waits is as old as it is, not as new as its reading.
+// The time stamp of a queued frame is its arrival, not the time of its reading.
 TEST(CanButtons, StampAFrameWhenItArrivedNotWhenItWasRead) {
   if (!sockets_stamp_arrivals()) GTEST_SKIP() << "no socket here says when its messages came";
   std::vector<ButtonEvent> events;
@@ -88,16 +88,17 @@ TEST(CanButtons, StampAFrameWhenItArrivedNotWhenItWasRead) {
   std::this_thread::sleep_for(std::chrono::milliseconds(5));
   EXPECT_EQ(pair.buttons().read(milliseconds(1000)), 1);
   ASSERT_EQ(events.size(), 1u);
-  EXPECT_GE(events[0].time, before - milliseconds(1));  // the clocks are compared twice
+  EXPECT_GE(events[0].time, before - milliseconds(1));  // the two clocks are compared twice
   EXPECT_LE(events[0].time, after + milliseconds(1));
 }
 
-// The kernel stamps by the Unix clock, which may be set while a frame waits or before it comes.
+// The kernel's time stamps use the Unix clock, which may be set before a frame arrives or while it
+// is queued.
 TEST(CanButtons, StampAFrameOnTheBoardsClockWhateverTheUnixClockDoes) {
   const Time board_now{10'000'000'000}, unix_then{1'700'000'000'000'000'000};
   const Duration hour = milliseconds(3'600'000), age = milliseconds(7);
   for (const Duration step : {Duration{}, hour, Duration{} - hour}) {
-    // The step came before the frame: stamp and clock have it alike.
+    // The clock was set before the frame arrived: time stamp and clock agree.
     EXPECT_EQ(board_arrival(unix_then + step - age, unix_then + step, board_now), board_now - age);
   }
   for (const Duration step : {hour, Duration{} - hour}) {
@@ -118,7 +119,7 @@ TEST(CanButtons, ReleaseAHeldButtonWhoseSenderFellSilent) {
   EXPECT_EQ(pair.buttons().counts().released, 1u);
 }
 
-// Each frame taken brings the next: the queue is never empty until 600 were sent.
+// Each received frame triggers the next one: the queue stays non-empty until 600 frames were sent.
 TEST(CanButtons, TakeNoMoreAWakeUpThanDeclared) {
   int events = 0;
   Pair* pen = nullptr;
@@ -162,7 +163,7 @@ TEST(CanButtons, AreHeardByAThreadThatEndsWhenToldTo) {
   pair.buttons().stop();
   pair.send(0);
   EXPECT_EQ(pair.buttons().counts().heard, 1u);
-  EXPECT_EQ(pair.buttons().read(milliseconds(1000)), 1);  // nobody else read it
+  EXPECT_EQ(pair.buttons().read(milliseconds(1000)), 1);  // no other call read it
   EXPECT_EQ(events, 2);
 }
 

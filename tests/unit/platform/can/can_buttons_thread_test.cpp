@@ -1,4 +1,4 @@
-// The thread that reads the buttons, and where it waits.
+// Thread that reads the buttons, and where it blocks.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <linux/can.h>
@@ -17,7 +17,7 @@
 
 #include "platform/can/can_buttons.hpp"
 
-// In place of the C library's: what this thread slept.
+// Replaces the C library's function: records this thread's sleeps.
 namespace {
 thread_local std::vector<long>* g_sleeps_ns = nullptr;
 }  // namespace
@@ -43,7 +43,7 @@ Ends made() {
   return {Descriptor(ends[0]), Descriptor(ends[1])};
 }
 
-// A frame of `size` bytes as the kernel hands it over.
+// A frame of `size` bytes as the kernel delivers it.
 void send(const Descriptor& pen, std::uint8_t bits, std::size_t size) {
   canfd_frame raw{};
   raw.can_id = k_buttons;
@@ -52,7 +52,7 @@ void send(const Descriptor& pen, std::uint8_t bits, std::size_t size) {
   ASSERT_EQ(::send(pen.get(), &raw, size, 0), static_cast<ssize_t>(size));
 }
 
-// What the calls in `doing` slept.
+// Durations of the sleeps of the calls in `doing`.
 template <class Doing>
 std::vector<long> sleeps_of(Doing doing) {
   std::vector<long> sleeps;
@@ -76,7 +76,7 @@ TEST(CanButtonsThread, TakesClassicAndFdFramesButNoneWithoutAByte) {
 }
 
 TEST(CanButtonsThread, SleepsWhereAnInterfaceIsReadyButHasNothing) {
-  // As an interface that went away: always ready, and nothing can be received.
+  // Like a removed interface: always ready, but no frame can be received.
   CanButtons buttons(Descriptor(::open("/dev/null", O_RDONLY | O_CLOEXEC)), k_buttons, {}, {});
   const auto sleeps = sleeps_of([&] { EXPECT_EQ(buttons.read(milliseconds(3)), 0); });
   EXPECT_EQ(sleeps, std::vector<long>{3'000'000});

@@ -31,7 +31,7 @@ TEST(CanSink, NamesTheInterfaceThatIsNotThere) {
   EXPECT_NE(text.find("expected"), std::string::npos) << text;
 }
 
-// Loopback is an interface, but none for CAN, with whatever kernel this runs on.
+// The loopback interface exists on every kernel but is not a CAN interface.
 TEST(CanSink, RefusesAnInterfaceThatIsNotForCan) {
   EXPECT_NE(complaint<MissingDevice>("socketcan:lo").find("socketcan:lo"), std::string::npos);
 }

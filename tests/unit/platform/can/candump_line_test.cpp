@@ -115,7 +115,7 @@ TEST(CandumpLine, IsRefusedWhereItIsNone) {
   EXPECT_TRUE(parse_candump("(1.000000) can0 1A0#"));
 }
 
-// Of classic frames up to 8 bytes, of FD frames the lengths that ISO 11898-1 has.
+// Classic frames have 0 to 8 bytes, FD frames the lengths of ISO 11898-1.
 TEST(CandumpLine, HasALengthOfItsKindOfFrame) {
   const std::set<std::size_t> fd{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
   for (std::size_t length = 0; length <= 70; ++length) {
@@ -185,7 +185,7 @@ TEST(CandumpLine, HasItsPartsInTheirPlaces) {
   EXPECT_TRUE(parse_candump("(1.000000) can0 1A0#00\n"));
 }
 
-// Printable characters of ASCII, 15 of them at most.
+// 1 to 15 printable ASCII characters.
 TEST(CandumpLine, HasAnInterfaceNameThatLinuxCanHave) {
   for (std::size_t size = 0; size <= 17; ++size) {
     const std::string name(size, 'v');

@@ -1,4 +1,4 @@
-// Whole lines on a disk that takes them, takes a part of them, or none.
+// Line file on a disk that accepts all, some or none of its lines.
 #include "platform/can/line_file.hpp"
 
 #include <fcntl.h>
@@ -22,7 +22,7 @@
 namespace glint::line_file_test {
 namespace {
 
-// No file of this process grows beyond this while it lives.
+// While it lives, no file of this process grows beyond the limit.
 class FileLimit {
  public:
   explicit FileLimit(rlim_t bytes) {
@@ -40,7 +40,7 @@ class FileLimit {
   rlimit before_{};
 };
 
-// Ten lines of ten bytes in two pieces, on a disk with room for so many bytes.
+// Ten lines of ten bytes in two pieces, on a disk with `room` bytes free.
 TEST(LineFile, KeepsTheWholeLinesForWhichThereIsRoom) {
   for (rlim_t room = 1; room <= 100; ++room) {
     const TemporaryFolder folder;
@@ -101,13 +101,14 @@ TEST(LineFile, LeavesNoDescriptorOpen) {
   EXPECT_EQ(open_files(), before);
 }
 
-// A pipe whose reader does not read: frames beyond the queue are dropped and counted, no other.
+// A pipe whose reader does not read: exactly the frames beyond the queue's capacity are dropped and
+// counted.
 TEST(LogSink, DropsWhatItsQueueHasNoRoomForAndWritesAllTheRest) {
   const TemporaryFolder folder;
   const auto pipe = folder.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   const Descriptor reader(::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
-  ASSERT_EQ(::fcntl(reader.get(), F_SETFL, 0), 0);  // from now on a read waits
+  ASSERT_EQ(::fcntl(reader.get(), F_SETFL, 0), 0);  // from now on a read blocks
   std::uint64_t refused = 0, lines = 0;
   std::thread reading;
   {

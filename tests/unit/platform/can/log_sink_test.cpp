@@ -78,7 +78,7 @@ TEST(LogSink, CountsWhatADeviceRefuses) {
   EXPECT_EQ(sink->counts().failed, 101U);
 }
 
-// A disk that is full after some bytes: the log ends with its last whole line.
+// The disk is full after some bytes: the log ends with its last complete line.
 TEST(LogSink, EndsAtAWholeLineWhenTheDiskIsFull) {
   const TemporaryFolder folder;
   CanSinkCounts counts;

@@ -1,5 +1,5 @@
-// read_known_buttons LOG IDENTIFIER: what is heard of the buttons in a candump log, a line for each
-// change: which button (0 draw, 1 delete_last, 2 undo, 3 finish) and whether it is held now.
+// read_known_buttons LOG IDENTIFIER: prints one line for each change of a button in a candump log:
+// the button (0 draw, 1 delete_last, 2 undo, 3 finish) and whether it is held.
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>

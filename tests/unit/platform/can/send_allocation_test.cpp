@@ -1,4 +1,4 @@
-// The tick thread sends: it may not ask for memory.
+// Sending on the tick thread does not allocate.
 #include <gtest/gtest.h>
 
 #include "platform/can/can_sink.hpp"

@@ -1,4 +1,4 @@
-// Frames on their way into the kernel, with a pair of sockets in place of a bus.
+// Sending of CAN frames, with a socket pair instead of a bus.
 #include "platform/can/socketcan_sink.hpp"
 
 #include <fcntl.h>
@@ -22,12 +22,12 @@ struct Bus {
     far = std::make_unique<Descriptor>(ends[1]);
     sink = socketcan_sink_of(Descriptor(here));
   }
-  // The next frame as the bus has it; its size, or -1.
+  // Receives the next frame as the bus would. Returns its size, or -1.
   ssize_t receive(canfd_frame& raw) const {
     std::memset(&raw, 0xEE, sizeof raw);
     return ::recv(far->get(), &raw, sizeof raw, 0);
   }
-  // From now on another file takes what the sink writes.
+  // From now on the sink writes to another file.
   void replace_by(const Descriptor& other) const { ASSERT_EQ(::dup2(other.get(), here), here); }
 
   int here = -1;
@@ -71,7 +71,7 @@ TEST(SocketCanSink, WritesEachFieldWhereLinuxHasIt) {
   EXPECT_EQ(counts.error, 0);
 }
 
-// A queue that takes no more is no failure: the bus is slow.
+// A full queue is not an error: the bus is slow.
 TEST(SocketCanSink, CountsWhatAFullQueueRefusesAsDropped) {
   const Bus bus;
   const CanFrame frame = frame_of(false, false, false, 8);

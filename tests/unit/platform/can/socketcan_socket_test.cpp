@@ -1,4 +1,4 @@
-// How a CAN socket is asked of Linux, with the system calls of a machine that may have no CAN.
+// Configuration of a CAN socket, with simulated system calls: the machine may have no CAN.
 #include "platform/can/socketcan_socket.hpp"
 
 #include <fcntl.h>
@@ -25,15 +25,15 @@
 #include "platform/can/can_sink.hpp"
 #include "platform/input_error.hpp"
 
-// In place of the C library's where a kernel is set; else the calls pass.
+// Replace the C library's calls while a simulated kernel is set; otherwise pass through.
 namespace {
 
 struct CanKernel {
-  // What it has.
+  // State of the simulated kernel.
   short flags = IFF_UP;
   int mtu = CANFD_MTU;
   int socket_error = 0, flags_error = 0, mtu_error = 0, bind_error = 0;  // 0: none
-  // What it was asked.
+  // Arguments that it received.
   int domain = 0, type = 0, protocol = 0;
   std::string flags_of, mtu_of;
   can_filter filter{};
@@ -108,7 +108,7 @@ extern "C" int bind(int descriptor, const sockaddr* address, socklen_t bytes) no
 namespace glint::socketcan_socket_test {
 namespace {
 
-// The loopback's name and number stand for those of a CAN interface.
+// The loopback's name and index replace those of a CAN interface.
 class SocketCanSocket : public testing::Test {
  protected:
   SocketCanSocket() { g_kernel = &kernel_; }
@@ -116,7 +116,7 @@ class SocketCanSocket : public testing::Test {
     g_kernel = nullptr;
     if (kernel_.far >= 0) ::close(kernel_.far);
   }
-  // What is missing, or "" for an open socket.
+  // The error message, or "" for an open socket.
   static std::string refusal(CanFormat format) {
     try {
       return open_socketcan("lo", format).get() >= 0 ? "" : "no descriptor";

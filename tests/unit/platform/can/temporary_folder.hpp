@@ -1,4 +1,4 @@
-// A folder that lives as long as its test.
+// Temporary folder that is removed at the end of its test.
 #pragma once
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-// write_known_samples FOLDER: a CAN log of known poses, classic and FD, and the poses beside it as
-// one JSON object a line. What reads them must not share code with what wrote them.
+// write_known_samples FOLDER: writes a CAN log of known poses, classic and FD, and the poses as one
+// JSON object a line. The reader of the log must not share code with its writer.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -42,7 +42,7 @@ void print(std::FILE* file, const PoseSample& s) {
                static_cast<long long>(s.measurement.nanoseconds + k_unix_offset_ns));
 }
 
-// Beyond the random ones: what lies at a field's end, and what does not fit.
+// Beside the random samples: values at the end of a field's range and beyond it.
 PoseSample edge_sample(int edge, std::mt19937& random) {
   PoseSample s = random_sample(random);
   if (edge == 0) s.pose.translation = Vector3(3.27675, -3.2768, 0);
