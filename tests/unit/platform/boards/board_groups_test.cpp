@@ -1,5 +1,5 @@
-// A run's groups on one core: with bounds an overrun is detected ahead; held buttons leave in the
-// samples.
+// Rate groups of a companion computer on one core: with bounds, an overrun is detected ahead; held
+// buttons are published in the samples.
 #include "platform/session/session_groups.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace glint::board_groups_test {
 namespace {
 
 constexpr std::uint32_t k_frames = 3, k_ticks = 4;
-// Beyond what any machine takes for a black frame, and so no matter of its speed.
+// Longer than any machine needs for a black frame, so the test does not depend on its speed.
 constexpr Duration k_deadline = milliseconds(20'000);
 
 class BoardGroupsTest : public testing::Test {
@@ -40,8 +40,8 @@ class BoardGroupsTest : public testing::Test {
   }
   ~BoardGroupsTest() override { std::filesystem::remove_all(folder_); }
 
-  // Some frames, then some ticks, each released when it is due; the pen's button goes down first,
-  // if at all.
+  // Some frames, then some ticks, each released when due. If `pressed`, the pen's button goes down
+  // first.
   [[nodiscard]] BoardResult run_with(const BoardBounds& bounds, bool pressed = false,
                                      std::uint64_t first_tick = 0,
                                      std::uint64_t ticks = k_ticks) const {
@@ -106,7 +106,7 @@ TEST_F(BoardGroupsTest, SayWhetherAButtonIsHeld) {
   EXPECT_NE(held, run_with({}).output_sha256);
 }
 
-// Data bytes of the frames with this identifier in the run's log, in order.
+// Data bytes of the run's logged frames with this identifier, in order.
 std::vector<std::vector<std::uint8_t>> sent_as(std::uint32_t identifier,
                                                const std::filesystem::path& log) {
   std::vector<std::vector<std::uint8_t>> data;
@@ -129,7 +129,7 @@ TEST_F(BoardGroupsTest, SayByTheHeartbeatThatTheFrameThreadHangs) {
   EXPECT_EQ(heartbeats[11][0], 0x7F) << "pre-operational";
 }
 
-// A reader takes a repeated counter for a repeated frame.
+// A reader treats a repeated counter as a repeated frame.
 TEST_F(BoardGroupsTest, AdvanceTheCounterOfTheirCanFramesBeyondTwoToThe32Ticks) {
   cell_.can.sink = "log:can.log";
   constexpr std::uint64_t k_wrap = std::uint64_t{1} << 32;

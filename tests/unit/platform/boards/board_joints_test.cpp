@@ -1,4 +1,4 @@
-// A board's groups, and this test as the driver of the robot that they follow.
+// Rate groups of a companion computer with a tracked robot. The test acts as the robot's driver.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -24,7 +24,7 @@ class HeardJointsOfABoard : public DdsTest {
     cell_.files = {"", ""};
     cell_.realtime = true;
     follow_a_box_on_a_slide(files_.folder(), cell_);
-    cell_.mapping->joints_lost_after = milliseconds(600'000);  // however slow the machine
+    cell_.mapping->joints_lost_after = milliseconds(600'000);  // also on a slow machine
   }
 
   const test::Files files_;
@@ -51,7 +51,7 @@ TEST_F(HeardJointsOfABoard, LetItFollowWhatItCannotFollowWithoutThem) {
   EXPECT_EQ(background.counts().joints_used, 0);
 
   RobotSpeaker driver({"gripper", "slide"}, {9, k_slide_shown_m});
-  // The first is there where the second was counted.
+  // When the second message is counted, the first one is stored.
   for (int i = 0; i < 1000 && sinks.inputs()->counts().joints < 2; ++i) {
     driver.say_joints();
     (void)sleep_until(monotonic_now() + milliseconds(10));

@@ -1,4 +1,4 @@
-// What a board says of a run in JSON, under the names that a desktop's summary has.
+// JSON summary of a companion computer's run, with the field names of a desktop summary.
 #include "platform/boards/board_json.hpp"
 
 #include <gtest/gtest.h>

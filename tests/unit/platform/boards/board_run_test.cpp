@@ -1,4 +1,4 @@
-// A board's whole run: what its cell has beneath the two groups, and what a replay makes of its
+// A companion computer's complete run: the cell's parts outside the two groups, and a replay of its
 // recording.
 #include "platform/boards/board_run.hpp"
 
@@ -32,7 +32,7 @@ class BoardRun : public testing::Test {
   }
   ~BoardRun() override { std::filesystem::remove_all(folder_); }
 
-  // Frames of the cell's own scenario, every fourth a worst input.
+  // Frames of the cell's own scenario; every fourth is a worst input.
   [[nodiscard]] std::string loop_file() const {
     const sim::Simulator simulator(scenario_of(cell_));
     FrameLoopHeader header;

@@ -28,7 +28,7 @@ class FrameLoopFile : public testing::Test {
     return header;
   }
 
-  // Frame i holds reflectivity 100 i + pixel and depth 1000 i + pixel.
+  // Frame i has reflectivity 100 i + pixel and depth 1000 i + pixel.
   static FrameBuffer pixels(int frame) {
     FrameBuffer buffer;
     buffer.width = 5;
@@ -53,7 +53,7 @@ class FrameLoopFile : public testing::Test {
     writer.close();
   }
 
-  // What reading says once the byte at `offset` has another value.
+  // Message of the reader after the byte at `offset` was changed.
   [[nodiscard]] std::string refused_with(std::size_t offset, char value) const {
     write();
     std::fstream stream(file_, std::ios::in | std::ios::out | std::ios::binary);

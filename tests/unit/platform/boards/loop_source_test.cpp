@@ -77,7 +77,7 @@ TEST_F(LoopSourceTest, KeepsFramesThatArriveWhileAnOlderOneIsWorkedOn) {
     EXPECT_EQ(arrived.frame.arrival, Time{} + milliseconds(1) * i);
   }
   EXPECT_FALSE(source.wait(arrived));
-  EXPECT_LE(source.wake_ups_ns().size(), 1u);  // only the first found its group waiting
+  EXPECT_LE(source.wake_ups_ns().size(), 1u);  // only the first frame found its group waiting
 }
 
 TEST_F(LoopSourceTest, GoesOnUntilItIsStoppedWhereNoNumberIsGiven) {
@@ -91,7 +91,7 @@ TEST_F(LoopSourceTest, GoesOnUntilItIsStoppedWhereNoNumberIsGiven) {
     ASSERT_EQ(arrived.frame.sequence, i);
   }
   stop = true;
-  while (source.wait(arrived)) {  // those that had arrived by then
+  while (source.wait(arrived)) {  // frames that had arrived before the stop
   }
   EXPECT_GE(arrived.frame.sequence, 10u);
 }
