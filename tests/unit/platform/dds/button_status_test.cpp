@@ -1,4 +1,4 @@
-// From a button's topic through a tick to the status that every DDS reader sees.
+// End to end: from a button's topic through a tick to the status that DDS readers receive.
 #include <vector>
 
 #include "platform/session/sinks.hpp"

@@ -1,4 +1,4 @@
-// One entry of a diagnostics message, with its values by their keys.
+// One entry of a diagnostics message, with its values by key.
 #pragma once
 
 #include <map>
@@ -9,7 +9,7 @@
 namespace glint {
 
 struct DiagnosticEntry {
-  int level = -1;  // the message has no such entry
+  int level = -1;  // -1: the message has no such entry
   std::string message;
   std::map<std::string, std::string> values;
 };

@@ -1,4 +1,4 @@
-// A robot that stands where the reference body is seen, as tf has it.
+// tf transforms of a robot whose pose is given relative to the reference body.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -16,7 +16,7 @@
 namespace glint {
 namespace {
 
-// In place of the tracker: from the second frame on it knows where the body is.
+// Replaces the tracker: the reference body has a pose from the second frame on.
 class BodySeenLater final : public FrameMethod {
  public:
   const Estimates& process(const ArrivedFrame& arrived) override {

@@ -1,4 +1,4 @@
-// Hostile messages without a network: whatever the lengths and numbers say.
+// Decoding of hostile messages without a network: arbitrary lengths and counts.
 #include "platform/dds/heard.hpp"
 
 #include <gtest/gtest.h>

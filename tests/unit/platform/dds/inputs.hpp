@@ -1,4 +1,4 @@
-// Messages as a robot's driver or RViz would send them.
+// Messages as a robot's driver or RViz sends them.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace glint {
 
-// Holds what a message borrows.
+// Owns the strings and arrays that a message points to.
 class JointText {
  public:
   JointText(std::vector<std::string> names, std::vector<double> positions)
@@ -40,7 +40,7 @@ inline PoseCovarianceMessage guess_message(std::string& frame) {
   PoseCovarianceMessage message{};
   message.header.frame_id = frame.data();
   message.pose.pose.position = {1, 2, 3};
-  message.pose.pose.orientation = {0, 0, 1.004, 0};  // as others round it
+  message.pose.pose.orientation = {0, 0, 1.004, 0};  // rounded, as by other programs
   for (int i = 0; i < 36; ++i) message.pose.covariance[i] = i;
   return message;
 }

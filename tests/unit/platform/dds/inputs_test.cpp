@@ -1,4 +1,5 @@
-// Joint states, a description, a guess and buttons from another participant over the network.
+// Joint states, description, pose guess and buttons received over the network from another
+// participant.
 #include "platform/dds/dds_inputs.hpp"
 
 #include <gtest/gtest.h>
@@ -28,9 +29,9 @@ bool found(dds_entity_t writer) {
   return comes_true([&] { return has_reader(writer); });
 }
 
-// Both ends, in domains of their own.
+// Both ends, in separate Cyclone domains.
 struct Ends {
-  std::vector<ButtonEvent> events;  // of the reading thread: this one
+  std::vector<ButtonEvent> events;  // written and read by this thread only
   DdsInputs inputs;
   Peer peer;
 
@@ -39,7 +40,7 @@ struct Ends {
                [this](const ButtonEvent& event) { events.push_back(event); }),
         peer(test_settings()) {}
 
-  // Writes and reads until `done`.
+  // Alternates writing and reading until `done` returns true.
   template <class Done>
   bool read_until(Done done) {
     return comes_true([&] {
@@ -128,7 +129,7 @@ TEST_F(Inputs, GiveEachChangeOfAButtonOnce) {
   EXPECT_EQ(undone, 1);
 }
 
-// A button down, as this participant says it.
+// Publishes a pressed button from this participant.
 void hold(Peer& peer, const char* topic) {
   const dds_entity_t writer =
       peer.writer(bool_type(), topic, Reliability::reliable, Durability::volatile_data, 64);
@@ -150,7 +151,7 @@ TEST_F(Inputs, ReleaseAButtonWhoseParticipantLeaves) {
   EXPECT_EQ(ends.inputs.counts().released, 1u) << "the other participant holds its button";
 }
 
-// Another participant on the same topic, which never held the button, does not keep it held.
+// A second participant on the topic never held the button, so it does not keep the button pressed.
 TEST_F(Inputs, ReleaseAButtonWhoseParticipantLeavesBesideAnotherOnItsTopic) {
   Ends ends;
   ASSERT_TRUE(found(ends.peer.writer(bool_type(), "rt/glint/button", Reliability::reliable,
@@ -162,7 +163,8 @@ TEST_F(Inputs, ReleaseAButtonWhoseParticipantLeavesBesideAnotherOnItsTopic) {
   EXPECT_TRUE(ends.read_until([&] { return ends.events.size() == 2; }));
 }
 
-// Killed, it takes no leave: its lease ends. Before any thread of this process, for it forks.
+// A killed participant does not say goodbye; its lease expires. Must run before this process starts
+// any thread, because it forks.
 TEST_F(Inputs, ReleaseAButtonWhoseParticipantWasKilled) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -236,8 +238,8 @@ TEST_F(Inputs, SayWhichToolsAreNamedToBeThereOrNot) {
   EXPECT_EQ(named, (std::vector<std::pair<int, bool>>{{1, false}, {1, true}}));
 }
 
-// Too many joints, lengths that differ, and a description of 5 MB, far beyond what is unpacked; a
-// good one in between arrives all the same.
+// Rejects too many joints, different lengths, and a description of 5 MB, far above the decoder's
+// limit. A valid description in between is received.
 TEST_F(Inputs, RefuseAndCountWhatIsTooLargeOrMakesNoSense) {
   Ends ends;
   const dds_entity_t joints = ends.peer.writer(
@@ -247,7 +249,7 @@ TEST_F(Inputs, RefuseAndCountWhatIsTooLargeOrMakesNoSense) {
   ASSERT_TRUE(found(joints) && found(text));
   const auto send = [&](JointText hostile) {
     const std::uint64_t refused = ends.inputs.counts().refused;
-    // Best effort readers may miss one: it is said again until it came.
+    // Best effort may lose a message: repeats it until one arrives.
     return ends.read_until([&] {
       const JointStateMessage message = hostile.message();
       dds_write(joints, &message);
@@ -271,7 +273,7 @@ TEST_F(Inputs, RefuseAndCountWhatIsTooLargeOrMakesNoSense) {
   EXPECT_EQ(ends.inputs.counts().descriptions, 1u);
 }
 
-// The other side has no such limit. What comes after it arrives.
+// The writer has no such limit. The message after the oversized one arrives.
 TEST_F(Inputs, NeverSeeAMessageLargerThanTheDomainTakes) {
   Ends ends;
   const dds_entity_t writer = ends.peer.writer(

@@ -28,7 +28,7 @@ bool enter() {
          raise_loopback();
 }
 
-// Before main, so that no thread is left outside.
+// Before main, so that every thread is inside.
 const bool entered = enter();
 
 }  // namespace

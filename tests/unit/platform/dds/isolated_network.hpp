@@ -1,12 +1,12 @@
-// A network of the test's own: a loopback interface and nothing else, so that no packet of a test
-// leaves it and nothing from outside disturbs it.
+// Network namespace with a loopback interface only: no packet of a test leaves it, and none from
+// outside enters.
 #pragma once
 
 #include <gtest/gtest.h>
 
 namespace glint {
 
-// Enters it with the whole process, once; false where the machine forbids it.
+// Moves the process into the namespace, once. Returns false if the system forbids it.
 [[nodiscard]] bool in_isolated_network();
 
 class DdsTest : public testing::Test {

@@ -1,4 +1,4 @@
-// offer() is called by the tick thread: it must never reach the heap.
+// offer() runs on the tick thread and must not allocate.
 #include "platform/dds/dds_sink.hpp"
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/platform/dds/isolated_network.hpp"

@@ -1,5 +1,5 @@
-// A tick that is late, or that its bound says will be, as its DDS readers see it: one status a tick
-// that says what was done instead, or none, which the next one counts.
+// Status of a late or predicted-late tick as DDS readers receive it: exactly one per tick, with the
+// substitute's reason; or none, which the next status counts.
 #include <map>
 #include <memory>
 
@@ -20,7 +20,7 @@ constexpr std::uint32_t k_first = 26, k_last = 33;
 constexpr std::uint32_t k_missed = 28, k_will_miss = 31;
 constexpr Time k_taken = Time{} + milliseconds(100);
 
-// The pen as frame 5 saw it, 4 ms before the first tick, on its way along x at 0.1 m/s.
+// The pen as seen in frame 5, 4 ms before the first tick, moving along x at 0.1 m/s.
 Estimates seen_pen() {
   Estimates estimates;
   estimates.tool_count = 1;
@@ -40,7 +40,7 @@ Estimates seen_pen() {
   return estimates;
 }
 
-// No clock: time within a tick is what is injected.
+// No clock: the time within a tick is injected.
 RunnerSettings<Output> late_twice(const Cell& cell) {
   RunnerSettings<Output> settings;
   settings.live = false;
@@ -108,7 +108,7 @@ TEST_P(OverrunStatus, SaysOnceWhatLeftInPlaceOfATickThatWasNotInTime) {
                              : GetParam() == OverrunPolicy::stop_safe ? TrackState::lost
                                                                       : TrackState::predicted;
     EXPECT_EQ(status.state, static_cast<std::uint8_t>(state));
-    // In time there is no pose of the robot: nobody gave its frame here.
+    // A tick in time has no pose of the robot: the robot's frame is unknown here.
     const Reason reason = late ? reason_of(GetParam()) : Reason::no_reference;
     EXPECT_EQ(status.reason, static_cast<std::uint8_t>(reason));
   }

@@ -1,5 +1,5 @@
-// Another DDS participant, as a ROS 2 node would be: in a Cyclone domain of its own within this
-// process, so that it meets the sink only through packets on the loopback interface.
+// Another DDS participant, like a ROS 2 node. It has its own Cyclone domain in this process, so its
+// only connection to the sink is the loopback interface.
 #pragma once
 
 #include <dds/dds.h>
@@ -18,10 +18,10 @@
 
 namespace glint {
 
-// Whatever is to come over a network comes within this, or the test fails.
+// Timeout of everything that is received over the network.
 inline constexpr int k_patience_ms = 10'000;
 
-// Waits until `done` holds; false when patience is over.
+// Waits until `done` returns true. Returns false at the timeout.
 template <class Done>
 [[nodiscard]] bool comes_true(Done done) {
   for (int waited = 0; waited < k_patience_ms; waited += 2) {
@@ -45,8 +45,8 @@ template <class Done>
 
 class Peer {
  public:
-  // Of several in one process each needs an `own_id`: of its Cyclone domain; on the wire it is the
-  // sink's. `discovery`: further elements of Cyclone's configuration.
+  // `own_id`: the Cyclone domain, unique within the process; on the wire the sink's domain is used.
+  // `discovery`: further elements of Cyclone's configuration.
   explicit Peer(const DdsSettings& settings, dds_domainid_t own_id = 200,
                 const std::string& discovery = "")
       : settings_(settings) {
@@ -86,8 +86,9 @@ class Peer {
     return writer;
   }
 
-  // Each side has found the other's endpoints. A sink learns of readers in the order in which they
-  // were made, so it knows them all when it knows the last one, a reader of the last tool's status.
+  // Waits until both sides have discovered each other's endpoints. A sink discovers readers in
+  // order of their creation, so a reader of the last tool's status, created last, completes the
+  // discovery.
   [[nodiscard]] bool meets(const DdsSink& sink) {
     const int known = status_readers_;
     for (const std::string& tool : settings_.tool_names) {
@@ -102,7 +103,7 @@ class Peer {
   [[nodiscard]] dds_entity_t participant() const { return participant_; }
 
  private:
-  // XCDR1, as rmw_cyclonedds has it. The caller deletes it.
+  // XCDR1, as in rmw_cyclonedds. The caller deletes the result.
   static dds_qos_t* quality(Reliability reliability, Durability durability, int depth) {
     dds_qos_t* qos = dds_create_qos();
     dds_qset_reliability(qos,
@@ -125,7 +126,8 @@ class Peer {
   dds_entity_t participant_ = 0;
 };
 
-// Hands messages to `use` until there were `count` or patience is over. How many there were.
+// Passes messages to `use` until `count` were received or the timeout passes. Returns the number
+// received.
 template <class Message, class Use>
 [[nodiscard]] std::size_t take(dds_entity_t reader, std::size_t count, Use use) {
   std::size_t taken = 0;

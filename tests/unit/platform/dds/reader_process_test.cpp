@@ -23,7 +23,7 @@ class ReaderProcesses : public DdsTest {
   std::string file_ = testing::TempDir() + "glint_dds_reader_" + std::to_string(getpid()) + ".json";
 };
 
-// Offers samples as fast as the sink takes them, so that the ring never overflows.
+// Offers samples at the sink's pace, so that the ring never overflows.
 void offer_paced(DdsSink& sink, std::uint32_t first, std::uint32_t count) {
   for (std::uint32_t i = first; i < first + count; ++i) {
     sink.offer(i % 10 == 0 ? lost_sample_at(i) : sample_at(i));
@@ -37,7 +37,7 @@ void offer_paced(DdsSink& sink, std::uint32_t first, std::uint32_t count) {
   }
 }
 
-// Fewer than the sink keeps to be asked for again: a reliable reader gets them all.
+// Fewer samples than the sink keeps for retransmission: a reliable reader receives all of them.
 TEST_F(ReaderProcesses, ReceiveAllThatTheSinkKeeps) {
   DdsSink sink(test_settings());
   ReaderProcess reader(test_settings(), file_);
@@ -104,7 +104,7 @@ TEST_F(ReaderProcesses, CountWhatWasWrittenBeforeTheyCame) {
   EXPECT_EQ(result.received + result.missed, 500u);
 }
 
-// The reader stands still while more is written than the sink keeps for it and its socket holds.
+// The reader is stopped while more samples are written than the sink and the socket can hold.
 TEST_F(ReaderProcesses, CountWhatWasLostOnTheWay) {
   DdsSink sink(test_settings());
   ReaderProcess reader(test_settings(), file_);

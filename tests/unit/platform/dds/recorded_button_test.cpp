@@ -1,4 +1,4 @@
-// From a button's topic into the recording that `glint path` reads.
+// End to end: from a button's topic into the recording that `glint path` reads.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -84,8 +84,8 @@ TEST_F(RecordedButton, AToolNamedOverDdsReachesARunsRosterWhereTheCellAllowsIt) 
   EXPECT_EQ(outcome.tool_orders[0].added, 0u);
 }
 
-// The run's button readers are announced after those of tools, so that whoever found the last one
-// found all.
+// The sink creates the button readers after the tool readers. A peer that has discovered the last
+// one has discovered all.
 TEST_F(RecordedButton, NobodyReadsToolNamesUnlessTheCellAllowsIt) {
   const TemporaryFolder folder;
   SinkOptions options;

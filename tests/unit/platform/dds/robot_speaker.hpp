@@ -1,4 +1,5 @@
-// What a robot's driver and RViz would say, from a participant of its own.
+// Simulated robot driver and RViz: publishes joint states, description and pose guess from its own
+// participant.
 #pragma once
 
 #include <string>
@@ -22,7 +23,7 @@ class RobotSpeaker {
     guess_ = peer_.writer(pose_covariance_type(), k_initial_pose_topic, Reliability::reliable,
                           Durability::volatile_data, 10);
   }
-  // Whom it speaks to knows its joints and its guess.
+  // Whether a reader of the joint states and one of the guess are matched.
   [[nodiscard]] bool is_known() const { return has_reader(joint_states_) && has_reader(guess_); }
   void say_description(std::string urdf) {
     const TextMessage message{urdf.data()};
@@ -42,7 +43,7 @@ class RobotSpeaker {
     message.pose.pose.orientation = {q.x(), q.y(), q.z(), q.w()};
     dds_write(guess_, &message);
   }
-  // To listen to those whom it speaks to.
+  // The participant, to create readers on.
   [[nodiscard]] Peer& peer() { return peer_; }
 
  private:

@@ -1,4 +1,4 @@
-// Settings and samples that the DDS tests share.
+// Settings and samples shared by the DDS tests.
 #pragma once
 
 #include "kernels/wire/pose_sample.hpp"
@@ -6,7 +6,7 @@
 
 namespace glint {
 
-// The board's clock began at this Unix time.
+// Unix time at which the companion computer's clock started.
 inline constexpr Duration k_board_start{1'700'000'000'000'000'000};
 inline constexpr Duration k_period = milliseconds(4);
 
@@ -14,11 +14,11 @@ inline DdsSettings test_settings() {
   DdsSettings settings;
   settings.tick_period = k_period;
   settings.unix_minus_board = k_board_start;
-  settings.button_timeout = milliseconds(3'600'000);  // never by itself
+  settings.button_timeout = milliseconds(3'600'000);  // effectively no timeout
   return settings;
 }
 
-// Tick number `number` of a tool, with a pose that differs from tick to tick.
+// Tick `number` of a tool; the pose differs between ticks.
 inline PoseSample sample_at(std::uint32_t number, std::uint8_t tool = 0) {
   PoseSample sample;
   sample.tick = Time{} + k_period * number;

@@ -255,7 +255,7 @@ TEST_F(Sinks, TellWhereARobotThatIsFollowedNowStandsBesideTheOtherStaticTransfor
     }
   };
   const std::map<std::string, double> now{{"hmd_tof_optical", 0.0}, {"robot_base", 0.7}};
-  // One that listens early may hear first where it stood.
+  // A reader that matches early may receive the previous pose first.
   for (int message = 0; message < 2 && places != now; ++message)
     EXPECT_EQ(take<TfMessage>(reader, 1, hear), 1u);
   EXPECT_EQ(places, now);
@@ -301,7 +301,7 @@ TEST_F(Sinks, CountEverySampleThatTheyCannotWrite) {
   sink.start();
   EXPECT_FALSE(sink.offer(sample_at(0, 1)));  // there is no tool 1
   sink.offer(sample_at(5));
-  sink.offer(sample_at(5));  // the tick does not advance
+  sink.offer(sample_at(5));  // repeated tick number
   sink.offer(sample_at(4));
   sink.stop();
   EXPECT_FALSE(sink.offer(sample_at(6)));

@@ -41,8 +41,8 @@ TEST(StreamCounters, MissAllWhereOnlyTheEndCame) {
 TEST(StreamCounters, DoNotCallMissedWhatWasNeverSent) {
   StreamCounter counter;
   counter.add(at(0));
-  counter.add(at(11, 10));  // all ten between were dropped before they were sent
-  counter.add(at(15, 11));  // one of the three between
+  counter.add(at(11, 10));  // all ten in between were dropped before sending
+  counter.add(at(15, 11));  // one of the three in between
   EXPECT_EQ(counter.missed(), 2u);
 }
 
@@ -66,7 +66,8 @@ TEST(StreamCounters, BeginAnewWhenTheSinkWasRestarted) {
   EXPECT_EQ(counter.missed(), 1u);
 }
 
-// 300 Hz: no whole number of nanoseconds. A day long the rounding must not add up.
+// 300 Hz: the period is not a whole number of nanoseconds. Rounding errors must not accumulate over
+// a day.
 TEST(StreamCounters, DoNotDriftWhereAPeriodIsNoWholeNumber) {
   StreamCounter counter;
   constexpr std::int64_t day = 300LL * 86'400;
@@ -81,7 +82,7 @@ TEST(StreamCounters, DoNotDriftWhereAPeriodIsNoWholeNumber) {
 TEST(StreamCounters, IgnoreMarksThatCannotBe) {
   StreamCounter counter;
   counter.add({k_start, k_start, Duration{}, 0});
-  counter.add(at(2, 5));  // more not sent than ticks gone by
+  counter.add(at(2, 5));  // more unsent messages than elapsed ticks
   EXPECT_EQ(counter.received(), 0u);
   EXPECT_EQ(counter.missed(), 0u);
 }

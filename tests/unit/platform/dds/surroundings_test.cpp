@@ -1,4 +1,4 @@
-// A map, its octomap and a path as another participant gets them, also one that comes later.
+// Map, octomap and path as another participant receives them, also one that joins late.
 #include "platform/dds/surroundings_publisher.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ dds_entity_t late_reader(Peer& peer, const TopicType& type, const std::string& t
   return peer.reader(type, topic, Reliability::reliable, Durability::transient_local, depth);
 }
 
-// The map was published before its listener was there.
+// The map is published before its reader exists.
 TEST_F(Surroundings, GiveALateListenerAllOfACloudInPieces) {
   SurroundingsPublisher publisher(test_settings());
   const auto points = ramp(10'000, 0), normals = ramp(10'000, 0.25f);

@@ -1,5 +1,5 @@
-// What readers learn of time: when a frame was taken, when its pose left and for when it holds, and
-// what was late or only best effort.
+// Timing fields as readers receive them: exposure time, publication time and validity of a pose;
+// overruns and losses.
 #include <map>
 #include <string>
 #include <vector>
@@ -209,7 +209,7 @@ TEST_F(TimingFields, SayInDiagnosticsThatTheRobotWasSeenElsewhereAndHowFar) {
   EXPECT_EQ(jumped.values.at("unsure"), "2");
   EXPECT_EQ(jumped.values.at("jump_mm"), "31.200000");
   EXPECT_NEAR(std::stod(jumped.values.at("jump_deg")), 2.0054, 1e-3);
-  robot.jumped = false;  // seen again where it is taken to be
+  robot.jumped = false;  // detected again at its expected pose
   EXPECT_EQ(diagnostic_entry(settings, "glint: robot").level, 0);
 }
 

@@ -1,7 +1,6 @@
-// The hashes that endpoints carry are made again here from the message definitions: RIHS01 is the
-// SHA-256 of a type's description, and of all types that it refers to by name, as JSON with a space
-// after each comma and colon (ROS 2 type_description_interfaces;
-// rosidl_generator_type_description).
+// Recomputes the endpoints' type hashes from the message definitions. RIHS01 is the SHA-256 of the
+// descriptions of a type and of all types that it refers to, as JSON with a space after each comma
+// and colon (ROS 2 type_description_interfaces; rosidl_generator_type_description).
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -19,14 +18,14 @@
 namespace glint {
 namespace {
 
-// type_description_interfaces/msg/FieldType: a plain type's number; an unbounded sequence of it is
-// 144 more, a fixed array 48 more.
+// type_description_interfaces/msg/FieldType: number of a plain type; an unbounded sequence adds
+// 144, a fixed array 48.
 const std::map<std::string, int> plain_types = {{"int8", 2},   {"uint8", 3},  {"int32", 6},
                                                 {"uint32", 7}, {"uint64", 9}, {"double", 11},
                                                 {"bool", 15},  {"byte", 16},  {"string", 17}};
 constexpr int k_nested = 1, k_array = 48, k_sequence = 144;
 
-using Definitions = std::map<std::string, std::string>;  // type name to its definition
+using Definitions = std::map<std::string, std::string>;  // type name to definition
 
 Definitions ros_definitions() {
   Definitions types = {
@@ -84,7 +83,7 @@ std::string full_name(const std::string& type) {
   return type.substr(0, slash) + "/msg" + type.substr(slash);
 }
 
-// One type's description; the types it refers to join `nested`.
+// Description of one type. Adds the types that it refers to to `nested`.
 std::string description(const Definitions& types, const std::string& type,
                         std::set<std::string>& nested) {
   std::string fields;

@@ -1,4 +1,4 @@
-// What discovery tells a reader about the writer that it found.
+// Discovery data of a writer as a reader receives it.
 #pragma once
 
 #include <dds/dds.h>

@@ -1,4 +1,4 @@
-// What other vendors' readers see: bytes, names and qualities as they arrive over the network.
+// Wire format for readers of other vendors: bytes, names and QoS as received over the network.
 #include <dds/ddsi/ddsi_serdata.h>
 
 #include <array>
@@ -123,7 +123,7 @@ TEST_F(WireFormat, ReachesBestEffortReadersToo) {
                                           Durability::volatile_data, 5);
   ASSERT_TRUE(peer.meets(sink));
   sink.start();
-  // One may be lost: that is what best effort means.
+  // Best effort may lose a message.
   std::uint32_t tick = 0;
   EXPECT_TRUE(comes_true([&] {
     sink.offer(sample_at(tick++));
@@ -135,7 +135,7 @@ TEST_F(WireFormat, ReachesBestEffortReadersToo) {
   }));
 }
 
-// A sink that leaves has not declared its poses void.
+// A sink that terminates must not dispose its poses.
 TEST_F(WireFormat, DisposesOfNothingWhenTheSinkLeaves) {
   Peer peer(test_settings());
   const dds_entity_t reader = peer.reader(pose_stamped_type(), pen.pose, Reliability::reliable,
