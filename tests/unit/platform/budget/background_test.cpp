@@ -1,4 +1,4 @@
-// The third group from a cell's [background] to plans, checks and boards.
+// Background group of a cell's [background] section in schedules, checks and board files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ struct Fixture {
                    double ns_a_count = 0.2)
       : cell(cell_with(background)), board(flat_board(ns_a_count)), limits(small_limits()) {
     limits.background_steps = k_steps;
-    limits.reference_steps = 0;  // no robot is followed
+    limits.reference_steps = 0;  // no robot is tracked
     model = task_model_of(cell, board.table(), board.system, limits);
     model.cores = cores;
     plan = synthesize(model);
@@ -59,10 +59,10 @@ struct Fixture {
   Plan plan;
 };
 
-// 0.2 ns for the call and for each step, its last point's among them: rounded up.
+// 0.2 ns for the call and for each step, including those of the last point; rounded up.
 constexpr std::int64_t k_slice_ns = 2'801;
 static_assert(5 * (k_slice_ns - 1) == k_steps + k_map_item_steps_max);
-constexpr std::int64_t k_idle_ns = 1;  // of a robot that is not followed
+constexpr std::int64_t k_idle_ns = 1;  // FollowRobot without a robot
 
 TEST(BackgroundGroupOfACell, HasItsPeriodAsGapAndDeadlineAndItsSliceAsBound) {
   const Fixture fixture;
@@ -105,11 +105,11 @@ TEST(BackgroundGroupOfACell, NeedsABoardThatPricesItsSlice) {
   }
 }
 
-// A board may leave the background out; it then serves every cell that has none.
+// A board file may leave out the background graph; it then serves every cell without one.
 TEST(BackgroundGroupOfACell, IsPricedByTheBuiltInBoardsThatNameItsGraph) {
   int priced = 0;
   for (const std::string& name : built_in_boards()) {
-    // Another compiler's build refuses all boards: what is asked here is what they price.
+    // The build of another compiler rejects all board files; this test checks costs only.
     const Cell cell = cell_with("[background]\n");
     Board board;
     try {
@@ -146,7 +146,7 @@ TEST(BackgroundPlanFile, OfOtherGroupsThanTheCellsIsRefusedEitherWay) {
   EXPECT_NE(said.find("the cell's groups frame, tick"), std::string::npos) << said;
 }
 
-// What a person may do to it: another core, another place in the file, another priority.
+// Manual edits: another core, another position in the file, another priority.
 TEST(BackgroundPlanFile, EditedByHandIsJudgedAgain) {
   const Fixture fixture;
   const std::string text = plan_text(fixture.plan, fixture.model);
@@ -157,11 +157,11 @@ TEST(BackgroundPlanFile, EditedByHandIsJudgedAgain) {
     std::string moved = third;
     for (std::size_t at = 0; (at = moved.find("core = ", at)) != std::string::npos; at += 8)
       moved.replace(at, 8, core);
-    // When each starts is computed where it is not said.
+    // Missing start times are computed.
     const std::string start = "start_ns = 0, ";
     for (std::size_t at = 0; (at = moved.find(start)) != std::string::npos;)
       moved.erase(at, start.size());
-    // Ahead of the others in the file: groups are known by name.
+    // Before the other groups in the file: groups are identified by name.
     std::string first = text.substr(0, from);
     first.insert(first.find("\n[[group]]"), moved);
     const Plan plan = fixture.read(first);
@@ -229,7 +229,7 @@ TEST(BackgroundCheck, ScaledByHandMakesTheSliceAndWhatItBlocksGrow) {
 }
 
 TEST(BackgroundCheck, FindsTheFactorThatASliceMayGrowByAndNoMore) {
-  // Slices of 70 us: a tick of 4 ms has less than a thousand of them.
+  // Slices of 70 us: a tick of 4 ms has time for less than a thousand of them.
   const Fixture fixture(1, "[background]\n", 5.0);
   const CheckResult result = check(fixture.input(), {});
   const auto named = [](const KernelSlack& kernel) { return kernel.name == "ExtendMap"; };

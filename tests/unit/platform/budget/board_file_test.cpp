@@ -149,7 +149,7 @@ TEST(BoardFile, AnUnknownNameIsAnsweredWithTheKnownOnes) {
   }
 }
 
-// The toy's second graph: not every cell runs it.
+// The toy kernel's second graph: not every cell runs it.
 BoardExpectation with_an_optional_graph() {
   static constexpr std::array<std::string_view, 2> k_loops = {"call", "steps"};
   BoardExpectation expected = toy_expectation();

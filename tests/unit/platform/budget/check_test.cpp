@@ -73,7 +73,7 @@ TEST(Check, BreakEvenClockHoldsAndABitLessDoesNot) {
   EXPECT_EQ(check_json(fixture.input(), options, slow)["void"].size(), 1U);
 }
 
-// The percentage at the end of the row that begins with these words.
+// Percentage at the end of the row that starts with `words`.
 double percent_in(const std::string& table, const std::string& words) {
   const std::size_t at = table.find("\n" + words + " ");
   EXPECT_NE(at, std::string::npos) << words << " has no row in\n" << table;
@@ -108,7 +108,7 @@ TEST(Check, ShowsTheSlackOfEveryNodeOfEveryChainAndOfTheSystem) {
 }
 
 TEST(Check, ScalesOneKernelUpToItsSlackAndNoFurther) {
-  const Fixture fixture(5.0);  // slow enough that FindBlobs has an end to its slack
+  const Fixture fixture(5.0);  // slow enough that the slack of FindBlobs is finite
   const CheckResult result = check(fixture.input(), {});
   for (const KernelSlack& slack : result.kernels) {
     if (slack.name != "FindBlobs") continue;
@@ -187,7 +187,7 @@ TEST(Check, RefusesAPlanMadeForFewerToolsThanTheCellHas) {
 TEST(BusFrames, CarryWhatTheCellSendsAndNoIdentifierTwice) {
   const Cell cell = default_cell();
   const auto own = own_frames_of(cell, 2);
-  // Two tools of five frames, heartbeat, two of time, an emergency each.
+  // Two tools of five frames each, heartbeat, two time frames, an emergency each.
   EXPECT_EQ(own.size(), 2U * 5 + 1 + 2 + 2);
   EXPECT_EQ(own.front().identifier, cell.can.base_id);
   for (const CanMessage& frame : own) EXPECT_TRUE(frame.fifo);

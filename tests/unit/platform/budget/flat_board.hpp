@@ -1,4 +1,4 @@
-// A board that prices every loop alike, and a small problem to solve on it.
+// Board file with the same cost for every loop, and a small problem for it.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace glint {
 
-// Every loop of every kernel at one price.
+// Every loop of every kernel costs `ns_a_count`.
 inline Board flat_board(double ns_a_count) {
   Board board;
   board.name = "flat";

@@ -52,7 +52,7 @@ TEST(ImageInputs, NeverDriveALoopBeyondItsMaximum) {
   }
 }
 
-// The maxima are within reach, all of them together: a bound made of them is not loose.
+// One input reaches the maxima of all loops together: a bound from the maxima is tight.
 TEST(ImageInputs, DriveEveryLoopToItsMaximumAtOnce) {
   Limits cell = several_limits()[1];
   for (const auto& kernel : image_kernels()) {

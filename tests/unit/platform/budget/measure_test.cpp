@@ -1,5 +1,5 @@
-// Measures a kernel of known work through the real programs: glint_measure_toy is glint_measure
-// with that kernel in place of Glint's own.
+// Measures a kernel of known work with the real programs. glint_measure_toy is glint_measure with
+// that kernel instead of Glint's own.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -83,10 +83,10 @@ TEST(CountInstructions, CountsExactlyWhatALoopAdds) {
   const double cell = cost_at(64);
   const double most = cost_at(256);
   ASSERT_GE(none, 0);
-  // A step is some whole number of instructions, the same one wherever the loop is long.
+  // A step costs a constant whole number of instructions in a long loop.
   const double step = (most - cell) / (256 - 64);
   EXPECT_EQ(step, static_cast<double>(static_cast<int>(step)));
-  EXPECT_GE(step, 3);  // load, reckon, store
+  EXPECT_GE(step, 3);  // load, compute, store
   EXPECT_LT(cell - none - 64 * step, 10);
 }
 
@@ -184,7 +184,7 @@ TEST(Observations, AreRefusedWhereTheyAreNotWhole) {
   EXPECT_THROW((void)parsed("loops call\nworst 2 1\n", {}), InputError);
 }
 
-// A kernel that is dearer than its board says is no news to hide: the bound does not hold.
+// A kernel that costs more than its board file states must fail: the bound does not hold.
 TEST(CostFit, SeesACallAboveTheBoundOfABoard) {
   const KernelObservations seen = parsed(k_seen, {0, 1000});
   const std::array<std::string_view, 2> loops = {"call", "steps"};
@@ -218,7 +218,7 @@ TEST(CostFit, MakesABoardOfEveryKernelOrNone) {
   EXPECT_EQ(bound_ns(board.costs.at(0), {{1, 10}}), 2000);
 }
 
-// A graph that comes to a board later is priced alone, so that no other cost changes.
+// A graph added to a board file is priced alone, so that no other cost changes.
 TEST(CostFit, PutsOneKernelsCostsIntoABoardAndLeavesTheOthersAlone) {
   const std::array<std::string_view, 2> loops = {"call", "steps"};
   const std::array<std::string_view, 1> call = {"call"};

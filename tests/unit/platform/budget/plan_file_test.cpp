@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-// The default cell's groups on two cores, with bounds as a board might have them.
+// The default cell's groups on two cores, with bounds as in a board file.
 TaskModel bounded_model() {
   TaskModel model = task_structure_of(default_cell());
   model.cores = 2;
@@ -44,7 +44,7 @@ std::string refusal(const std::string& text) {
   return "accepted";
 }
 
-// The plan's text with its first `from` replaced.
+// The schedule's text with its first `from` replaced.
 std::string edited(const std::string& from, const std::string& to) {
   std::string text = plan_text(plan_of(bounded_model()), bounded_model());
   const std::size_t at = text.find(from);
@@ -140,7 +140,7 @@ TEST(PlanFile, RefusesALeftOutNodeACycleAndAStartThatCannotBe) {
   EXPECT_NE(refusal(without(text, find_blobs)).find("group \"frame\" leaves out FindBlobs"),
             std::string::npos);
 
-  // FindBlobs ahead of everything on its core: it waits for what its own core runs later.
+  // FindBlobs first on its core: it waits for nodes that the same core runs later.
   std::string early = find_blobs;
   early.erase(early.find(", start_ns"), early.find(", bound_ns") - early.find(", start_ns"));
   std::string cycle = without(text, find_blobs);

@@ -1,5 +1,5 @@
-// The inputs of the pose, output and background kernels: what they may do, and that the worst one
-// does all of it.
+// Inputs of the pose, output and background kernels: they stay within the declared loop maxima, and
+// the worst input reaches all of them.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -21,7 +21,7 @@ Kernels whole_kernels() {
   add_output_kernels(kernels);
   return kernels;
 }
-// Those that stop where their steps are used up.
+// Kernels that stop when their steps are used up.
 Kernels sliced_kernels() {
   Kernels kernels;
   add_background_kernels(kernels);
@@ -80,7 +80,7 @@ TEST(PoseInputs, WorstDrivesEveryLoopToItsMaximum) {
   }
 }
 
-// A slice with work left goes beyond its steps by its last item only.
+// A slice with work left exceeds its steps by its last item only.
 TEST(BackgroundInputs, WorstUsesAllStepsOfASlice) {
   for (const auto& kernel : sliced_kernels()) {
     for (const Limits& limits : all_limits()) {

@@ -1,4 +1,5 @@
-// A chain of two nodes with budgets, and a board that prices it: small enough to reckon by hand.
+// Chain of two nodes with budgets and a board file with their costs: small enough to calculate by
+// hand.
 #pragma once
 
 #include "graph/graph.hpp"

@@ -1,5 +1,5 @@
-// A kernel of known work, in place of Glint's own: each count of its loop is one step of a
-// generator, and its worst input makes as many steps as there may be blobs.
+// Kernel of known work instead of Glint's own: each count of its loop is one step of a generator,
+// and its worst input takes as many steps as the maximum number of blobs.
 #include <array>
 
 #include "platform/budget/measured_kernel.hpp"

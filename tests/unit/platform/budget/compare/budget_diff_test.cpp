@@ -46,7 +46,8 @@ TEST(TwoSamples, ShowNoneWhereThereIsNone) {
   EXPECT_LE(shown, 8);  // 2 expected
 }
 
-// Times that hang together are worth fewer: single resampled values would claim too much.
+// Autocorrelated times carry less information: resampling single values would give too narrow an
+// interval.
 TEST(TwoSamples, WidenTheIntervalWhereTimesHangTogether) {
   const auto a = draws(3, 2000, 1, 0.9), b = draws(4, 2000, 1, 0.9);
   const RatioInterval together = median_ratio(a, b, 0.95, 400, 1);
@@ -85,7 +86,7 @@ class Diff : public testing::Test {
     std::ofstream(of(name)) << json.dump();
   }
 
-  // Every span of one node takes this much longer.
+  // Multiplies the duration of every span of one node by `factor`.
   void slow_down(const char* name, std::uint8_t node, double factor) const {
     TraceFile trace = read_trace(of(name));
     for (TraceSpan& span : trace.spans) {
@@ -119,7 +120,7 @@ TEST_F(Diff, TellsOneInstructionMore) {
 
 TEST_F(Diff, SaysNothingBecameSlowerBetweenEqualRuns) {
   const BudgetDiff diff = budget_diff(of("a/run"), of("b/run"), {});
-  EXPECT_EQ(diff.rows.size(), 17U);  // 16 nodes and the way to the bus
+  EXPECT_EQ(diff.rows.size(), 17U);  // 16 nodes and the stage to the bus
   EXPECT_FALSE(diff.worse());
 }
 

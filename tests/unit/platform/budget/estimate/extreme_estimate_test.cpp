@@ -39,7 +39,7 @@ std::vector<double> gumbel_series(std::uint64_t seed) {
   return draws.series(k_many, [&](std::size_t) { return draws.gumbel(100, 5); });
 }
 
-// Exceeded once in a million draws: -ln(-ln(1 - 1e-6)) scales above the location.
+// Level with exceedance probability 1e-6: -ln(-ln(1 - 1e-6)) scales above the location.
 const double k_true_level = 100 - 5 * std::log(-std::log1p(-1e-6));
 
 TEST(ExtremeEstimate, FindsTheLevelOfAKnownDistributionWithinItsInterval) {
@@ -52,7 +52,7 @@ TEST(ExtremeEstimate, FindsTheLevelOfAKnownDistributionWithinItsInterval) {
     ++applicable;
     inside += estimate.low <= k_true_level && k_true_level <= estimate.high ? 1 : 0;
   }
-  EXPECT_LE(refused, 9);  // six tests at 1 % each refuse at most 6 % of good series: 4 expected
+  EXPECT_LE(refused, 9);  // 4 expected: six tests at 1 % reject at most 6 % of valid series
   EXPECT_GE(applicable, 40);
   EXPECT_GE(inside, applicable * 85 / 100);
 }
@@ -105,7 +105,7 @@ TEST(ExtremeEstimate, RefusesTwoModesThatTakeTurns) {
   EXPECT_FALSE(estimate_by_exceedances(series).applicable);
 }
 
-// Independent, so that only the other half can tell that no one distribution of maxima fits.
+// Independent values: only the second half shows that no single distribution of maxima fits.
 TEST(ExtremeEstimate, RefusesARareModeFarOutBecauseTheOtherHalfDisagrees) {
   Draws draws(10);
   const auto series = draws.series(40'000, [&](std::size_t) {
@@ -116,7 +116,7 @@ TEST(ExtremeEstimate, RefusesARareModeFarOutBecauseTheOtherHalfDisagrees) {
   EXPECT_NE(estimate.why.find("does not hold on the other"), std::string::npos) << estimate.why;
 }
 
-// One value far out of five thousand makes a tail that could reach anywhere.
+// One outlier in five thousand values leaves the tail unbounded.
 TEST(ExtremeEstimate, RefusesALevelThatTheValuesLeaveOpen) {
   auto series = gumbel_series(14);
   series[1234] = 2000;
@@ -168,7 +168,7 @@ TEST(ExtremeFit, GivesBackTheProbabilityOfItsOwnQuantile) {
   }
 }
 
-// A test at level 1 % refuses about 1 % of series that are what it assumes: neither many nor none.
+// A test at significance level 1 % rejects about 1 % of valid series, neither many more nor none.
 TEST(SeriesTests, RefuseAsManyGoodSeriesAsTheyClaim) {
   int refused[4] = {};
   constexpr int trials = 2000;
@@ -181,18 +181,18 @@ TEST(SeriesTests, RefuseAsManyGoodSeriesAsTheyClaim) {
     refused[3] += halves_alike(series) < 0.01 ? 1 : 0;
   }
   for (const int count : refused) {
-    EXPECT_GE(count, 5);  // 20 expected; binomial, four deviations
+    EXPECT_GE(count, 5);  // 20 expected; binomial, four standard deviations
     EXPECT_LE(count, 40);
   }
 }
 
-// Mann 1945's S of a short series by hand: 9 of 10 pairs rise, so S = 8, var = 50 / 3.
+// Mann 1945: S of a short series by hand. 9 of 10 pairs rise, so S = 8, var = 50 / 3.
 TEST(SeriesTests, CountTheRisingPairsOfAShortSeries) {
   const double series[] = {1, 2, 4, 3, 5};
   EXPECT_NEAR(mann_kendall(series), two_sided_normal_p(7 / std::sqrt(50.0 / 3)), 1e-12);
 }
 
-// The tabulated 5 % and 1 % points of the limit distribution.
+// Tabulated 5 % and 1 % points of the limit distribution.
 TEST(SeriesTests, KnowTheKolmogorovDistributionsTable) {
   const double n = 1e6, scale = std::sqrt(n) + 0.12 + 0.11 / std::sqrt(n);
   EXPECT_NEAR(kolmogorov_p(1.3581 / scale, n), 0.05, 1e-4);

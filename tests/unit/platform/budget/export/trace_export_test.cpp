@@ -79,7 +79,7 @@ TEST(TraceFile, KeepsOfOneFrameWhatRanUntilItLeft) {
   EXPECT_THROW((void)around_frame(trace, 99), InputError);
 }
 
-// Source: Protocol Buffers, Encoding: its own examples, 150 and "testing".
+// Source: Protocol Buffers, Encoding: examples 150 and "testing".
 TEST(ProtobufWriter, WritesTheFormatsOwnExamples) {
   ProtobufWriter writer;
   writer.number(1, 150);
@@ -107,7 +107,7 @@ TEST(TraceExport, GivesCsvARowASpanAndAlwaysTwelveColumns) {
   for (const std::string& line : lines) EXPECT_EQ(columns_of(line).size(), 12U) << line;
 }
 
-// Best Trace Format: eight columns in time, and each entity in the states that its events allow.
+// Best Trace Format: eight columns in order of time; each entity follows its state machine.
 TEST(TraceExport, GivesBtfEveryTaskAndRunnableInItsOrderOfStates) {
   const auto lines = lines_of(btf_trace(sample_trace({.frames = 20})));
   std::map<std::string, std::string> state;

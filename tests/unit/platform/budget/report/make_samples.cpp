@@ -1,4 +1,4 @@
-// Leaves the sample files in a folder, for checks that are commands: make_samples FOLDER
+// make_samples FOLDER: writes the sample files for checks that are shell commands.
 #include <cstdio>
 
 #include "tests/unit/platform/budget/report/sample_files.hpp"

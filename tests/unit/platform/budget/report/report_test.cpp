@@ -110,7 +110,7 @@ TEST_F(BudgetReport, KeepsBoundEstimateAndObservedInColumnsOfTheirOwn) {
   EXPECT_EQ(document.headlines[1].kind, NumberKind::estimate);
   EXPECT_EQ(document.headlines[1].value, "103 \u00b5s");
   EXPECT_EQ(document.headlines[2].kind, NumberKind::observed);
-  // A chain's computed, declared and measured shares add up to its sum.
+  // A chain's computed, declared and measured shares add up to its total.
   const Table& chains = table(section(document, "chains"));
   EXPECT_EQ(chains.columns[1].kind, NumberKind::bound);
   EXPECT_EQ(chains.columns[3].kind, NumberKind::estimate);

@@ -1,4 +1,4 @@
-// Files as the parts of `glint budget` and `glint run` leave them, small and with known content.
+// Small sample files with known content, as `glint budget` and `glint run` write them.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@ namespace glint {
 
 struct SampleSettings {
   int frames = 4000;
-  bool one_frame_above_bound = false;  // FindBlobs of one frame takes longer than its bound
+  bool one_frame_above_bound = false;  // one frame's FindBlobs exceeds its bound
   bool best_effort = true;
   bool check_fails = false;
-  bool real_time = true;  // else the run computed its latencies
+  bool real_time = true;  // false: the run computed its latencies
 };
 
-// A frame group on two cores and a tick group on the first. Times are drawn independently from
-// fixed distributions, from a fixed seed; the frame with the largest response is number 1234.
+// Trace of a frame group on two cores and a tick group on the first. Times are independent draws
+// from fixed distributions with a fixed random seed. Frame 1234 has the largest response.
 [[nodiscard]] TraceFile sample_trace(const SampleSettings& settings);
 
 // Writes measure.json, measure_time.json, check.json, footprint.json and run/{summary.json,

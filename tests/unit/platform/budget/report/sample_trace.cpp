@@ -11,12 +11,12 @@ namespace {
 struct SampleNode {
   const char* name;
   int core;
-  double start_us;  // in the plan, and so here
+  double start_us;  // as in the schedule
   double usual_us;
   double bound_us;
 };
 
-// In the plan's order; a node of one core begins when the one before it there has ended.
+// In the schedule's order. A node starts when its predecessor on the same core has ended.
 constexpr SampleNode k_frame_nodes[] = {
     {"StampFrame", 0, 0, 0.2, 1.1},        {"CheckFrame", 0, 1.1, 0.4, 2.4},
     {"PredictTracks", 0, 3.5, 1.6, 9.8},   {"LocateRois", 0, 13.3, 1.1, 7.2},
@@ -112,7 +112,7 @@ TraceFile sample_trace(const SampleSettings& settings) {
     }
     const std::int64_t end_ns = maker.frame(number, release_ns);
     newest = static_cast<std::uint32_t>(number);
-    // A tick between a frame's release and its end still reads the frame before it.
+    // A tick between a frame's release and its end still reads the previous frame.
     for (; next_tick_ns < end_ns; next_tick_ns += 4'000'000) {
       maker.tick(++tick, next_tick_ns, newest - 1);
     }
