@@ -1,5 +1,4 @@
-// A disk that fills up, for real: a tmpfs of one megabyte where the tests may mount one, else a
-// limit on the size of files.
+// Real full disk: a tmpfs of one megabyte if the test may mount one, otherwise a file size limit.
 #include <gtest/gtest.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
@@ -27,7 +26,7 @@ RecorderSettings small_chunks() {
   return settings;
 }
 
-// Records several megabytes; what the disk takes of them must be whole.
+// Records several megabytes. The part that the disk accepts must be a valid recording.
 void record_past_the_end(const std::string& path) {
   constexpr std::uint64_t k_frames = 100;  // 49 kB each
   RecordingOutcome outcome;
@@ -93,8 +92,7 @@ TEST(DiskFull, EndsTheRecordingWithItsLastWholeChunk) {
   record_past_the_end(folder.file("disk/run.mcap"));
 }
 
-// Runs `check` in a process that can write no file beyond 1 MB: the limit holds for a whole
-// process.
+// Runs `check` in a child process with a file size limit of 1 MB: the limit applies to the process.
 template <class Check>
 void with_file_limit(Check check) {
   const pid_t child = ::fork();

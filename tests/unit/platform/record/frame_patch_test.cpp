@@ -1,4 +1,4 @@
-// Which pixels of a frame are kept: planes, sizes, regions grown and cut.
+// Pixels of a frame that a recording keeps: planes, sizes, regions enlarged and clipped.
 #include "platform/record/frame_patch.hpp"
 
 #include <gtest/gtest.h>
@@ -143,7 +143,7 @@ TEST(FramePatch, LooksAtAsManyRegionsAsThereAre) {
   }
 }
 
-// Reflectivity and then depth, rectangle by rectangle, row by row.
+// Rectangle by rectangle: reflectivity, then depth, each row by row.
 TEST(FramePatch, CopiesTheRowsOfItsRectanglesInTheirOrder) {
   for (const int bits : {8, 16}) {
     const FrameBuffer buffer = sample_frame(9, 6, bits);

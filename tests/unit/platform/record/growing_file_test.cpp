@@ -1,4 +1,4 @@
-// A file that grows, and one that is read from anywhere: their room, their errors, their ends.
+// Append-only file and random-access input file: preallocated space, errors, ends.
 #include "platform/record/growing_file.hpp"
 
 #include <fcntl.h>
@@ -59,7 +59,7 @@ TEST(GrowingFile, KeepsItsBytesTheirNumberAndTheirChecksum) {
   EXPECT_EQ(text_of(std::filesystem::path(folder.file("a"))), "\1\2\3\4\5\4\5");
 }
 
-// More than one piece of a write.
+// Longer than one piece of a write.
 TEST(GrowingFile, WritesLongPartsInPieces) {
   const TemporaryFolder folder;
   GrowingFile file(folder.file("a"));
@@ -119,7 +119,7 @@ TEST(GrowingFile, SaysWhyItDidNotGetItsName) {
             folder.file("in/a.part") + ": rename at byte 9: No such file or directory");
 }
 
-// Whether it got its name or not; and no file but its own is closed.
+// With and without a final name, the file closes only its own descriptor.
 TEST(GrowingFile, LeavesTheOpenFilesOfTheProcessAsTheyWere) {
   const TemporaryFolder folder;
   const auto before = open_files();
@@ -184,7 +184,7 @@ TEST(InputFile, RefusesWhatIsNoFileAndNamesIt) {
   EXPECT_EQ(open_files(), before);
 }
 
-// A file of the kernel's: regular, but no byte of it at that place can be read.
+// A regular file of the kernel in which no byte can be read at that offset.
 TEST(InputFile, NamesTheByteThatCannotBeRead) {
   const InputFile file("/proc/self/mem");
   Bytes bytes;

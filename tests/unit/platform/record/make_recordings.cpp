@@ -1,5 +1,5 @@
-// Writes FOLDER/LEVEL.mcap for every level and FOLDER/LEVEL.json with the values that are in it:
-// what verify_mcap.mjs compares. 64-bit integers are strings in the JSON.
+// Writes FOLDER/LEVEL.mcap for every level, and FOLDER/LEVEL.json with its values, which
+// verify_mcap.mjs compares. 64-bit integers are strings in the JSON.
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// A written file's bytes, walked by the MCAP specification alone: no code of the writer or reader.
+// Parses a written file by the MCAP specification, without the writer's or reader's code.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using Text = std::string;  // of bytes
 constexpr int k_messages = 12;
 constexpr std::uint64_t k_attached_at = 77;
 
-// CRC-32 of ISO-HDLC, a bit at a time.
+// CRC-32 of ISO-HDLC, bit by bit.
 std::uint32_t checksum(const Text& bytes) {
   std::uint32_t crc = ~0U;
   for (const char c : bytes) {
@@ -55,7 +55,7 @@ class Cursor {
 
 struct Record {
   int kind = 0;
-  std::uint64_t offset = 0, length = 0;  // with the heading of nine bytes
+  std::uint64_t offset = 0, length = 0;  // including the heading of nine bytes
   Text content;
 };
 
@@ -107,9 +107,9 @@ class McapBytes : public testing::Test {
   }
   ~McapBytes() override { std::remove(path_.c_str()); }
 
-  // Each later message is earlier in time.
+  // Message times decrease.
   static std::uint64_t log_time(int i) { return 1000 - static_cast<std::uint64_t>(i); }
-  // The record that begins there has this length.
+  // Expects a record of this kind and length at this offset.
   void expect_place(std::uint64_t offset, std::uint64_t length, int kind) {
     const auto found = std::find_if(all_.begin(), all_.end(), [&](const Record& record) {
       return record.offset == offset && record.kind == kind;
@@ -135,13 +135,13 @@ TEST_F(McapBytes, BeginWithTheHeaderAndEndWithTheFooter) {
   const std::uint64_t summary = footer.number(8), offsets = footer.number(8);
   const std::uint64_t crc = footer.number(4);
   EXPECT_TRUE(footer.at_end());
-  // The summary's checksum ends in front of its own field, which the magic follows.
+  // The summary's CRC covers everything before its own field; the magic follows.
   EXPECT_EQ(crc, checksum(file_.substr(summary, file_.size() - 12 - summary)));
   const std::vector<Record> ends = of_kind(all_, 15);
   ASSERT_EQ(ends.size(), 1U);
   EXPECT_EQ(ends[0].offset + ends[0].length, summary);
   EXPECT_EQ(Cursor(ends[0].content).number(4), checksum(file_.substr(0, ends[0].offset)));
-  // A summary offset for each kind, in the order of the file.
+  // One summary offset for each kind, in file order.
   std::uint64_t at = summary;
   for (const Record& record : of_kind(all_, 14)) {
     Cursor group(record.content);
@@ -160,7 +160,7 @@ TEST_F(McapBytes, BeginWithTheHeaderAndEndWithTheFooter) {
 
 TEST_F(McapBytes, HoldEachChunkWithItsChecksumItsMessagesAndTheirIndex) {
   std::vector<int> seen;
-  std::map<std::uint64_t, std::pair<std::uint64_t, std::uint64_t>> times;  // by the chunk's place
+  std::map<std::uint64_t, std::pair<std::uint64_t, std::uint64_t>> times;  // by the chunk's offset
   const std::vector<Record> chunks = of_kind(all_, 6);
   EXPECT_GE(chunks.size(), 2U);
   for (const Record& record : chunks) {
@@ -192,7 +192,7 @@ TEST_F(McapBytes, HoldEachChunkWithItsChecksumItsMessagesAndTheirIndex) {
     EXPECT_EQ(start, first);
     EXPECT_EQ(end, last);
     times[record.offset] = {start, end};
-    // The message indexes follow the chunk: of each channel, by time.
+    // The message indexes follow the chunk: one a channel, in order of time.
     std::size_t indexes = 0;
     for (const Record& index : all_) {
       if (index.kind != 7 || index.offset < record.offset) continue;

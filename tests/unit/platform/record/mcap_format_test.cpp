@@ -1,4 +1,4 @@
-// Each record of an MCAP file: what is appended is read again, and nothing of a part of it.
+// MCAP records: each record that is appended is read back; a truncated record is rejected.
 #include "platform/record/mcap_format.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ Bytes content_of(const Bytes& record) {
   return {record.begin() + k_mcap_heading_bytes, record.end()};
 }
 
-// The record's content read by `read`, which must take all of it; no part of it may do.
+// Reads the record's content with `read`, which must consume all of it and reject every truncation.
 template <class Read>
 auto read_whole(const Bytes& record, Read read) {
   const Bytes content = content_of(record);
@@ -154,7 +154,7 @@ TEST(McapFormat, GivesBackStatistics) {
   EXPECT_EQ(back.channel_messages, statistics.channel_messages);
 }
 
-// The length of a map bounds what is read of it: a text beyond it makes all of it wrong.
+// A map's byte length bounds its content: a string beyond it invalidates the map.
 TEST(McapFormat, RefusesATextBeyondTheEndOfItsMap) {
   Bytes bytes;
   append_metadata(bytes, "name", {{"key", "value"}});
@@ -168,11 +168,11 @@ TEST(McapFormat, RefusesATextBeyondTheEndOfItsMap) {
   EXPECT_FALSE(fails());
   append(content, Bytes(40, 0));  // more bytes follow the map
   EXPECT_FALSE(fails());
-  content[4 + 4 + 4] = 4;  // the key is one byte longer than it was
+  content[4 + 4 + 4] = 4;  // the key's length is one byte too large
   EXPECT_TRUE(fails());
 }
 
-// 10 bytes a channel: half of one makes the record wrong.
+// 10 bytes a channel: half an entry invalidates the record.
 TEST(McapFormat, RefusesHalfACountOfStatistics) {
   Bytes bytes;
   append_record(bytes, McapStatistics{0, 0, 0, 0, 0, 0, 0, 0, {{9, 10}}});

@@ -1,5 +1,5 @@
-// MCAP files made by hand, each with one fault: the message names the place, what was found and
-// what was expected.
+// Hand-made MCAP files with one fault each: the message states the position, the fault and the
+// expectation.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,13 +35,13 @@ struct Ending {
   std::uint32_t data_crc = 0, summary_crc = 0;
 };
 
-// Data end, summary and footer behind the records; without checksums unless given.
+// Appends data end, summary and footer; checksums only if given.
 Bytes ended(Bytes bytes, const Ending& ending = {}) {
   append_heading(bytes, 15, 4);
   append(bytes, ending.data_crc);
   const std::uint64_t start = bytes.size();
   if (ending.summary.empty())
-    append(bytes, Bytes{0x80, 0, 0, 0, 0, 0, 0, 0, 0});  // of a kind that is none of ours
+    append(bytes, Bytes{0x80, 0, 0, 0, 0, 0, 0, 0, 0});  // unknown record kind
   append(bytes, ending.summary);
   append_footer_heading(bytes, start, 0);
   append(bytes, ending.summary_crc);
@@ -59,7 +59,8 @@ bool decode_by_xor(std::string_view compression, std::span<const std::uint8_t> f
 
 class McapRefusals : public testing::Test {
  protected:
-  // What the reader says of these bytes, without the path; the number of messages if nothing.
+  // The reader's message for these bytes without the path, or the number of messages if there is
+  // none.
   std::string said(const Bytes& bytes, ChunkDecoder decoder = nullptr,
                    McapEnding ending = McapEnding::required) {
     std::ofstream(path_, std::ios::binary)
@@ -158,7 +159,7 @@ TEST_F(McapRefusals, NameARecordThatDoesNotFit) {
   record[1] = 14;
   EXPECT_EQ(said(ended(file_with(record))),
             std::to_string(k_first) + ": a record of kind 128 and 14 bytes" + within);
-  record.resize(8);  // of a heading of nine, in front of the data end's 13
+  record.resize(8);  // one byte of a heading of nine is missing before the data end's 13 bytes
   Bytes bytes = file_with({});
   const std::uint64_t summary_at = bytes.size();
   append(bytes, record);
@@ -220,7 +221,7 @@ TEST_F(McapRefusals, NameTheKindOfARecordThatIsTooShort) {
   inside.pop_back();
   EXPECT_EQ(said(ended(file_with(chunk_of(channel_and(inside))))), at + "chunk" + end);
   Bytes chunk = chunk_of(channel_and(message_record()));
-  chunk[k_mcap_heading_bytes + 16] ^= 1;  // the number of bytes without compression
+  chunk[k_mcap_heading_bytes + 16] ^= 1;  // the uncompressed size
   EXPECT_EQ(said(ended(file_with(chunk))), at + "chunk" + end);
 }
 
@@ -337,12 +338,12 @@ TEST_F(McapRefusals, NameAnAttachmentThatIsDamaged) {
   }
 }
 
-// An index of which one record is wrong: nothing that stands in front of that one is used.
+// One record of the index is invalid: the records before it are not used either.
 TEST_F(McapRefusals, LeaveNothingOfAnIndexThatIsNotUsed) {
   Bytes hidden;
   append_metadata(hidden, "ghost", {{"a", "b"}});
   Bytes records;
-  append_heading(records, 0x80, hidden.size());  // another program's, with bytes of any kind
+  append_heading(records, 0x80, hidden.size());  // another program's kind, with arbitrary content
   append(records, hidden);
   append_record(records, McapChannel{1, 3, "/one", "cdr", {}});
   append(records, message_record(1));
@@ -354,7 +355,7 @@ TEST_F(McapRefusals, LeaveNothingOfAnIndexThatIsNotUsed) {
   append_record(ending.summary, McapAttachmentIndex{k_first, 9, 0, 0, 0, "ghost", ""});
   append_record(ending.summary, McapMetadataIndex{k_first + 9, hidden.size(), "ghost"});
   McapChunkIndex index;
-  index.offset = 8;  // the header's place
+  index.offset = 8;  // offset of the header
   index.length = 9;
   append_record(ending.summary, index);
   index.length = 8;  // wrong
@@ -372,7 +373,7 @@ TEST_F(McapRefusals, LeaveNothingOfAnIndexThatIsNotUsed) {
   EXPECT_TRUE(reader.losses().messages.empty());
 }
 
-// Of a compression that no program has, the chunk alone is lost: it is damaged.
+// An unknown compression is treated as damage: only the chunk is lost.
 TEST_F(McapRefusals, OfACompressionEndTheReadingOnlyWhereTheFileIsSound) {
   McapChunkHeading heading;
   heading.uncompressed_bytes = 10;

@@ -1,4 +1,4 @@
-// Where a chunk ends, what stands in it, and the room on the disk that is taken before it.
+// Chunks: where they end, what they contain, and the disk space that is allocated ahead of them.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/syscall.h>
@@ -14,7 +14,7 @@
 #include "tests/unit/platform/record/recording_samples.hpp"
 #include "tests/unit/text_of.hpp"
 
-// In place of the C library's: up to which byte this thread took room.
+// Replaces the C library's function: records the end of the space that this thread allocated.
 namespace {
 thread_local std::uint64_t g_room_end = 0;
 }  // namespace
@@ -68,7 +68,8 @@ std::size_t count(const std::vector<Record>& records, McapKind kind) {
       records.begin(), records.end(), [&](const Record& record) { return record.kind == kind; }));
 }
 
-// Messages in each chunk of a file of one channel, whose records have 31 bytes and the payload.
+// Number of messages in each chunk of a file with one channel. A record has 31 bytes plus the
+// payload.
 std::vector<std::size_t> messages_in_chunks(McapSettings settings,
                                             const std::vector<std::uint64_t>& times) {
   const TemporaryFolder folder;
@@ -82,7 +83,7 @@ std::vector<std::size_t> messages_in_chunks(McapSettings settings,
   return counts;
 }
 
-// 50 bytes a message; the first chunk holds the schema and the channel as well.
+// 50 bytes a message. The first chunk also contains the schema and the channel.
 TEST(McapChunk, EndsWithTheMessageThatReachesItsSize) {
   McapSettings settings;
   const std::vector<std::uint64_t> times(8, 100);
@@ -110,7 +111,7 @@ TEST(McapChunk, EndsWithTheMessageThatReachesItsSpanInEitherDirection) {
   EXPECT_EQ(messages_in_chunks(settings, {5000, 4500, 5499, 5500, 0}), (Counts{4, 1}));
 }
 
-// A reader without the index needs them, once: in front of the first message of the channel.
+// A reader without the index needs schema and channel once, before the channel's first message.
 TEST(McapChunk, DescribesEachChannelBeforeItsFirstMessage) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.mcap");
@@ -163,7 +164,7 @@ TEST(McapSummary, HasNoOffsetOfAGroupThatIsEmpty) {
     EXPECT_GT(content.number<std::uint64_t>(), 8u);
     EXPECT_GT(content.number<std::uint64_t>(), 0u);
   }
-  EXPECT_EQ(kinds, (std::set<int>{11, 13}));  // statistics and the index of metadata
+  EXPECT_EQ(kinds, (std::set<int>{11, 13}));  // statistics and the metadata index
 }
 
 struct Load {
@@ -171,9 +172,9 @@ struct Load {
   int channels, chunks, attachments, metadata;
 };
 
-// Whatever the index holds: a file that found room for its last chunk finds it for its ending.
+// For any size of the index: a file with space for its last chunk also has space for its ending.
 TEST(McapRoom, TakenBeforeTheLastPartHoldsTheEnding) {
-  constexpr std::uint64_t k_fixed_bytes = 512;  // of which the ending's fixed records take some
+  constexpr std::uint64_t k_fixed_bytes = 512;  // the ending's fixed records use part of this
   for (const Load& load : {Load{"one of each", 1, 1, 1, 1}, Load{"channels", 60, 1, 0, 0},
                            Load{"chunks", 3, 60, 0, 0}, Load{"attachments", 1, 1, 60, 0},
                            Load{"metadata", 1, 1, 0, 60}, Load{"none", 0, 0, 0, 0}}) {

@@ -18,7 +18,7 @@ constexpr int k_messages = 60;
 
 Bytes payload_of(int i) { return Bytes(static_cast<std::size_t>(i % 17), std::uint8_t(i)); }
 
-// Small chunks, so that there are many.
+// Small chunks, so that the file has many.
 void write_file(const std::string& path) {
   McapSettings settings;
   settings.chunk_bytes = 256;
@@ -143,7 +143,7 @@ TEST(Mcap, CutAnywhereIsReadUpToItsLastWholeChunkIfAskedFor) {
   EXPECT_EQ(most, k_messages);
 }
 
-// Where each record of a kind begins, and its length.
+// Offset and length of each record of a kind.
 std::vector<std::pair<std::size_t, std::size_t>> records_of(const Bytes& file, McapKind wanted) {
   std::vector<std::pair<std::size_t, std::size_t>> found;
   for (std::size_t at = k_mcap_magic.size(); at + k_mcap_heading_bytes < file.size();) {
@@ -170,7 +170,7 @@ TEST(Mcap, WithADamagedChunkLosesThatChunkAlone) {
   const Bytes bytes = read_whole(path);
   const auto chunks = records_of(bytes, McapKind::chunk);
   ASSERT_GT(chunks.size(), 5U);
-  // Its kind, its length, its heading, and its middle.
+  // Damages its kind, its length, its heading and its middle.
   for (const auto& [offset, length] : chunks) {
     for (const std::size_t place : {std::size_t{0}, std::size_t{1}, std::size_t{8}, std::size_t{30},
                                     length / 2, length - 1}) {
@@ -202,7 +202,7 @@ TEST(Mcap, ThatIsWholeLosesNothing) {
   EXPECT_EQ(reader.losses().chunks, 0U);
 }
 
-// Behind its data end a file has all its messages, whatever became of its index.
+// A file that ends after its data end has all its messages, even without an index.
 TEST(Mcap, CutBehindItsDataEndLosesNothingAndKeepsWhatStandsBetweenItsChunks) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.mcap");
@@ -230,8 +230,7 @@ TEST(Mcap, CutBehindItsDataEndLosesNothingAndKeepsWhatStandsBetweenItsChunks) {
   EXPECT_EQ(found.media_type, expected.media_type);
 }
 
-// Records between the chunks hold no message: those that the index names, and those that it does
-// not.
+// Records between the chunks contain no messages, whether or not the index lists them.
 TEST(Mcap, WithADamagedRecordBetweenItsChunksLosesItsBytesAndNoChunk) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.mcap");
@@ -240,7 +239,7 @@ TEST(Mcap, WithADamagedRecordBetweenItsChunksLosesItsBytesAndNoChunk) {
   for (const McapKind kind : {McapKind::attachment, McapKind::metadata, McapKind::message_index}) {
     const auto [offset, length] = records_of(bytes, kind).front();
     Bytes damaged = bytes;
-    damaged[offset + 5] ^= 0x10;  // a length beyond the file
+    damaged[offset + 5] ^= 0x10;  // length beyond the end of the file
     write_whole(path, damaged);
     EXPECT_NE(refusal(path), "");
     McapReader reader(path, McapEnding::optional);
@@ -284,7 +283,7 @@ TEST(Mcap, CutShortCountsTheBytesAndTheMessagesThatFollow) {
   }
 }
 
-// The last chunk of a file without an ending may have been promised by the disk alone.
+// After a crash the last chunk of an unfinished file may be missing on the disk.
 TEST(Mcap, CutShortWithADamagedChunkLosesThatChunkAlone) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.mcap");
@@ -335,7 +334,7 @@ TEST(Mcap, WithAnyByteChangedIsRefusedOrReadsTheSame) {
     ++refused;
     EXPECT_EQ(why.find(path + ":byte "), 0U) << why;
     EXPECT_NE(why.find("; expected "), std::string::npos) << why;
-    try {  // the beginning must be right; else no more than a chunk's messages are missing
+    try {  // a damaged beginning is refused; otherwise at most one chunk's messages are missing
       McapReader reader(path, McapEnding::optional);
       const int count = count_messages(reader);
       EXPECT_GE(count, k_messages - 10) << why;
@@ -345,8 +344,8 @@ TEST(Mcap, WithAnyByteChangedIsRefusedOrReadsTheSame) {
       ++refused_as_well;
     }
   }
-  EXPECT_LT(refused_as_well, 20);  // 50 bytes of some 9 kB
-  EXPECT_EQ(refused, 500);         // every byte of a file of Glint's is under some checksum
+  EXPECT_LT(refused_as_well, 20);  // 50 of about 9 kB
+  EXPECT_EQ(refused, 500);         // a checksum covers every byte of such a file
 }
 
 TEST(Mcap, WithACompressedChunkIsRefusedByTheNameOfTheCompression) {
@@ -361,14 +360,15 @@ TEST(Mcap, WithACompressedChunkIsRefusedByTheNameOfTheCompression) {
   append(bytes, std::uint32_t{0});
   append(bytes, k_mcap_magic);
   write_whole(path, bytes);
-  // Nothing is damaged, so reading what is whole is no way out.
+  // The file is not damaged, so tolerant reading does not help.
   for (const McapEnding ending : {McapEnding::required, McapEnding::optional}) {
     const std::string why = refusal(path, ending);
     EXPECT_NE(why.find("compressed with 'zstd'"), std::string::npos) << why;
   }
 }
 
-// The checksum is right, so another program wrote it so; the rest of the chunk is not trusted.
+// The checksum is correct, so another program wrote this. The reader discards the rest of the
+// chunk.
 TEST(Mcap, WithAMessageOfNoChannelLosesTheRestOfItsChunk) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.mcap");

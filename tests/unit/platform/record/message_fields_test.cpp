@@ -1,4 +1,4 @@
-// Every field of every message of Glint's own, and what becomes of a message that is cut.
+// Every field of every Glint message type, and truncated messages.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -60,7 +60,7 @@ RobotFrameRecord robot_frame() {
   return frame;
 }
 
-// One of each kind, all stamped k_time; whether the reader takes the bytes.
+// One message of each kind with time k_time, and whether the reader accepts given bytes.
 struct Kind {
   std::string name, frame;
   Bytes bytes;
@@ -101,8 +101,8 @@ TEST(MessageFields, BeginWithTheUnixTimeAndTheFrameOfTheirKind) {
   }
 }
 
-// Fields that older recordings have not may be missing, each as a whole. A replay reads nothing
-// behind an output's record: a byte that fills up, and a number of eight.
+// Fields that older recordings lack may be missing, each completely. A replay ignores the bytes
+// after an output's record: one padding byte and an 8-byte number.
 TEST(MessageFields, AreAllThereOrTheMessageIsRefused) {
   const std::map<std::string, std::size_t> lengths_taken{
       {"frame", 2}, {"markers", 6}, {"output", 10}};
@@ -164,7 +164,7 @@ TEST(MessageFields, OfAChoiceComeBackWithAnyNumberOfVersions) {
   }
 }
 
-// The fields of glint_msgs/Output in the order of its type: a replay reads few of them.
+// Fields of glint_msgs/Output in the order of the type; a replay reads only some of them.
 TEST(MessageFields, OfAnOutputStandInTheOrderOfTheirType) {
   PoseSample sample = sample_output(5);
   sample.tool = 3;
@@ -198,7 +198,7 @@ TEST(MessageFields, OfAnOutputStandInTheOrderOfTheirType) {
   EXPECT_EQ(back.record, (Bytes{9, 8, 7}));
 }
 
-// builtin_interfaces/Time holds from 1970 to 2038; what lies outside is held at the nearest end.
+// builtin_interfaces/Time covers 1970 to 2038; times outside are clamped to the range.
 TEST(MessageFields, StampAtMostTheTimesThatRosHolds) {
   constexpr std::int64_t k_last = 0x7FFFFFFF * 1'000'000'000LL + 999'999'999;
   for (const auto& [time, expected] :

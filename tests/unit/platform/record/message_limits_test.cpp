@@ -1,4 +1,5 @@
-// Messages that hold more than their type allows, or pixels that are not their rectangle's.
+// Messages with more elements than their type allows, or with pixels that do not match their
+// rectangle.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 namespace glint::message_limits_test {
 namespace {
 
-// A frame's message as its type has it, field by field.
+// A frame message, written field by field.
 struct FrameText {
   std::uint16_t width = 6, height = 4;
   std::uint8_t bits = 8;
@@ -88,7 +89,7 @@ TEST(FrameMessage, HasItsRectanglesInsideTheFrame) {
   }
 }
 
-// One pixel, one row, one column, and a rectangle of none.
+// One pixel, one row, one column, and an empty rectangle.
 TEST(FrameMessage, TakesRectanglesOfAnySize) {
   for (std::uint16_t width = 0; width <= 6; ++width) {
     for (std::uint16_t height = 0; height <= 4; ++height) {
@@ -123,7 +124,7 @@ TEST(FrameMessage, AsksForNoMorePixelsThanACameraHas) {
   text.width = k_width_max + 1;
   EXPECT_FALSE(text.read());
   text.width = 1;
-  text.height = 65535;  // of another shape, but of fewer pixels
+  text.height = 65535;  // another shape with fewer pixels
   EXPECT_TRUE(text.read());
 }
 
@@ -163,13 +164,13 @@ TEST(ImageMessage, GivesBackItsShapeAndItsRows) {
   }
 }
 
-// Kind and policy of an overrun stand in one byte: all 256 of them.
+// Kind and policy of an overrun share a byte: tests all 256 values.
 TEST(ChoiceMessage, TakesTheOverrunsThatThereAreAndNoOther) {
   CdrWriter to;
   ChoiceRecord choice = sample_choice(1);
   write_message(to, choice, {});
   const Bytes bytes(to.bytes().begin(), to.bytes().end());
-  // Group and overrun follow the header's 16 bytes and two numbers of eight.
+  // Group and overrun are after the 16 bytes of the header and two 8-byte numbers.
   constexpr std::size_t k_overrun_at = 4 + 16 + 8 + 8 + 1;
   ASSERT_EQ(bytes[k_overrun_at - 1], choice.group);
   ASSERT_EQ(bytes[k_overrun_at], 2 + 4 * 2);
@@ -186,7 +187,7 @@ TEST(ChoiceMessage, TakesTheOverrunsThatThereAreAndNoOther) {
   }
 }
 
-// The number of a list, and of what follows it, is bounded: by the type or by the first list.
+// The length of a list, and of the lists after it, is bounded by the type or by the first list.
 TEST(MessageLists, AreNotLongerThanTheirType) {
   CdrWriter to;
   put_header(to, {}, "");
@@ -213,7 +214,7 @@ TEST(MarkersMessage, HasTheSameNumberInEachOfItsLists) {
   write_message(to, sample_markers(3), {});
   const Bytes bytes(to.bytes().begin(), to.bytes().end());
   int lists = 0;
-  for (std::size_t at = 40; at + 4 <= bytes.size(); at += 4) {  // behind header and stamps
+  for (std::size_t at = 40; at + 4 <= bytes.size(); at += 4) {  // after header and time stamps
     if (get_little_endian(std::span(bytes).subspan(at, 4)) != 3) continue;
     ++lists;
     for (const std::uint8_t other : {2, 4}) {

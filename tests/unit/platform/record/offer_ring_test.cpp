@@ -70,13 +70,14 @@ TEST(OfferRing, TakesWhatEverFitsWheneverItIsEmpty) {
   }
 }
 
-// A record has its room in any state of the ring, or in none: half the ring, with its heading.
+// A record of up to half the ring, heading included, fits in any state of the ring; a larger one
+// never.
 TEST(OfferRing, EverTakesARecordOfHalfOfIt) {
   for (std::size_t blocks = 0; blocks <= 12; ++blocks) {
     OfferRing ring;
     ring.reserve(blocks * k_offer_alignment);
     for (std::size_t bytes = 0; bytes <= blocks * k_offer_alignment; ++bytes) {
-      const std::size_t needed = 2 + bytes / k_offer_alignment;  // one to spare for a whole block
+      const std::size_t needed = 2 + bytes / k_offer_alignment;  // one more for a full block
       EXPECT_EQ(ring.ever_fits(bytes), needed <= blocks / 2) << blocks << ' ' << bytes;
       EXPECT_EQ(ring.claim(bytes).empty(), !ring.ever_fits(bytes)) << blocks << ' ' << bytes;
     }
@@ -108,8 +109,8 @@ TEST(OfferRing, IsEmptyWhenItIsReservedAnew) {
   for (std::uint64_t i = 0; i < count; ++i) expect_front(ring, i, 32);
 }
 
-// Records of each size up to the ring's end, from each place in it: the next one begins at its
-// start if it does not fit, and nothing of either is overwritten.
+// Two record sizes at every offset: a record that does not fit before the ring's end starts at its
+// beginning, and no record is overwritten.
 TEST(OfferRing, LeavesTheRestBeforeItsEndOutWhereARecordDoesNotFit) {
   constexpr std::size_t k_blocks = 16;
   for (std::size_t first = 1; first <= 6; ++first) {

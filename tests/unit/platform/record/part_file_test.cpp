@@ -1,4 +1,4 @@
-// Files that appear whole, a recording among them, and the lock of a folder.
+// Files that appear atomically when complete, among them a recording, and the lock of a folder.
 #include "platform/part_file.hpp"
 
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-// What becomes of each kind of offer, at each level, in each lane, with and without room.
+// Result of each kind of offer, at each level, in each lane, with and without free space.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 constexpr RecordingLevel k_levels[] = {RecordingLevel::full, RecordingLevel::roi,
                                        RecordingLevel::blobs, RecordingLevel::outputs};
 
-// One of each kind, all taken.
+// Offers one message of each kind; the lane accepts all.
 void offer_one_of_each(RecorderLane& lane) {
   const FrameBuffer buffer = sample_frame(40, 30, 16);
   EXPECT_TRUE(lane.offer_frame(buffer.view({1}, {2}, 3), Rois{{Roi{10, 10, 20, 20}}, 1}));
@@ -47,7 +47,7 @@ const Message* find_in(const std::vector<RecordedMessage>& messages) {
   return nullptr;
 }
 
-// README of platform/record: what each level keeps. What it leaves out is taken and ignored.
+// README of platform/record: what each level keeps. The rest is accepted and ignored.
 TEST(RecorderOffers, AreKeptAsTheirLevelSays) {
   for (const RecordingLevel level : k_levels) {
     SCOPED_TRACE(name_of(level));
@@ -115,7 +115,7 @@ TEST(RecorderOffers, KeepPixelsWithinTheMarginOfTheirRegion) {
   }
 }
 
-// Each lane has the room that its own setting gives it.
+// Each lane has the capacity of its own setting.
 TEST(RecorderOffers, AreDroppedInTheLaneThatHasNoRoom) {
   for (int small = 0; small < 4; ++small) {
     const TemporaryFolder folder;
@@ -140,7 +140,7 @@ TEST(RecorderOffers, AreDroppedInTheLaneThatHasNoRoom) {
   }
 }
 
-// One that would never find room is dropped at once, by a lane that waits as well.
+// An offer larger than the lane is dropped at once, even if the lane waits when full.
 TEST(RecorderOffers, DoNotWaitForRoomThatThereNeverIs) {
   for (const WhenFull when_full : {WhenFull::drop, WhenFull::wait}) {
     const TemporaryFolder folder;

@@ -15,7 +15,7 @@
 #include "tests/unit/heap_count.hpp"
 #include "tests/unit/platform/record/recording_samples.hpp"
 
-// In place of the C library's.
+// Replace the C library's functions.
 namespace {
 std::atomic<int> g_syncs{0};
 std::atomic<bool> g_sync_fails{false}, g_sync_leaves_errno{false};
@@ -96,7 +96,7 @@ TEST(Recorder, KeepsEveryKindOfOffer) {
     recorder.add_closing_fact("frames", "1");
     const RecordingOutcome outcome = recorder.close();
     EXPECT_TRUE(outcome.complete()) << outcome.reason;
-    EXPECT_EQ(outcome.messages, 7U);  // the markers are no part of this level; 3 ROS poses are
+    EXPECT_EQ(outcome.messages, 7U);  // this level has no markers; 3 are ROS poses
   }
   RecordingReader reader(path);
   const auto frame = std::get<FrameMessage>(reader.next().value());
@@ -141,7 +141,7 @@ TEST(Recorder, CountsWhatFoundNoRoomAndMarksTheRecordingIncomplete) {
   const TemporaryFolder folder;
   const std::string path = folder.file("run.mcap");
   RecorderSettings settings;
-  settings.frame_lane_bytes = 4096;  // never room for a frame of 4800 bytes
+  settings.frame_lane_bytes = 4096;  // too small for a frame of 4800 bytes
   Recorder recorder(path, sample_info(RecordingLevel::full), settings);
   const FrameBuffer buffer = sample_frame(40, 30, 16);
   EXPECT_FALSE(recorder.frame_lane().offer_frame(buffer.view({1}, {2}, 3), {}));
@@ -190,7 +190,7 @@ TEST(Recorder, OffersWithoutTouchingTheHeap) {
   EXPECT_EQ(counter.count(), AllocationCounter::available() ? 1u : 0u);
 }
 
-// What the recorder's thread for it did, as the functions below see it.
+// The recorder's sync thread, as observed by the replaced functions.
 TEST(Recorder, BringsItsFileToTheDiskAtASteadyRateByAThreadOfItsOwn) {
   const TemporaryFolder folder;
   RecorderSettings settings;

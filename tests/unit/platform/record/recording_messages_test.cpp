@@ -1,4 +1,4 @@
-// One message of a recording by its bytes: as ROS reads it, as it was written earlier, and damaged.
+// Bytes of a single recorded message: as ROS reads it, in older formats, and damaged.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -13,7 +13,7 @@
 namespace glint {
 namespace {
 
-// By the CDR's rules alone: 4 bytes of encapsulation, then numbers at multiples of their size.
+// Reads by the CDR rules alone: 4 bytes of encapsulation, then numbers aligned to their size.
 struct RosBytes {
   std::vector<std::uint8_t> payload;
   std::size_t at = 4;
@@ -38,7 +38,7 @@ struct RosBytes {
   }
 };
 
-// By schema; the last message of each.
+// By schema: the last message of each.
 std::map<std::string, RosBytes> ros_messages(const std::string& path) {
   std::map<std::string, RosBytes> messages;
   McapReader reader(path);
@@ -137,7 +137,7 @@ TEST(Recording, RefusesAnOverrunThatIsNoneOfItsKinds) {
   EXPECT_FALSE(read_choice(other.bytes()).has_value());
 }
 
-// Its stamp's sigma is the last field, which older recordings have not.
+// The time stamp's standard deviation is the last field; older recordings lack it.
 TEST(Recording, ReadsAFrameWithoutItsStampsSigmaButNoneWithAPartOfIt) {
   FrameBuffer buffer = sample_frame(8, 6, 16);
   Frame frame = buffer.view({100}, {200}, 9);
@@ -158,15 +158,16 @@ TEST(Recording, ReadsAFrameWithoutItsStampsSigmaButNoneWithAPartOfIt) {
   EXPECT_EQ(older->stamp_sigma.nanoseconds, 0);
 }
 
-// A message as it was written before a stamp had a sigma, before markers could be incomplete, and
-// before they had what a tool's own depth bias needs, turns, and sigmas: its last fields left out.
+// Older formats lack the last fields: the time stamp's standard deviation, the reason for
+// incomplete markers, the fields for a tool's own depth bias, the rotations, the markers' standard
+// deviations.
 TEST(Recording, ReadsMarkersOfOlderRecordings) {
   CdrWriter writer;
   write_message(writer, sample_markers(3), {});
-  // Its number and three a marker, after a byte that fills up to it; its number and six a marker,
-  // with four bytes between; its number and a float and two bytes a marker, filled up but the last.
+  // sigmas: one padding byte, count, three floats a marker. turns: count, four padding bytes, six
+  // doubles a marker. depths: count, a float and two bytes a marker; the last one without padding.
   const std::size_t sigmas = 1 + 4 + 3 * 3 * 4, turns = 4 + 4 + 3 * 6 * 8, depths = 4 + 2 * 8 + 6;
-  // Five bytes that fill up to eight more.
+  // Five padding bytes, then eight.
   const std::size_t stamp = 5 + 8;
   const auto with_stamp = writer.bytes();
   EXPECT_FALSE(read_markers(with_stamp.first(with_stamp.size() - 1)));

@@ -1,4 +1,4 @@
-// Recordings that are not read, those that are read in part, and what is said of either.
+// Recordings that the reader rejects or reads in part, and its messages.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -17,7 +17,7 @@
 namespace glint::recording_refusals_test {
 namespace {
 
-// What the reader says of the file, without its path; "" where it takes it.
+// The reader's message without the path; "" if it accepts the file.
 std::string refusal(const std::string& path, ReadTolerance tolerance = {}) {
   try {
     RecordingReader reader(path, tolerance);
@@ -31,7 +31,7 @@ std::string refusal(const std::string& path, ReadTolerance tolerance = {}) {
   return "";
 }
 
-// A file with the facts of a recording, one of them changed.
+// A file with the metadata of a recording, one entry changed.
 std::string refusal_with(const std::string& fact, const std::string& value,
                          const std::string& profile = "ros2",
                          const std::string& metadata = k_opening_metadata) {
@@ -106,7 +106,7 @@ TEST(RecordingRefusals, NameWhatARecordingLost) {
   EXPECT_TRUE(reader.attachment_names().empty());
 }
 
-// The file's checksums hold; the message has five bytes.
+// The file's checksums are correct; the message has five bytes.
 TEST(RecordingRefusals, NameTheTopicOfAMessageThatIsNotWhole) {
   for (const std::string_view topic :
        {k_frame_topic, k_head_pose_topic, k_markers_topic, k_choice_topic, k_output_topic,
@@ -122,7 +122,7 @@ TEST(RecordingRefusals, NameTheTopicOfAMessageThatIsNotWhole) {
     const auto chunk_at = writer.bytes();
     const auto other = writer.add_channel("/other", "a/msg/A", "", {});
     const auto channel = writer.add_channel(std::string(topic), "a/msg/A", "", {});
-    writer.write({other, 0, 1, 1}, Bytes{1});  // of another program: left out
+    writer.write({other, 0, 1, 1}, Bytes{1});  // of another program: ignored
     writer.write({channel, 0, 1, 1}, Bytes{0, 1, 0, 0, 5});
     EXPECT_TRUE(writer.close(k_closing_metadata, {{k_fact_complete, "true"}}));
     EXPECT_EQ(refusal(path), ":byte " + std::to_string(chunk_at) + ": a message on " +
@@ -131,7 +131,7 @@ TEST(RecordingRefusals, NameTheTopicOfAMessageThatIsNotWhole) {
   }
 }
 
-// Three whole frames, each message in a chunk of its own.
+// Three full frames; each message has its own chunk.
 void write_frames(const std::string& path) {
   RecordingSettings settings;
   settings.chunk_bytes = 1;
@@ -146,7 +146,7 @@ void write_frames(const std::string& path) {
   EXPECT_TRUE(writer.close().complete());
 }
 
-// Places of the chunks, in their order.
+// Offsets of the chunks, in order.
 std::vector<std::size_t> chunks_of(const std::string& bytes) {
   std::vector<std::size_t> places;
   for (std::size_t at = k_mcap_magic.size(); at + k_mcap_magic.size() < bytes.size();) {
@@ -156,7 +156,7 @@ std::vector<std::size_t> chunks_of(const std::string& bytes) {
   return places;
 }
 
-// An image that is lost takes the frame with it whose pixels it holds, and no other.
+// A lost image also loses the frame whose pixels it contains, and no other.
 TEST(RecordingLosses, CountTheFrameWhosePixelsAreDamaged) {
   const TemporaryFolder folder;
   const std::string path = folder.file("run.mcap");
@@ -228,7 +228,7 @@ TEST(RecordingLosses, HaveATextWithEachOfTheirNumbers) {
   EXPECT_TRUE((RecordingLosses{0, 0, 0, 1, false}.any()));
 }
 
-// Cut behind its last whole chunk: neither its end nor its closing facts are there.
+// Cut after the last complete chunk: neither the ending nor the closing metadata exist.
 TEST(RecordingLosses, OfAFileCutShortHideNoFactOfItsBeginning) {
   const TemporaryFolder folder;
   const std::string path = folder.file("run.mcap");
@@ -247,7 +247,7 @@ TEST(RecordingLosses, OfAFileCutShortHideNoFactOfItsBeginning) {
   EXPECT_EQ(reader.attachment("rays.npy").data, (Bytes{1, 2, 3, 0, 255}));
 }
 
-// The outcome, the closing facts and the file agree.
+// The outcome, the closing metadata and the file agree.
 TEST(RecordingOutcome, IsWhatTheFileSays) {
   const TemporaryFolder folder;
   const std::string path = folder.file("run.mcap");

@@ -1,4 +1,4 @@
-// Values for the tests of recordings: each different in every field, so that a swap shows.
+// Sample values for tests of recordings. Every field differs, so that swapped fields are detected.
 #pragma once
 
 #include <unistd.h>
@@ -13,7 +13,7 @@
 
 namespace glint {
 
-// A folder of its own that goes when the test does.
+// Temporary folder that is removed at the end of its test.
 class TemporaryFolder {
  public:
   TemporaryFolder() {

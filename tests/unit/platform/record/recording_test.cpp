@@ -33,7 +33,7 @@ void write_frame(RecordingWriter& writer, const FrameBuffer& buffer, const Frame
   writer.write_frame({layout, pixels});
 }
 
-// One of everything; two frames.
+// Writes one message of each kind and two frames.
 RecordingOutcome write_sample(const std::string& path, RecordingLevel level, int bits = 16) {
   RecordingWriter writer(path, sample_info(level));
   const FrameBuffer buffer = sample_frame(40, 30, bits);
@@ -82,7 +82,7 @@ TEST(Recording, GivesBackAllThatItsLevelKeepsInOrder) {
   EXPECT_EQ(output.record, std::vector<std::uint8_t>(record.begin(), record.end()));
 }
 
-// The file's checksums hold; what it says is no picture.
+// The file's checksums are correct, but one image message is truncated.
 TEST(Recording, RefusesAPictureThatIsNotWhole) {
   const TemporaryFolder folder;
   for (const std::string_view topic : {k_reflectivity_topic, k_depth_topic}) {

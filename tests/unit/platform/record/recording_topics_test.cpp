@@ -1,4 +1,4 @@
-// What other programs see of a recording: topics, types, times, images, and the texts of types.
+// A recording as other programs read it: topics, types, times, images and type definitions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct Seen {
   Bytes payload;
 };
 
-// In the order of the file; what all messages have in common is checked.
+// In file order. Checks the fields that all messages share.
 std::vector<Seen> seen_in(const std::string& path) {
   McapReader reader(path);
   std::vector<Seen> all;
@@ -57,7 +57,7 @@ FrameLayout whole_layout(const FrameBuffer& buffer) {
   return whole_frame_layout(buffer.view({100}, {200}, 9));
 }
 
-// Each kind at a time of its own.
+// One message of each kind, each with a different time.
 void write_one_of_each(const std::string& path, RecordingLevel level) {
   RecordingWriter writer(path, sample_info(level));
   const FrameBuffer buffer = sample_frame(8, 6, 16);
@@ -121,7 +121,7 @@ TEST(RecordingTopics, AreThoseOfTheToolsByName) {
   const TemporaryFolder folder;
   {
     RecordingWriter writer(folder.file("run.mcap"), sample_info(RecordingLevel::outputs));
-    for (const std::uint8_t tool : {4, 0, 1}) {  // one beyond the names
+    for (const std::uint8_t tool : {4, 0, 1}) {  // one index beyond the names
       PoseSample sample = sample_output(1);
       sample.tool = tool;
       writer.write_output(sample, {});
@@ -152,7 +152,7 @@ TEST(RecordingTopics, KeepLettersDigitsAndUnderscoresOfAToolsName) {
   EXPECT_EQ(topic_name({}, 0), "tool0");
 }
 
-// A time before 1970 is held at 1970.
+// A time before 1970 is clamped to 1970.
 TEST(RecordingTopics, HaveNoTimeBefore1970) {
   for (const std::int64_t offset : {-1000, -200, -199, 0, 50}) {
     const TemporaryFolder folder;
@@ -211,7 +211,7 @@ TEST(RecordingTopics, ShowAWholeFrameAsImagesOfThePlanesThatItHas) {
   }
 }
 
-// Images show whole frames: of a part the pixels stand in the message.
+// Images show full frames only; a partial frame has its pixels in the message.
 TEST(RecordingTopics, ShowNoPartOfAFrameAsAnImage) {
   const FrameBuffer buffer = sample_frame(8, 6, 16);
   const Roi parts[] = {{1, 0, 8, 6}, {0, 1, 8, 6}, {0, 0, 7, 6}, {0, 0, 8, 5}};
@@ -235,7 +235,8 @@ TEST(RecordingTopics, ShowNoPartOfAFrameAsAnImage) {
   EXPECT_EQ(messages_of(layout), 1u) << "the first of two is whole";
 }
 
-// By the ros2msg convention: own fields, then a section for every type in it, each once.
+// ros2msg convention: the type's fields, then one section for each type that it contains, each
+// once.
 TEST(Schemas, DefineEveryTypeThatTheyNameOnce) {
   for (const char* name :
        {"sensor_msgs/msg/Image", "geometry_msgs/msg/PoseStamped", "tf2_msgs/msg/TFMessage",

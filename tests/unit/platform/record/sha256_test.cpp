@@ -15,7 +15,7 @@ std::string hash_of(std::string_view text) {
   return hash.hex();
 }
 
-// The vectors of FIPS 180-4's examples (SHA256.pdf, SHA_All.pdf).
+// Test vectors of FIPS 180-4 (SHA256.pdf, SHA_All.pdf).
 TEST(Sha256, GivesTheDigestsOfTheStandard) {
   EXPECT_EQ(hash_of(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   EXPECT_EQ(hash_of("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");

@@ -95,7 +95,7 @@ TEST(CsvFile, HasAValueUnderEveryHeading) {
       << without_pose;
 }
 
-// Each field under its own heading, by a number of its own.
+// Each field has a different value and must be under its own heading.
 TEST(CsvFile, HasEachFieldUnderItsName) {
   PoseSample sample = sample_output(9, TrackState::predicted);
   sample.frame_sequence = 101;
@@ -187,7 +187,7 @@ TEST(TumLine, HoldsEveryTimeThatAnInt64Does) {
   EXPECT_EQ(points_line(Time{1'000'000'010}, {-1.5, 2, 1e-9}), "1.000000010,-1.5,2,1e-09");
 }
 
-// Lines wait for a piece of 64 KiB, each with its newline.
+// Lines are buffered up to 64 KiB, each with its newline.
 TEST(TrajectoryLines, GoToTheDiskInPiecesAndAfterTheCloseNowhere) {
   const TemporaryFolder folder;
   const std::string path = folder.file("lines.txt");
