@@ -283,7 +283,7 @@ TEST(Mcap, CutShortCountsTheBytesAndTheMessagesThatFollow) {
   }
 }
 
-// After a crash the last chunk of an unfinished file may be missing on the disk.
+// In a file without an ending, the data of the last chunk may never have reached the disk.
 TEST(Mcap, CutShortWithADamagedChunkLosesThatChunkAlone) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.mcap");
