@@ -84,7 +84,7 @@ TEST(Accuracy, CountsADoubledFrameOnce) {
 TEST(Accuracy, LeavesOutAToolOnlyWhileItIsTakenOut) {
   FramesSeen run;
   run.frame(0, 0b1111, false).there = false;
-  run.frame(20, 0b1111, false).there = false;  // an overrun's substitute states nothing
+  run.frame(20, 0b1111, false).there = false;  // the substitute of an overrun has no pose
   run.outcomes[1].verdict = Reason::overrun_stopped;
   run.frame(40, 0b1111, true);
   run.frame(60, 0b1111, false).there = false;
@@ -104,7 +104,7 @@ TEST(GrossPose, HasALargeTurnOrATipBeyondBothLimits) {
   EXPECT_TRUE(is_gross({0.0051, 0, 1, true}));
 }
 
-// One marker of 5 mm, 0.5 m ahead: its blob may lie beside it by less than its diameter.
+// One marker of radius 5 mm at 0.5 m: its blob may be off by less than the marker's diameter.
 TEST(GrossPose, IsMisassignedWhereABlobLiesADiameterBesideItsMarker) {
   Tool tool;
   tool.marker_count = 2;
@@ -112,7 +112,7 @@ TEST(GrossPose, IsMisassignedWhereABlobLiesADiameterBesideItsMarker) {
   tool.markers_m[1] = Vector3(0.05, 0, 0.5);
   ToolOutcome outcome;
   outcome.blobs[1] = {0.1F + 0.019F, 0};
-  EXPECT_FALSE(error_of(outcome, tool, {}).misassigned);  // it states no assignment
+  EXPECT_FALSE(error_of(outcome, tool, {}).misassigned);  // no assignment stated
   outcome.blob_mask = 0b10;
   EXPECT_FALSE(error_of(outcome, tool, {}).misassigned);
   outcome.blobs[1].x += 0.002F;
@@ -121,7 +121,7 @@ TEST(GrossPose, IsMisassignedWhereABlobLiesADiameterBesideItsMarker) {
   EXPECT_TRUE(error_of(outcome, tool, {}).misassigned);
 }
 
-// A lens that is off moves all blobs alike; a wrong assignment moves one against the others.
+// A lens error shifts all blobs equally; a wrong assignment shifts one relative to the others.
 TEST(GrossPose, IsNotMisassignedWhereAllBlobsLieBesideTheirMarkersAlike) {
   Tool tool;
   tool.marker_count = 4;

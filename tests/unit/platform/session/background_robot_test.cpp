@@ -1,4 +1,5 @@
-// What a background group hears and says of the robot that it follows.
+// Background group with a tracked robot: joint states that it receives, and status that it
+// publishes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +14,8 @@ namespace {
 
 Time at_ms(std::int64_t number) { return Time{} + milliseconds(number); }
 
-// The robot jumps in the seventh of twelve pictures; to and fro, the eighteenth shows it back.
+// The robot jumps in the seventh of twelve images. They are played forward and backward, so the
+// eighteenth shows it at its old pose.
 TEST(RobotNotes, SayHowFarARobotJumpedUntilItIsSeenWhereItWas) {
   const TemporaryFolder folder;
   Cell cell = short_cell(1);
@@ -37,7 +39,7 @@ void say(graph::TripleBuffer<HeardJoints>& heard, const std::vector<std::string>
          const std::vector<double>& positions, Time arrival = {}) {
   HeardJoints& joints = heard.write_slot();
   joints = {};
-  joints.time = at_ms(1'000'000);  // a stamp of another machine, which counts for nothing
+  joints.time = at_ms(1'000'000);  // another machine's time stamp: must be ignored
   joints.count = static_cast<int>(names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     names[i].copy(joints.names[i].data(), k_heard_name_max);
@@ -66,7 +68,7 @@ TEST(HeardJointsOfARobot, PoseItsModelInPlaceOfTheCells) {
   EXPECT_GE(followed(&heard), 5);
 }
 
-// There is a picture each 100 ms.
+// One image every 100 ms.
 TEST(HeardJointsOfARobot, AreNotFollowedByOnceTheyAreTooOld) {
   const TemporaryFolder folder;
   Cell cell = short_cell(1);
@@ -77,7 +79,7 @@ TEST(HeardJointsOfARobot, AreNotFollowedByOnceTheyAreTooOld) {
                         read_background_scene(cell, nullptr), {nullptr, nullptr, &notes});
   graph::TripleBuffer<HeardJoints> heard;
   group.hear(heard);
-  group.reach(at_ms(350));  // what is given does not age
+  group.reach(at_ms(350));  // configured joint values do not expire
   EXPECT_EQ(group.counts().pictures_without_joints, 0);
   say(heard, {"slide"}, {k_slide_shown_m}, at_ms(350));
   group.reach(at_ms(690));
@@ -85,14 +87,14 @@ TEST(HeardJointsOfARobot, AreNotFollowedByOnceTheyAreTooOld) {
   EXPECT_GE(followed, 1);
   EXPECT_FALSE(notes.joints_lost);
   EXPECT_EQ(group.counts().pictures_without_joints, 0);
-  group.reach(at_ms(1190));  // it came more than 250 ms before all from 700 ms on
+  group.reach(at_ms(1190));  // more than 250 ms older than every image from 700 ms on
   const std::int64_t without = group.counts().pictures_without_joints;
   EXPECT_GE(without, 4);
   EXPECT_EQ(group.without_joints(), without);
   EXPECT_EQ(notes.without_joints, without);
   EXPECT_TRUE(notes.joints_lost);
-  EXPECT_LE(group.counts().robot.followed, followed + 1);  // one was under way
-  say(heard, {"gripper"}, {7}, at_ms(1190));               // says nothing of the slide
+  EXPECT_LE(group.counts().robot.followed, followed + 1);  // one was in progress
+  say(heard, {"gripper"}, {7}, at_ms(1190));               // does not contain the slide
   group.reach(at_ms(1290));
   EXPECT_GT(group.counts().pictures_without_joints, without);
   say(heard, {"slide"}, {k_slide_shown_m}, at_ms(1300));
@@ -101,7 +103,7 @@ TEST(HeardJointsOfARobot, AreNotFollowedByOnceTheyAreTooOld) {
   EXPECT_GE(group.counts().robot.followed, followed + 2);
 }
 
-// The box's model on a slide, and what hears of the slide.
+// The box's model on a slide, and the receiver of the slide's joint value.
 class HeardJointsOfASlide : public testing::Test {
  protected:
   RobotCloud box_on_a_slide() {

@@ -1,5 +1,5 @@
-// The background group of a run: its slices live and in order, the map that they make, and that
-// nothing which leaves a session depends on it.
+// Background group of a run: its slices in real time and in simulated order, the map that it
+// builds, and the independence of the session's outputs from it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ Cell with_background(Cell cell, Duration period, int steps) {
   return cell;
 }
 
-// A map of this folder's pictures, a slice every quarter of a millisecond.
+// Maps the folder's depth images, one slice every 0.25 ms.
 Cell with_mapping(Cell cell, const DepthFolder& folder) {
   cell = with_background(std::move(cell), microseconds(250), k_background_steps_max);
   cell.mapping.emplace();
@@ -62,11 +62,11 @@ TEST(BackgroundGroup, RunsOneSliceAPeriodAndSkipsWhatItDidNotReach) {
   const Duration most = monotonic_now() - begin;  // a busy machine ends the thread late
   EXPECT_GE(counts.slices, 1u);
   EXPECT_LE(counts.slices, static_cast<std::uint64_t>(most.nanoseconds / k_period.nanoseconds) + 1);
-  EXPECT_GE(counts.slices + counts.skipped, 19u);  // all releases of that time
+  EXPECT_GE(counts.slices + counts.skipped, 19u);  // all releases in that time
   EXPECT_GT(counts.longest_response.nanoseconds, 0);
 }
 
-// No slice with something to do takes less than 100 ns.
+// A slice with work takes more than 100 ns.
 TEST(BackgroundGroup, CountsAsSkippedWhatComesWhileASliceStillRuns) {
   const BackgroundCounts counts = counted_for(milliseconds(50), {100}, 50'000);
   EXPECT_EQ(counts.late, counts.slices);
@@ -95,7 +95,8 @@ TEST(BackgroundRun, InOrderGivesTheSameBytesWithAndWithoutOne) {
   EXPECT_EQ(other.background->map.pictures, 0);
 }
 
-// In order the same slices run every time, and their map is the plain chain's.
+// In simulated order every run executes the same slices, and their map equals that of the serial
+// chain.
 TEST(BackgroundRun, InOrderMakesTheMapThatTheChainMakesOfTheSamePictures) {
   const TemporaryFolder plain, first, again, pictures;
   DepthFolder folder(pictures.path());
@@ -122,7 +123,7 @@ TEST(BackgroundRun, InOrderMakesTheMapThatTheChainMakesOfTheSamePictures) {
   EXPECT_EQ(map.points, same.points);
   EXPECT_EQ(map.normals, same.normals);
   EXPECT_EQ(static_cast<int>(map.points.size()), counts.map.smoothed);
-  // To and fro, without those that were missed: as many as were shown, in their turn.
+  // Reference: the images forward and backward, as many as were shown.
   ASSERT_EQ(counts.pictures_missed, 0);
   MapChain chain(map_settings_of(cell));
   const DepthLoop loop(load_depth_sequence(folder.path), cell.mapping->period);
@@ -139,7 +140,7 @@ TEST(BackgroundRun, InOrderMakesTheMapThatTheChainMakesOfTheSamePictures) {
 TEST(BackgroundRun, LeavesThePenOutOfItsMap) {
   const TemporaryFolder out, pictures;
   DepthFolder folder(pictures.path());
-  // Walls before and behind where the default scenario holds the pen, 0.63 m from here.
+  // Walls in front of and behind the pen of the default scenario, which is 0.63 m from here.
   for (const double z : {0.55, 0.6, 0.65, 0.7}) {
     folder.add(
         std::vector<float>(DepthFolder::k_width * DepthFolder::k_height, static_cast<float>(z)),
@@ -180,7 +181,8 @@ TEST(BackgroundRun, LiveRunsItsSlicesTracesThemAndReplaysToTheSameHash) {
   EXPECT_EQ(replay(run.recording_file, {}).output_sha256, run.output_sha256);
 }
 
-// A plan of three groups as the tracker's task model has them, all on one core but the background.
+// Schedule of three groups as in the tracker's task model: all on one core except the background
+// group.
 TEST(BackgroundRun, TakesItsCorePriorityAndBoundsFromAPlan) {
   const Cell cell = with_background(default_cell(), milliseconds(20), 1'000);
   Plan plan;

@@ -1,5 +1,5 @@
-// The box that a session follows, on a slide: where its pictures show it the slide stands at
-// k_slide_shown_m, and at 0 its model is not to be found in them.
+// A tracked box on a slide. The depth images show the slide at k_slide_shown_m; with the slide at 0
+// the model does not match them.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace glint {
 
 inline constexpr double k_slide_shown_m = 0.1;
 
-// Of the box's model in this file.
+// Converts the box's model in this file to a robot with a slide.
 inline RobotCloud on_a_slide(const std::string& path) {
   RobotCloud robot = read_robot_cloud(path);
   robot.links.push_back("carriage");
@@ -26,7 +26,7 @@ inline RobotCloud on_a_slide(const std::string& path) {
   return robot;
 }
 
-// The model in its place, its joint given at 0.
+// Replaces the model; its joint value is given as 0.
 inline void follow_a_box_on_a_slide(const std::string& folder, Cell& cell) {
   follow_a_box(folder, 0, cell);
   write_robot_cloud(cell.mapping->model, on_a_slide(cell.mapping->model));

@@ -1,4 +1,5 @@
-// What a CAN log says of the pen's buttons, by the places of their bits and no reader of Glint's.
+// Decodes the pen's buttons from a CAN log by their bit positions, independently of Glint's own
+// decoder.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,8 +12,8 @@
 
 namespace glint {
 
-// Of the first tool, in the order of the ticks: bits 59 to 61 of each frame 0x1A4, or the three
-// highest of byte 3 of each CAN FD frame 0x1A8.
+// The first tool's buttons in order of the ticks: bits 59 to 61 of each frame 0x1A4, or the three
+// highest bits of byte 3 of each CAN FD frame 0x1A8.
 inline std::vector<int> buttons_on_the_bus(const std::string& log, bool fd) {
   std::vector<int> said;
   std::ifstream stream(log);

@@ -1,4 +1,4 @@
-// Buttons pressed while a run goes on: what left of them comes out of its recording again.
+// Buttons pressed during a run: the replay of its recording reproduces the outputs.
 #include <vector>
 
 #include "platform/session/replay.hpp"
@@ -11,8 +11,8 @@
 namespace glint {
 namespace {
 
-// Draw is held over undo; delete_last is clicked between two ticks, which no tick sees; finish has
-// no bit. Undo goes up where a tick is late.
+// Draw is held while undo is pressed and released. delete_last is pressed and released between two
+// ticks, so no tick samples it. finish has no bit. Undo is released at a late tick.
 constexpr std::uint32_t k_late = 175;
 std::vector<ButtonEvent> pressed_on_the_way() {
   const auto at = [](std::int64_t ms) { return Time{} + milliseconds(ms); };

@@ -1,4 +1,4 @@
-// Buttons into a run's recording and into what leaves at its ticks, whoever says them.
+// Button events in a run's recording and in the outputs of its ticks, from any source.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -24,9 +24,9 @@ Cell cell_that_records() {
   return cell;
 }
 
-constexpr int k_events = 50001;  // of each of three threads: at the end its button is held
+constexpr int k_events = 50001;  // a thread; after the last event its button is held
 
-// Each thread says another button, down and up in turn.
+// Each thread presses and releases its own button alternately.
 void say_by_three_threads(Sinks& sinks) {
   std::array<std::thread, 3> threads;
   std::latch together(3);
@@ -45,7 +45,7 @@ TEST(ButtonsOfARun, AreAllRecordedThoughSeveralThreadsSayThem) {
   const TemporaryFolder folder;
   SinkOutcome outcome;
   Cell cell = cell_that_records();
-  cell.realtime = false;  // a full queue is waited for
+  cell.realtime = false;  // offers wait while the queue is full
   Sinks sinks(cell, {folder.path(), false, {}}, 0);
   say_by_three_threads(sinks);
   sinks.close(outcome);
@@ -63,7 +63,7 @@ TEST(ButtonsOfARun, AreAllRecordedThoughSeveralThreadsSayThem) {
   EXPECT_EQ(next, (std::array<int, k_button_count>{k_events, k_events, k_events, 0}));
 }
 
-// Each change of what is held stands right behind the event that made it, and is that change.
+// Each record of held buttons directly follows the event that caused it and matches it.
 TEST(ButtonsOfARun, AreHeldAsTheirEventsSayThoughSeveralThreadsSayThem) {
   const TemporaryFolder folder;
   SinkOutcome outcome;
@@ -97,7 +97,7 @@ TEST(ButtonsOfARun, AreHeldFromTheirPressToTheirReleaseAndChangeNothingWhenSaidA
   Sinks sinks(cell_that_records(), {folder.path(), false, {}}, 0);
   graph::TripleBuffer<PenButtons>& held = sinks.held_buttons();
   std::int64_t time = 0;
-  // What is held then, or -1 where nothing changed.
+  // Returns the held buttons after the event, or -1 if they did not change.
   const auto after = [&](Button button, bool pressed) {
     sinks.offer_button({{++time}, button, pressed});
     if (!held.sample()) return -1;

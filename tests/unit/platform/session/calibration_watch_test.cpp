@@ -44,7 +44,7 @@ TEST(CalibrationWatch, NamesARangeOffset) {
     const CalibrationFinding* const found = named(findings);
     ASSERT_NE(found, nullptr);
     EXPECT_TRUE(found->source == ErrorSource::range || found->source == ErrorSource::range_offset);
-    // A scale of what is stated explains the rest.
+    // The scale error within its stated limits explains the rest.
     EXPECT_NEAR(found->estimate, offset_m, 0.008);
     EXPECT_LT(std::abs(found->estimate - offset_m), 3 * found->sigma);
     EXPECT_GT(found->stated_sigmas, 2.5);
@@ -64,7 +64,7 @@ Cell cell_with_a_body(double seconds) {
   return cell;
 }
 
-// A body stands on the table while the head looks around.
+// A reference body on the table while the head looks around.
 sim::Scenario looking_around(const Cell& cell) {
   sim::Scenario scenario = scenario_of(cell);
   sim::HeadSettings head;
@@ -107,7 +107,7 @@ TEST(CalibrationWatch, NamesTheHeadsetsDriftByABodyAtRest) {
   EXPECT_LT(found->estimate, 5);
 }
 
-// 4 s, then the stamps are an hour earlier for 6 s: neither part alone has sights enough.
+// 4 s, then time stamps one hour earlier for 6 s: neither part alone has enough observations.
 TEST(CalibrationWatch, SeesTheBodyAfterTheStampsRestart) {
   const Cell cell = cell_with_a_body(10);
   const sim::Simulator simulator(looking_around(cell));

@@ -1,4 +1,4 @@
-// Depth pictures with poses in a folder, as a session's mapping reads them.
+// Folder of depth images with poses, in the format that a session's mapping reads.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct DepthFolder {
     std::ofstream(path + "/camera-intrinsics.txt") << "75 0 39.5\n0 75 29.5\n0 0 1\n";
   }
 
-  // The ray of a pixel's middle, z 1.
+  // Ray through the pixel's centre, z = 1.
   [[nodiscard]] static Vector3 ray(int pixel) {
     return {(pixel % k_width + 0.5 - 40) / k_focal, (pixel / k_width + 0.5 - 30) / k_focal, 1};
   }
@@ -40,7 +40,7 @@ struct DepthFolder {
     pose << "0 0 0 1\n";
   }
 
-  // A wall and a floor, from places beside each other.
+  // A wall and a floor, seen from positions side by side.
   void add_room(int count) {
     for (int p = 0; p < count; ++p) {
       const Pose pose{Quaternion::Identity(), Vector3(0.02 * p, 0, 0.01 * p)};

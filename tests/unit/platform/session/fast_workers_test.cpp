@@ -1,4 +1,4 @@
-// What the second worker of a run without real time is given.
+// Scheduling policy of the second worker in a run without real time.
 #include <gtest/gtest.h>
 #include <sched.h>
 
@@ -12,7 +12,7 @@
 namespace glint {
 namespace {
 
-// The scheduling policies of this process's threads of that name.
+// Scheduling policies of this process's threads named `name`.
 std::set<int> policies_of(const std::string& name) {
   std::set<int> policies;
   for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {

@@ -1,4 +1,5 @@
-// Frames late, doubled, out of order or with backward stamps: counted, and never measured.
+// Late, duplicate, reordered or backward-stamped frames are counted and never have state
+// `measured`.
 #include "tests/unit/platform/session/short_run.hpp"
 
 namespace glint {

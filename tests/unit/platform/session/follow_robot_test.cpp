@@ -1,4 +1,4 @@
-// A robot that is followed while a session runs, and what a replay makes of it.
+// A robot tracked during a session, and the replay of that session.
 #include <gtest/gtest.h>
 
 #include "platform/input_error.hpp"

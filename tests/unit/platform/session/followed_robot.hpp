@@ -1,4 +1,4 @@
-// A robot that a session follows: its model and depth pictures of it in a folder, without a mesh.
+// A robot for a session to track: its model and depth images of it in a folder, without a mesh.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,8 +26,8 @@ inline void write_box_robot(const std::string& path, const test::Model& model) {
   write_robot_cloud(path, robot);
 }
 
-// Depth of a robot without joints, which stands where the cell says and then a little more aside
-// from picture to picture; a jump at the end, if there is to be one.
+// Depth images of a robot without joints. It starts at the cell's pose and moves 0.5 mm aside with
+// each image. If `jump_m` is not 0, it jumps in the second half.
 inline void follow_a_box(const std::string& folder, double jump_m, Cell& cell) {
   const test::Model model;
   write_box_robot(folder + "/robot.ply", model);

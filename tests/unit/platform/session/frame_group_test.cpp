@@ -1,4 +1,5 @@
-// What the frame group publishes for frames that are not in time, whenever the reader takes it.
+// Published estimates of the frame group for overrun frames, for any read pattern of the tick
+// group.
 #include "platform/session/frame_group.hpp"
 
 #include <optional>
@@ -14,14 +15,14 @@ namespace {
 
 using graph::OverrunPolicy;
 
-// One in time, four overruns in a row, one in time, one overrun. At the third overrun the head's
-// pose is unknown: a prediction keeps the pose that was in time then.
+// One frame in time, four successive overruns, one in time, one overrun. At the third overrun the
+// head pose is unknown: the prediction keeps the last valid one.
 constexpr int k_first = 12, k_judged = 7, k_without_head = k_first + 3;
 constexpr bool k_late_frames[k_judged] = {false, true, true, true, true, false, true};
 
 bool is_late(int frame) { return frame >= k_first && k_late_frames[frame - k_first]; }
 
-// All that a substitute may change.
+// Compares all fields that a substitute may change.
 void expect_equal(const Estimates& found, const Estimates& expected) {
   EXPECT_EQ(found.verdict.stamp.sequence, expected.verdict.stamp.sequence);
   EXPECT_EQ(found.verdict.reason, expected.verdict.reason);
@@ -57,7 +58,7 @@ class FrameGroupOverruns : public testing::TestWithParam<OverrunPolicy> {
     }
   }
 
-  // The reader takes the newest version after judged frame i where bit i is set.
+  // Bit i of `taken`: the reader takes the newest version after judged frame i.
   void run(unsigned taken) const {
     SCOPED_TRACE("taken " + std::to_string(taken));
     GroupRunner<Tracker> runner(watched_);
@@ -89,7 +90,7 @@ class FrameGroupOverruns : public testing::TestWithParam<OverrunPolicy> {
         expect_equal(*in_time, group->tracker()->output<Estimates>());
       }
       if (published) expect_equal(group->newest(), *expected);
-      expect_equal(group->estimates().value(), *held);  // nothing is written while it is read
+      expect_equal(group->estimates().value(), *held);  // the version being read is not overwritten
       if (i < k_first || (taken >> (i - k_first) & 1u) == 0) continue;
       const bool is_new = group->estimates().sample();
       EXPECT_TRUE(is_new || !published);

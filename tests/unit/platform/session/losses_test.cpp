@@ -1,5 +1,5 @@
-// What is lost on the way out is counted, named and reported on CAN; what did not leave has no
-// state and no latency.
+// Output losses are counted, named and reported on CAN. A tick that was not sent has no state and
+// no latency.
 #include "platform/session/losses.hpp"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ TEST(SentTicks, LeavesOutATickOfWhichAFrameWasRefused) {
   SentTicks ticks(4);
   TickOfFrames broken = tick_of(3, 0, TrackState::measured);
   broken.whole = false;
-  broken.carries = true;  // its first frame left
+  broken.carries = true;  // its first frame was sent
   ticks.add(broken, 3);
   ticks.settle(3);
   EXPECT_EQ(ticks.left().ticks, 0u);
@@ -79,7 +79,7 @@ TEST(SentTicks, KeepsCountingInFixedMemoryAfterTheSinkFailed) {
   EXPECT_EQ(ticks.left().ticks, 2u);
 }
 
-// Keeps every frame; refuses those from a number on.
+// Keeps every frame; rejects frames from a given number on.
 class KeptFrames final : public CanSink {
  public:
   explicit KeptFrames(std::size_t accepted_max = SIZE_MAX) : accepted_max_(accepted_max) {}
@@ -96,7 +96,7 @@ class KeptFrames final : public CanSink {
   [[nodiscard]] CanSinkCounts counts() const noexcept override {
     return {frames.size(), 0, refused_, 0};
   }
-  // When a loss of this kind was reported.
+  // Times of the emergencies for a loss of this kind.
   [[nodiscard]] std::vector<Time> emergencies(LossKind kind) const {
     const CanFrame wanted = loss_frame(32, kind);
     std::vector<Time> found;
@@ -229,7 +229,7 @@ TEST(SlowSource, IsBlamedForTheTicksWithoutAMeasurement) {
   EXPECT_EQ(run.frames_late, run.frames);
   EXPECT_GT(run.duration_s, 2.5) << "45 frames of 60 ms each";
   EXPECT_GT(tool.lost, tool.all() / 2);
-  // Nothing leaves before the first frame is there; nothing is due after the last.
+  // Unmeasured ticks without a late source: before the first frame is due and after the last frame.
   const std::uint64_t unmeasured = static_cast<std::uint64_t>(run.ticks) - tool.measured;
   EXPECT_NEAR(static_cast<double>(unmeasured - run.ticks_source_late), 62.5 + 1.5, 2.0)
       << "ticks in the 250 ms after the last frame and before the first is due";

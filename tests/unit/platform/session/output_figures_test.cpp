@@ -22,7 +22,7 @@ Cell judged_cell() {
 
 Time ms_after_start(std::int64_t ms) { return Time{} + milliseconds(ms); }
 
-// The truth: the tool's axes are the world's, its tip moves along x by 1 m/s.
+// Ground truth: the tool's axes are the world's; its tip moves at 1 m/s along x.
 std::optional<Pose> moving_tool(const Cell& cell, Time time) {
   Pose pose;
   pose.translation = Vector3((time - Time{}).seconds(), 0, 0) - cell.tools.items[0].tip_m;
@@ -40,7 +40,7 @@ PoseSample sample_at(Time tick, TrackState state, const Vector3& error, double s
   return sample;
 }
 
-// By the two newest frames, or by how long the newest one is ago.
+// Frame rate from the interval of the two newest frames, or from the newest frame's age.
 TEST(OutputFigures, SortTicksByTheFramesRate) {
   const Cell cell = judged_cell();
   OutputFigures figures(cell, {});
@@ -72,7 +72,7 @@ TEST(OutputFigures, JudgePosesAtTheTimeThatTheyAreFor) {
   const Cell cell = judged_cell();
   OutputFigures figures(cell, [&](int, Time time) { return moving_tool(cell, time); });
   const std::vector<Vector3> errors{{0.003, 0, 0}, {0, -0.004, 0}, {0, 0, 0.0027}};
-  // A sigma of 1 mm an axis: the 95 % ellipsoid's radius is 2.795 mm.
+  // Standard deviation 1 mm on each axis: the 95 % ellipsoid has a radius of 2.795 mm.
   for (const Vector3& error : errors) {
     figures.add(sample_at(ms_after_start(10), TrackState::measured, error, 0.001),
                 ms_after_start(9));
@@ -97,10 +97,10 @@ TEST(OutputFigures, JudgePosesAtTheTimeThatTheyAreFor) {
   EXPECT_EQ(measured.gross, 0u);
   EXPECT_EQ(rate.of_predicted.count, 1u);
   EXPECT_EQ(rate.of_predicted.inside_position, 1u);
-  EXPECT_EQ(rate.of_predicted.gross, 0u);  // 30 mm, but the stated sigma is 35
+  EXPECT_EQ(rate.of_predicted.gross, 0u);  // 30 mm, but the stated standard deviation is 35 mm
 }
 
-// By more than 15 degrees; or by more than 20 mm and three stated sigmas.
+// Gross: more than 15 degrees, or more than both 20 mm and three stated standard deviations.
 TEST(OutputFigures, CountGrossPoses) {
   const Cell cell = judged_cell();
   OutputFigures figures(cell, [&](int, Time time) { return moving_tool(cell, time); });
@@ -112,7 +112,7 @@ TEST(OutputFigures, CountGrossPoses) {
   };
   EXPECT_EQ(add(0.0195, 0.001, 0), 0u);
   EXPECT_EQ(add(0.0205, 0.001, 0), 1u);
-  EXPECT_EQ(add(0.0205, 0.004, 0), 1u);  // three sigmas of all axes: 20.8 mm
+  EXPECT_EQ(add(0.0205, 0.004, 0), 1u);  // three standard deviations of all axes: 20.8 mm
   EXPECT_EQ(add(0, 0.001, 14.5), 1u);
   EXPECT_EQ(add(0, 0.001, 15.5), 2u);
 }

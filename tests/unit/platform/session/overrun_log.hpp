@@ -1,4 +1,4 @@
-// What a run's recording and its CAN log say of overruns, for the tests of their effects.
+// Overruns in a run's recording and CAN log, for the tests of their effects.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ namespace glint {
 
 inline constexpr std::int64_t k_tick_ns = 4'000'000;  // of the default cell
 
-// What one tick put on the bus for its tool.
+// CAN frames of one tick for its tool.
 struct TickOnTheBus {
   int frames = 0;
   TrackState state = TrackState::none;
@@ -33,7 +33,7 @@ struct OverrunLog {
   std::map<std::uint32_t, std::uint64_t> versions;  // of the estimates that each tick read
   std::map<std::uint32_t, PoseSample> outputs;      // of the first tool, by tick number
   std::map<std::uint32_t, TickOnTheBus> bus;        // likewise
-  std::map<std::string, int> emergencies;  // of overruns, how often each, by its eight bytes
+  std::map<std::string, int> emergencies;  // count of each overrun emergency, by its eight bytes
 };
 
 inline void read_recording(const std::string& file, OverrunLog& log, Duration& unix_offset) {
@@ -70,7 +70,7 @@ inline void read_bus(const std::string& file, Duration unix_offset, OverrunLog& 
     const auto record = parse_candump(line);
     ASSERT_TRUE(record) << line;
     const CanFrame& frame = record->frame;
-    // The log's times are cut to microseconds.
+    // The log's time stamps are truncated to microseconds.
     const std::int64_t since_ns = record->unix_ns - unix_offset.nanoseconds + k_tick_ns / 2;
     const auto tick = static_cast<std::uint32_t>(since_ns / k_tick_ns);
     if (frame.identifier >= k_can_base_default &&
@@ -82,7 +82,7 @@ inline void read_bus(const std::string& file, Duration unix_offset, OverrunLog& 
       ASSERT_TRUE(quality);
       log.bus[tick].state = quality.value.state;
     }
-    // Kind 3 is none: a tool that stop_safe declares lost has an emergency of its own, state 3.
+    // Kind 3 is not an overrun: a tool that stop_safe declares lost has its own emergency, state 3.
     if (frame.identifier == k_emergencies && frame.data[1] == 0xFF && frame.data[4] != 3 &&
         is_overrun(static_cast<Reason>(frame.data[0]))) {
       std::string bytes;

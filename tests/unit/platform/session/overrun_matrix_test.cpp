@@ -1,8 +1,10 @@
-// Fault injection: every policy at every node, noticed ahead by a bound or when the deadline has
-// passed, has its declared effect once, in the recording and on the bus, and replays alike.
+// Fault injection: every overrun policy at every node, detected ahead by a bound or at the
+// deadline. Each has its declared effect exactly once, in the recording and on the bus, and replays
+// identically.
 //
-// No clock decides: time stands still but for the delays that are injected, so each decision falls
-// to the nanosecond. A delay that just fits follows each one that does not.
+// The test uses no clock: only the injected delays advance time, so each decision is exact to the
+// nanosecond. After each delay that exceeds the limit, the next activation has a delay that just
+// fits.
 #include <cstdio>
 #include <tuple>
 #include <vector>
@@ -22,7 +24,7 @@ using graph::OverrunPolicy;
 constexpr std::uint32_t k_first_frame = 8, k_frame_step = 2;
 constexpr std::uint32_t k_first_tick = 150, k_tick_step = 5;
 
-// A bound for each node, all different.
+// A different bound for each node.
 template <class G>
 std::vector<std::int64_t> node_bounds() {
   std::vector<std::int64_t> bounds;
@@ -30,10 +32,10 @@ std::vector<std::int64_t> node_bounds() {
   return bounds;
 }
 
-// One row of the matrix: what a delay at the end of one node has to lead to.
+// One row of the matrix: the expected decision after a delay at the end of one node.
 struct Row {
-  std::uint32_t at = 0;      // the frame's sequence number, or the tick's
-  Duration longest_in_time;  // a nanosecond more is too late
+  std::uint32_t at = 0;      // sequence number of the frame, or tick number
+  Duration longest_in_time;  // one nanosecond more is an overrun
   OverrunDecision decision;
 };
 
@@ -42,7 +44,7 @@ std::vector<Row> rows(Duration deadline, OverrunPolicy policy, bool bounded, std
                       std::uint32_t step) {
   const std::vector<std::int64_t> bounds = node_bounds<G>();
   std::vector<Row> all(bounds.size());
-  Duration remaining;  // after the last node nothing does: only a deadline can pass there
+  Duration remaining;  // 0 after the last node: there only the deadline itself can pass
   for (std::size_t node = bounds.size(); node-- > 0;) {
     const bool ahead = bounded && remaining.nanoseconds > 0;
     all[node] = {first + step * static_cast<std::uint32_t>(node),
@@ -109,7 +111,7 @@ void expect_counts(const OverrunCounts& counts, const std::vector<Row>& rows, bo
   EXPECT_EQ(counts.by_policy[static_cast<std::size_t>(rows[0].decision.policy)], rows.size());
 }
 
-// Once at every node, in the recording and on the bus, and nowhere else.
+// Each decision once, at its node, in the recording and on the bus, and no other.
 void OverrunMatrix::expect_decisions(const SessionResult& run, const OverrunLog& log) const {
   std::map<std::uint32_t, OverrunDecision> frames, ticks;
   std::map<std::string, int> emergencies;
@@ -128,14 +130,14 @@ void OverrunMatrix::expect_decisions(const SessionResult& run, const OverrunLog&
   expect_counts(run.tick_overruns, tick_rows_, bounded_);
 }
 
-// Of a pose that an overrun's policy put in the place of a measured one.
+// Checks a pose that the overrun policy substituted for a measured one.
 void expect_substitute(OverrunPolicy policy, const PoseSample& sample) {
   EXPECT_EQ(sample.reason, reason_of(policy));
   EXPECT_EQ(sample.state,
             policy == OverrunPolicy::stop_safe ? TrackState::lost : TrackState::predicted);
 }
 
-// From the tick before to this one.
+// Checks the motion from the previous tick to this one.
 void expect_motion(OverrunPolicy policy, const PoseSample& before, const PoseSample& sample,
                    double tolerance_m) {
   const Vector3 moved = sample.pose.translation - before.pose.translation;
@@ -143,7 +145,7 @@ void expect_motion(OverrunPolicy policy, const PoseSample& before, const PoseSam
     EXPECT_EQ(moved.norm(), 0);
   }
   if (policy == OverrunPolicy::predict) {
-    // A hand that was found at rest stays there.
+    // A hand that was detected as static stays at its pose.
     EXPECT_EQ(moved.norm() > 0, before.velocity_m_s.norm() > 0);
     EXPECT_LT((moved - before.velocity_m_s * 0.004).norm(), tolerance_m);
   }
@@ -171,8 +173,8 @@ void OverrunMatrix::expect_what_ticks_sent(const OverrunLog& log) const {
 }
 
 void OverrunMatrix::expect_what_frames_published(const OverrunLog& log) const {
-  std::map<std::uint64_t, int> read;  // how often each late frame's estimates were
-  int moving = 0;                     // poses judged of a tool that did not rest
+  std::map<std::uint64_t, int> read;  // number of ticks that read each late frame's estimates
+  int moving = 0;                     // checked poses of a tool that was not static
   for (const Row& row : frame_rows_) read[log.activations.at(row.at)] = 0;
   for (const auto& [tick, version] : log.versions) {
     SCOPED_TRACE("tick " + std::to_string(tick));
@@ -184,7 +186,7 @@ void OverrunMatrix::expect_what_frames_published(const OverrunLog& log) const {
     ASSERT_EQ(is_overrun(sample.reason), late_frame != read.end());
     if (late_frame == read.end()) continue;
     expect_substitute(policy_, sample);
-    // The tip turns about the tool's origin, so that its velocity holds for a moment only.
+    // The tip rotates about the tool's origin, so its velocity is valid only at one instant.
     if (++late_frame->second > 1 && log.ticks.count(tick - 1) == 0) {
       expect_motion(policy_, log.outputs.at(tick - 1), sample, 2e-5);
       moving += log.outputs.at(tick - 1).velocity_m_s.norm() > 0.001 ? 1 : 0;

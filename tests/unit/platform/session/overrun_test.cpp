@@ -1,4 +1,5 @@
-// What is watched where nothing is late, which injections are refused, and what a trace tells.
+// Overrun watch: no decision without a clock and injections; rejected injections; trace of a
+// simulated run.
 #include "graph/describe.hpp"
 #include "platform/budget/export/trace_file.hpp"
 #include "platform/input_error.hpp"

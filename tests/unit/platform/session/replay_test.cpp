@@ -28,12 +28,12 @@ TEST_P(Replay, DecidesAlikeWithOneWorkerAndWithTwo) {
   ASSERT_GT(run.accuracy.poses, 50);
   for (const int workers : {1, 2}) {
     const ReplayResult result = expect_same_bytes(run.recording_file, run, workers);
-    EXPECT_EQ(result.records, run.ticks - 3);  // none before the first frame names its tools
+    EXPECT_EQ(result.records, run.ticks - 3);  // no output before the first frame
   }
 }
 
-// What the camera's bias took off a marker's range and how bright it was must be in the recording,
-// as the tool's bias must be.
+// The recording must contain each marker's peak value and camera bias correction, and the tool's
+// own bias, which replaces the camera's.
 TEST_P(Replay, TakesAToolsOwnDepthBiasOff) {
   TemporaryFolder folder;
   const std::string cell_file = folder.path() + "/cell.toml";
@@ -59,16 +59,16 @@ TEST(Replay, GivesTheSameBytesAsARunWithTwoWorkers) {
   EXPECT_EQ(short_run(cell, two.path()).output_sha256, expected);
 }
 
-// A run of chunks of a second each, at every level that decides again.
+// A run with chunks of one second, at every level that a replay recomputes.
 class ReplayOfWhatIsLeft : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
     run_ = short_run(short_cell(seconds(), GetParam()), folder_.path());
     bytes_ = text_of(run_.recording_file);
   }
-  // At level full a chunk has few frames, at others a second's.
+  // At level full a chunk holds few frames, at other levels one second of them.
   static double seconds() { return std::string_view(GetParam()) == "full" ? 1.4 : 3.5; }
-  // Where the chunk with this number begins; it begins with its kind, 6, and its length.
+  // Offset of chunk `number`, at its record kind (6) and length.
   std::size_t chunk(int number) const {
     std::size_t at = k_mcap_magic.size();
     for (;;) {
@@ -121,7 +121,7 @@ TEST_P(ReplayOfWhatIsLeft, CountsWhatACutFileLacks) {
 INSTANTIATE_TEST_SUITE_P(AtEveryLevel, ReplayOfWhatIsLeft, testing::Values("full", "roi", "blobs"),
                          [](const auto& level) { return std::string(level.param); });
 
-// What an interrupted run may leave: frames, but no tick yet; or ticks, but no frame.
+// Possible remains of an interrupted run: frames without ticks, or ticks without frames.
 TEST(Replay, RefusesARecordingWithoutAnOutputRecord) {
   const TemporaryFolder folder;
   const SessionResult run = short_run(short_cell(0.3, "blobs"), folder.path());
@@ -147,8 +147,8 @@ TEST(Replay, RefusesARecordingWithoutAnOutputRecord) {
   }
 }
 
-// Moves each activation's records: `place` has where those of frame v stand, and those of a tick
-// that read it, which is the n-th that did.
+// Reorders the records of activations. `place` returns the position of frame v's records, or of
+// those of the n-th tick that read frame v.
 using Place = std::function<double(bool is_tick, std::uint64_t v, int n)>;
 void move_records(std::vector<RecordedMessage>& messages, const Place& place) {
   std::vector<std::pair<double, RecordedMessage>> placed;
@@ -169,7 +169,7 @@ void move_records(std::vector<RecordedMessage>& messages, const Place& place) {
   for (std::size_t i = 0; i < placed.size(); ++i) messages[i] = std::move(placed[i].second);
 }
 
-// A run with two frames in a row and a tick that are not in time.
+// A run with overruns of two successive frames and of one tick.
 class ReplayOfOtherOrder : public testing::TestWithParam<graph::OverrunPolicy> {
  protected:
   SessionResult run(double seconds) const {
@@ -192,7 +192,7 @@ class ReplayOfOtherOrder : public testing::TestWithParam<graph::OverrunPolicy> {
   TemporaryFolder folder_;
 };
 
-// The tick thread was interrupted between its output and its record.
+// The tick thread was preempted between its output and its record.
 TEST_P(ReplayOfOtherOrder, FindsTheEstimatesOfATickThatStandsBehindLaterFrames) {
   const SessionResult run = this->run(1.0);
   for (const int late : {1, 3}) {
@@ -207,7 +207,7 @@ TEST_P(ReplayOfOtherOrder, FindsTheEstimatesOfATickThatStandsBehindLaterFrames) 
   }
 }
 
-// The frame thread was: its estimates are published in front of its record.
+// The frame thread was preempted: it published its estimates before their record.
 TEST_P(ReplayOfOtherOrder, WaitsForTheFrameThatATickRead) {
   const SessionResult run = this->run(1.0);
   const ReplayResult result = expect_same_bytes(
@@ -241,8 +241,8 @@ INSTANTIATE_TEST_SUITE_P(ByPolicy, ReplayOfOtherOrder,
 TEST(Replay, SeesADifferentSettingAsADifference) {
   TemporaryFolder folder;
   Cell cell = short_cell(0.5);
-  // The recording's cell asks for another actuation time than the run used: what replays is the
-  // recording's, so every record must differ.
+  // The cell in the recording is edited to another actuation delay than the run's. The replay uses
+  // the recorded cell, so every output record must differ.
   const std::string asked = "actuation_delay_ms = 0";
   cell.text.replace(cell.text.find(asked), asked.size(), "actuation_delay_ms = 9");
   const SessionResult run = short_run(cell, folder.path());
@@ -251,7 +251,7 @@ TEST(Replay, SeesADifferentSettingAsADifference) {
   EXPECT_GT(result.mismatches, 50);
 }
 
-// A lens that is not the built-in one: without it the recording would replay to other bytes.
+// Not the built-in lens: the replay differs unless the recording contains the lens.
 TEST(Replay, NeedsNoFileThatTheCellNamed) {
   TemporaryFolder folder;
   const std::string cell_file = folder.path() + "/cell.toml", lens = folder.path() + "/lens.toml";

@@ -1,5 +1,5 @@
-// A short run in which the pen's buttons go down and up, in order and thus the same every time:
-// each event is offered before the first tick that is not before it.
+// Short run with button events in simulated order, so that every run is identical: each event is
+// offered before the first tick at or after its time.
 #pragma once
 
 #include <memory>

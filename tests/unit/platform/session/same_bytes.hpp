@@ -1,4 +1,4 @@
-// A recording replayed beside the run that made it.
+// Comparison of a recording's replay with the original run.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,8 +16,7 @@
 
 namespace glint {
 
-// Fails the test where the replay decides or says anything else than the run; gives what more it
-// found.
+// Expects the replay's decisions and outputs to equal the run's. Returns the replay's result.
 inline ReplayResult expect_same_bytes(const std::string& recording, const SessionResult& run,
                                       int workers = 1) {
   ReplayOptions options;
@@ -29,7 +28,7 @@ inline ReplayResult expect_same_bytes(const std::string& recording, const Sessio
   return result;
 }
 
-// Writes a recording at level blobs again, after `change`.
+// Rewrites a recording of level blobs after applying `change` to its messages.
 inline void rewrite(const std::string& from, const std::string& to,
                     const std::function<void(std::vector<RecordedMessage>&)>& change) {
   RecordingReader reader(from);

@@ -1,4 +1,4 @@
-// Short runs that tests share: in order, without DDS, into a folder that goes away with the test.
+// Short runs for tests: simulated order, no DDS, output in a temporary folder.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ class TemporaryFolder {
   std::string path_;
 };
 
-// Whatever else it is, it runs so long and in order.
+// Sets the duration, nominal release order and one worker; keeps the rest of the cell.
 inline Cell shortened(Cell cell, double seconds) {
   cell.realtime = false;
   cell.workers = 1;

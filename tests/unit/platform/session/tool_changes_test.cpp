@@ -1,4 +1,4 @@
-// Tools that come and go while a session runs, and in its replay.
+// Tools that are added and removed during a session, and in its replay.
 #include "platform/session/tool_roster.hpp"
 #include "tests/unit/platform/session/same_bytes.hpp"
 #include "tests/unit/platform/session/short_run.hpp"
@@ -6,7 +6,7 @@
 namespace glint {
 namespace {
 
-// The pen is there for a second, away for half of one, and back.
+// The pen is present for 1 s, absent for 0.5 s, then present again.
 Cell pen_goes_and_comes(const char* level) {
   Cell cell = short_cell(2.5, level);
   cell.tool_changes = {{Time{1'000'000'000}, 0}, {Time{1'500'000'000}, k_all_tools}};
@@ -58,14 +58,14 @@ TEST(ToolRoster, PublishesEachChangeOnceInATellingVersion) {
   ASSERT_TRUE(published.sample());
   EXPECT_EQ(published.version(), tools_version(3, k_all_tools));
   EXPECT_TRUE(published.value().items[0].present());
-  EXPECT_EQ(tools_in(1), k_all_tools);  // of a recording from before
+  EXPECT_EQ(tools_in(1), k_all_tools);  // version in an older recording
 }
 
 TEST(ToolRoster, TakesUpWhatWasAskedForBesideTheCellsChanges) {
   Cell cell = default_cell();
   cell.tools.count = 2;
   cell.tools_at_start = 0b01;
-  cell.tool_changes = {{Time{1'000'000'000}, 0b00}};  // the first goes
+  cell.tool_changes = {{Time{1'000'000'000}, 0b00}};  // tool 0 is removed
   ToolRequests requests;
   ToolRoster roster(cell, &requests);
   const auto there_at = [&](std::int64_t ns) {
@@ -78,7 +78,7 @@ TEST(ToolRoster, TakesUpWhatWasAskedForBesideTheCellsChanges) {
   EXPECT_EQ(there_at(1000), 0b11);
   requests.ask(0, false);
   requests.ask(1, false);
-  requests.ask(0, true);  // of several about one tool the last counts
+  requests.ask(0, true);  // the last of several requests for one tool counts
   EXPECT_EQ(there_at(2000), 0b01);
   const std::uint64_t version = roster.published().version();
   requests.ask(1, false);

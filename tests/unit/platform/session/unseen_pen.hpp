@@ -1,4 +1,4 @@
-// A tick group alone, of one tool that no frame has shown: its ticks leave all the same.
+// A tick group with one tool that no frame has shown; it still publishes at every tick.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace glint {
 
 class UnseenPen {
  public:
-  // `listening`: whom of the sinks its ticks go to.
+  // `listening`: the sinks that receive the ticks.
   UnseenPen(const Cell& cell, Sinks& sinks, const TickSinks& listening)
       : runner_(in_order()),
         group_(
@@ -24,7 +24,7 @@ class UnseenPen {
     now_ = Time{} + milliseconds(4) * number_;
     group_.tick(number_++, now_, now_);
   }
-  // Of the last tick.
+  // Time of the last tick.
   [[nodiscard]] Time now() const { return now_; }
 
  private:
