@@ -151,7 +151,7 @@ TEST(AssignMarkers, GivesNoMarkerToTheLabelingsOfTwoTools) {
     const auto first = static_cast<std::int16_t>(3 * t);
     own.items[0] = labeling(first, static_cast<std::int16_t>(first + 1),
                             static_cast<std::int16_t>(first + 2), 0);
-    own.items[1] = labeling(first, static_cast<std::int16_t>(first + 1), 6, 1);  // 6: a stray
+    own.items[1] = labeling(first, static_cast<std::int16_t>(first + 1), 6, 1);  // 6: false marker
     own.count = 2;
   }
   auto node = std::make_unique<AssignMarkers>();

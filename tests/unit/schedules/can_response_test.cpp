@@ -59,8 +59,8 @@ TEST(CanResponse, AFifoDelaysAnUrgentFrameByAllThatMayStandBeforeIt) {
   EXPECT_EQ(queued[0].queued_ns, 2 * k_ms);
 }
 
-// The FIFO's frames are queued at twice the rate at which another node's frames may hold the bus.
-// Each waits for at most one of every other: response within 3 ms.
+// The FIFO has 69 % load. Each message is sent once in the worst case: a frame of the FIFO ends
+// within 3 ms.
 TEST(CanResponse, AFifoThatFillsMostOfTheBusHasABound) {
   std::vector<CanMessage> messages = davis_2007();
   messages[0].period_ns = 20 * k_ms;
@@ -132,7 +132,7 @@ TEST(CanResponse, OfAQueueCountsWhatIsMoreUrgentThanItsLeastUrgentFrame) {
     EXPECT_EQ(found(3 * k_ms, 0)[m].queued_ns, 4 * k_ms) << m;
     EXPECT_EQ(found(4 * k_ms, 2 * k_ms)[m].response_ns, (m == 0 ? 6 : 4) * k_ms) << "its own";
   }
-  // D waits for one frame that began, and for A once. A's jitter is its wait behind B.
+  // D waits for one frame that began, and for A once. A's queueing delay behind B is jitter to D.
   EXPECT_EQ(found(20 * k_ms, 0)[3].response_ns, 3 * k_ms);
   EXPECT_EQ(found(20 * k_ms, 0)[3].queued_ns, 0);
 }
