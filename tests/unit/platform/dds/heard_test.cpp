@@ -27,7 +27,7 @@ TEST(Heard, TakesJointsByNameWithTheirTime) {
   EXPECT_EQ(joints.count, 2);
   EXPECT_STREQ(joints.names[1].data(), "elbow");
   EXPECT_EQ(joints.positions[1], -1.25);
-  EXPECT_EQ(joints.time, Time{5});  // the message has no stamp
+  EXPECT_EQ(joints.time, Time{5});  // the message has no time stamp
   JointStateMessage stamped = text.message();
   stamped.header.stamp = {1'700'000'001, 250};
   ASSERT_TRUE(hear(stamped, k_start, Time{5}, joints));

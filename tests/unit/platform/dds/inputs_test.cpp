@@ -163,7 +163,7 @@ TEST_F(Inputs, ReleaseAButtonWhoseParticipantLeavesBesideAnotherOnItsTopic) {
   EXPECT_TRUE(ends.read_until([&] { return ends.events.size() == 2; }));
 }
 
-// A killed participant does not say goodbye; its lease expires. Must run before this process starts
+// A killed participant sends no dispose; its lease expires. Must run before this process starts
 // any thread, because it forks.
 TEST_F(Inputs, ReleaseAButtonWhoseParticipantWasKilled) {
   const pid_t child = ::fork();

@@ -64,7 +64,7 @@ Cell cell_with_a_body(double seconds) {
   return cell;
 }
 
-// A reference body on the table while the head looks around.
+// A reference body on the table; the head sways and rotates.
 sim::Scenario looking_around(const Cell& cell) {
   sim::Scenario scenario = scenario_of(cell);
   sim::HeadSettings head;
