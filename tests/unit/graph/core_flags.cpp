@@ -1,5 +1,4 @@
-// Instantiates every template of a companion computer's build, compiled without exceptions and
-// RTTI.
+// Instantiates every template of a companion computer's build without exceptions and RTTI.
 #include "small_graph.hpp"
 #include "yielding_rest.hpp"
 

@@ -64,8 +64,7 @@ TEST(Describe, ChangesTheSignatureWithTheWiring) {
   EXPECT_NE(Description<OtherOutput>::signature, Words::signature);
 }
 
-// The first copy of a split node is the writer of its token. A token without a writer is an input
-// (from -1).
+// A split token's writer is the first copy. A token without a writer is an input (from -1).
 struct Twice {
   void operator()(const Previous<Parts<Sum, 2>>&, const Latest<Scale>&, Slice,
                   Sum&) const noexcept {}

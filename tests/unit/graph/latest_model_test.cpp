@@ -1,5 +1,4 @@
-// Model checker for the triple buffer: explores every interleaving of a writer and a reader on its
-// own transition code.
+// Model checker for the triple buffer: every interleaving of writer and reader on its own code.
 #include <gtest/gtest.h>
 
 #include "graph/latest.hpp"

@@ -1,5 +1,4 @@
-// Schedule tables of an executor: which nodes they accept, which faults they reject, and which node
-// reads which.
+// Schedule tables of an executor: accepted nodes, rejected faults, and which node reads which.
 #include "graph/plan_tables.hpp"
 
 #include <gtest/gtest.h>
@@ -21,8 +20,7 @@ constexpr NodeSet set_of(std::initializer_list<int> nodes) {
   return set;
 }
 
-// Node 0 is Make, 1 to 5 are Spread, 6 to 8 SumUp, 9 Merge. Feedback is the last activation's and
-// adds no need.
+// Node 0 is Make, 1 to 5 Spread, 6 to 8 SumUp, 9 Merge. Feedback is the last activation's.
 TEST(Needs, AreAllCopiesOfEachWriterOfThisActivation) {
   EXPECT_EQ(
       needs<WideGraph>[0], NodeSet { 0 });

@@ -1,5 +1,4 @@
-// Early end of an activation in the planned executor: the last node, the reports, and the nodes
-// that do not run.
+// Early end of an activation in the planned executor: last node, reports, nodes that do not run.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -116,8 +115,7 @@ TEST(PlannedEnds, CountTheOverrunsOfEveryWorker) {
   EXPECT_GE(planned.overruns(), 1U);
 }
 
-// One source and two readers. The second reader runs on the other worker, and no node reads its
-// output.
+// One source, two readers. The second reader runs on the other worker; no node reads its output.
 struct Source {
   void operator()(Row& row) const noexcept { row.numbers.fill(1); }
 };

@@ -16,8 +16,7 @@ namespace {
 
 using Tables = PlanTables<WideGraph>;
 
-// Random schedule: any order that the data dependencies allow. The first node runs on worker 0, the
-// others on any worker.
+// Random order within the data dependencies. Node 0 runs on worker 0, the others on any worker.
 Tables random_plan(int workers, std::mt19937& random) {
   Tables tables;
   tables.workers = workers;
@@ -151,8 +150,7 @@ TEST(Planned, KeepsTheFeedbackOfAnActivationThatWasLateOnlyAfterItsLastNode) {
   }
 }
 
-// Boundary that returns true a number of times and then always false: a deadline that passes while
-// worker 0 waits.
+// Boundary that returns true `looks` times, then false: the deadline while worker 0 waits.
 struct Patience {
   std::uint64_t looks;
   bool go_on(int) noexcept { return looks > 0 && looks-- > 0; }

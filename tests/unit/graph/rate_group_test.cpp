@@ -114,8 +114,7 @@ TEST(RateGroup, NotesAndReplaysTheVersionOfEachOfItsInputs) {
   EXPECT_EQ(second.nominal_ns, 2'000);
   EXPECT_EQ(second.versions[0], 11U) << "nothing newer";
   EXPECT_EQ(second.versions[1], 22U);
-  // Both inputs have a newer version. A replay changes only the input that does not hold the
-  // recorded version.
+  // Both inputs have a newer version. A replay changes only the input with another version.
   Choice recorded = second;
   recorded.activation = 9;
   recorded.nominal_ns = 9'000;

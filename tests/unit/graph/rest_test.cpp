@@ -6,8 +6,7 @@
 namespace glint::graph::rest_test {
 namespace {
 
-// Counts its calls. A report ends the first `reported_sleeps` sleeps; the others last their full
-// time.
+// Counts its calls. A report ends the first `reported_sleeps` sleeps; the others time out.
 struct ScriptedRest {
   std::uint32_t spins_allowed = 0;
   std::uint64_t reported_sleeps = 0;
@@ -93,8 +92,7 @@ TEST(WaitFor, EndsBetweenTwoSleepsWhereItMayNotGoOn) {
   EXPECT_EQ(rest.sleeps, 4U);
 }
 
-// A report between the check and the sleep must end the sleep: the sleep receives the count that
-// was read before the check.
+// A report between check and sleep must end the sleep: it receives the count from before the check.
 TEST(WaitFor, SleepsByTheReportsThatItReadBeforeItLooked) {
   ScriptedRest rest;
   std::atomic<std::uint64_t> overruns{0};

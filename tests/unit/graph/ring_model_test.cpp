@@ -1,5 +1,4 @@
-// Model checker for the ring: explores every interleaving of a producer and a consumer on its own
-// transition code.
+// Model checker for the ring: every interleaving of producer and consumer on its own code.
 #include <gtest/gtest.h>
 
 #include "graph/ring.hpp"
