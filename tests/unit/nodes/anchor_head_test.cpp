@@ -121,8 +121,7 @@ TEST_F(AnchorHeadByABody, KeepsWhatItKnowsInARefusedFrame) {
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1}}));
 }
 
-// After a clock restart the unobserved motion of the head is unknown: the node drops its
-// correction.
+// A clock restart leaves the head's motion unknown: the node drops its correction.
 TEST_F(AnchorHeadByABody, LosesItsCorrectionWhereTheClockRestarts) {
   for (int i = 1; i < 30; ++i) frame(i);
   body().reason = Reason::no_labeling;

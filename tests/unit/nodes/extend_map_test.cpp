@@ -27,8 +27,7 @@ class ExtendMapTest : public testing::Test {
     shown_.picture.camera.fx = shown_.picture.camera.fy = 40;
     shown_.picture.camera.cx = shown_.picture.camera.cy = 16;
   }
-  // Runs all slices of a depth image. Checks each against the node's declared maximum. Returns the
-  // steps.
+  // Runs all slices of a depth image, each within the declared maximum. Returns the steps.
   int run(std::uint64_t number) {
     shown_.number = number;
     int steps = 0;

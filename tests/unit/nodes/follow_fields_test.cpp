@@ -98,8 +98,7 @@ TEST_F(FollowFields, BeyondTheSlicesToolsAreAsTheyWereMade) {
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1}}));
 }
 
-// After the first pose: the covariance is the pose's, rotated into the world, plus the head's fresh
-// error.
+// After the first pose: its covariance, rotated into the world, plus the head's fresh error.
 TEST_F(FollowFields, OfAFirstPoseAreItsCovarianceTurnedAndTheHeadsFreshError) {
   anchor_.now.fresh = test::random_covariance<6>(random_, 0.0003);
   anchor_.now.pivot_m = Vector3(2, 2, 2);

@@ -1,5 +1,4 @@
-// Node FollowRobot with moving links: the slices of a depth image pose the model for that image,
-// then register it.
+// Node FollowRobot with moving links: the slices of a depth image pose the model, then register it.
 #include "nodes/follow_robot.hpp"
 
 #include <gtest/gtest.h>
@@ -59,8 +58,7 @@ class FollowRobotTest : public testing::Test {
     out.number = static_cast<std::uint64_t>(number);
     return out;
   }
-  // Runs all slices of a depth image. Checks each against the node's declared maximum. Returns the
-  // steps.
+  // Runs all slices of a depth image, each within the declared maximum. Returns the steps.
   static int run(FollowRobot& node, const ShownDepth& shown, RobotProgress& progress) {
     int steps = 0;
     do {

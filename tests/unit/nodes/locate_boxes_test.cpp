@@ -98,8 +98,7 @@ TEST_F(LocateBoxes, AreTheWholeFrameForAToolThatMayBeAnywhere) {
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1}}));
 }
 
-// On each side of a box: first one that only touches it, then one that shares a row or column of
-// pixels.
+// On each side of a box: one that only touches it, then one that shares a row or column.
 TEST_F(LocateBoxes, StayApartWhereTheyOnlyTouch) {
   struct Case {
     double x, y;
@@ -127,8 +126,7 @@ TEST_F(LocateBoxes, AreJoinedWithThoseThatTheGrownBoxMeets) {
   add({5, 30}, {40, 40});
   add({30, 5}, {40, 35});
   expect_only({0, 0, 40, 40});
-  // Overlap tests: the second with the first; the last with the first, the second, and the first
-  // again.
+  // Overlap tests: second with first; last with first, second, and first again.
   EXPECT_EQ(node_.counts(), (graph::LoopCounts{{1, 3, 1 + 3}}));
 }
 

@@ -83,8 +83,7 @@ bool holds(const Rois& rois, int x, int y) {
   return false;
 }
 
-// If a frame has too many runs, the node searches it part by part, and the tracked tool in every
-// frame.
+// After too many runs the node searches the frame in parts, and the tracked tool in every frame.
 TEST_F(LocateRois, SearchesAllPartsOfAFrameThatHadTooManyRunsWithin45Frames) {
   track(0, Vector3(0, 0, 0.5));
   last_->tracks[1].reason = Reason::runs_full;

@@ -1,5 +1,4 @@
-// Node NameFew (partial visibility): which tools are searched for single markers, and which markers
-// are candidates.
+// Node NameFew (partial visibility): the tools that it searches for, and the candidate markers.
 #include "nodes/name_few.hpp"
 
 #include <gtest/gtest.h>
@@ -108,8 +107,7 @@ TEST_F(NameFewTest, LooksAtNoMoreMarkersThanTheCellHas) {
   EXPECT_EQ(named(), 1) << "the third is not looked at";
 }
 
-// The other tool's labeling and its alternative both keep their markers: RefinePose may choose
-// either.
+// Both the other tool's labeling and its alternative keep their markers: either may be chosen.
 TEST_F(NameFewTest, TakesNoMarkerThatAnotherToolsLabelingHolds) {
   for (const bool rival : {false, true}) {
     for (const int lowest : {1, 0}) {

@@ -127,8 +127,7 @@ TEST_F(Correspond, BelievesFewMarkersOnlyNearAPrediction) {
   }
 }
 
-// RefinePose may choose any labeling: a false marker in the alternatives of two tools would be
-// assigned twice.
+// RefinePose may choose any labeling: a false marker in two of them would be assigned twice.
 TEST(AssignMarkers, GivesNoMarkerToTheLabelingsOfTwoTools) {
   const auto labeling = [](std::int16_t a, std::int16_t b, std::int16_t c, double turn) {
     Labeling out;

@@ -1,5 +1,4 @@
-// Node PredictTools: every field of a tick's sample, with and without a pose, each with a different
-// value.
+// Node PredictTools: every field of a tick's sample, with and without a pose, all different.
 #include <gtest/gtest.h>
 
 #include <memory>

@@ -124,8 +124,7 @@ TEST_F(PredictTools, TurnsPoseSpeedsAndCovarianceIntoTheRobotsFrame) {
   EXPECT_LT((sample.pose.translation - Vector3(0, -0.1, 0.5)).norm(), 1e-12);
   EXPECT_LT((sample.pose.rotation * Vector3::UnitX() + Vector3::UnitY()).norm(), 1e-12);
   EXPECT_LT((sample.angular_velocity_rad_s - Vector3(2, -1, -3)).norm(), 1e-12);
-  // Velocity of the tip: that of the markers' mean plus the rotation's, (1, 2, -3) x (0.1, 0, 0) in
-  // the world.
+  // Velocity of the tip: the mean's plus the rotation's, (1, 2, -3) x (0.1, 0, 0) in the world.
   const Vector3 in_world = Vector3(0.1, 0.2, 0.3) + Vector3(0, -0.3, -0.2);
   const Vector3 in_robot(in_world.y(), -in_world.x(), in_world.z());
   EXPECT_LT((sample.velocity_m_s - in_robot).norm(), 1e-12);

@@ -1,5 +1,4 @@
-// Node RefinePose with few markers, partially occluded or merged markers, or after an inflated
-// covariance.
+// Node RefinePose with few, partially occluded or merged markers, or an inflated covariance.
 #include <numbers>
 
 #include "kernels/pose/blob_size.hpp"

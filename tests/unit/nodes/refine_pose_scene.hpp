@@ -22,8 +22,7 @@ class RefinePoseTest : public testing::Test {
     world_->assignment.reason.fill(Reason::too_few_markers);
   }
 
-  // Tool number t; its markers are listed in reverse order, with noise of `share` standard
-  // deviations.
+  // Tool number t; markers in reverse order, with noise of `share` standard deviations.
   void add_tool(int t, const Tool& tool, const Pose& truth, double share, Random& random) {
     const auto at = static_cast<std::size_t>(t);
     set_.count = std::max(set_.count, t + 1);

@@ -83,7 +83,7 @@ TEST_F(RefineRelations, ResidualsBeyondTheNoiseWidenThePoseBySquares) {
   EXPECT_EQ(run_one().reason, Reason::bad_fit) << "beyond four times the noise";
 }
 
-// Before the noise is estimated, its variance may be ten times the declared one: a tenth of the
+// Until the noise is estimated, its variance may be ten times the declared: a tenth of the
 // evidence.
 TEST_F(RefineRelations, UnknownNoiseTakesOddsByTheFactorOfItsDoubt) {
   Random random(21);

@@ -135,8 +135,7 @@ TEST_F(TrackFields, OfAnExpectedPoseHaveNoSurprise) {
   EXPECT_EQ(frame(22).surprise, 1);
 }
 
-// The previous pose is published while it is recent and has the same base: at the limit and just
-// above it.
+// The previous pose, if recent and of the same base: at the limit and just above it.
 TEST_F(TrackFields, OfThePoseBeforeAreThereWhileItIsRecentAndOfTheSameBase) {
   node_.settings.velocity_gap_max = milliseconds(40);
   for (const std::int64_t gap : {40, 41}) {
