@@ -53,8 +53,7 @@ TEST(Assessment, HoldsUpToEachDeadlineAndNamesWhatIsLateBeyond) {
   }
 }
 
-// The rows of a group add up to its response without the jitter. A group on two cores has two
-// wake-ups.
+// A group's rows add up to its response without the jitter. Two cores have two wake-ups.
 TEST(Assessment, SplitsEachResponseIntoItsRowsOnTwoCores) {
   Question question = small_question();
   question.model.cores = 2;

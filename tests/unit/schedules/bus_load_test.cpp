@@ -16,8 +16,7 @@ void append(Bits& bits, std::uint64_t value, int width) {
   for (int i = width; i-- > 0;) bits.push_back((value >> i & 1U) != 0);
 }
 
-// Stuff bits that the bus inserts: after five equal bits the opposite one, which counts for the
-// next.
+// Stuff bits: after five equal bits the opposite one, which counts for the next run.
 int stuffing_of(const Bits& bits) {
   int inserted = 0;
   int run = 0;

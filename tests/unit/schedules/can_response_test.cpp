@@ -59,8 +59,7 @@ TEST(CanResponse, AFifoDelaysAnUrgentFrameByAllThatMayStandBeforeIt) {
   EXPECT_EQ(queued[0].queued_ns, 2 * k_ms);
 }
 
-// The FIFO has 69 % load. Each message is sent once in the worst case: a frame of the FIFO ends
-// within 3 ms.
+// The FIFO has 69 % load. Each message is sent at most once before a frame ends, within 3 ms.
 TEST(CanResponse, AFifoThatFillsMostOfTheBusHasABound) {
   std::vector<CanMessage> messages = davis_2007();
   messages[0].period_ns = 20 * k_ms;
@@ -164,8 +163,7 @@ TEST(CanResponse, AQueuesWaitBringsItsFramesCloserTogether) {
   EXPECT_EQ(found[2].response_ns, 4 * k_ms) << "a second A within the bit after which C begins";
 }
 
-// Two nodes share an identifier: arbitration between them is undefined, so each may delay the
-// other.
+// Two nodes share an identifier: the arbitration is undefined, so each may delay the other.
 TEST(CanResponse, AnIdentifierThatTwoNodesUseDelaysEither) {
   std::vector<CanMessage> messages = davis_2007();
   for (CanMessage& message : messages) {
@@ -238,8 +236,7 @@ TEST(CanResponse, OfNoFrameIsBoundedWhereOneHasNoBound) {
   EXPECT_TRUE(can_responses({}, {}).empty());
 }
 
-// Arbitration fields of two frames without SOF and stuff bits: the first differing bit decides, and
-// 0 wins.
+// Arbitration fields without SOF and stuff bits: the first differing bit decides, and 0 wins.
 TEST(CanResponse, OrdersIdentifiersAsArbitrationDoes) {
   std::mt19937 random(11898);
   const auto on_the_bus = [](const CanMessage& message) {

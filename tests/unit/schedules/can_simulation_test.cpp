@@ -1,5 +1,4 @@
-// Worst-case CAN response times against a simulation of random message sets; one node of each set
-// has a FIFO.
+// Worst-case CAN response times against simulated random message sets; one node has a FIFO.
 #include <gtest/gtest.h>
 
 #include <algorithm>

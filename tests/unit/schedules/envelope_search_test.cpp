@@ -50,8 +50,7 @@ TEST(EnvelopeSearch, EndsWithAFaultAfterThePivotsThatItIsGiven) {
   EXPECT_EQ(cut.cost, (decltype(cut.cost){})) << "costs of no optimum are none";
 }
 
-// The objective weights one loop alone, so most pivots are degenerate. Both pivot rules end at the
-// same bound.
+// Weights of one loop alone: most pivots are degenerate. Both pivot rules end at one bound.
 TEST(EnvelopeSearch, EndsAtTheSameBoundByBlandsRule) {
   std::mt19937 random(6);
   for (int trial = 0; trial < 30; ++trial) {

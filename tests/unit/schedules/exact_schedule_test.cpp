@@ -144,8 +144,7 @@ TEST(ExactSchedule, KeepsToOneCoreWhereHandingOverCostsMoreThanItGains) {
 }
 
 TEST(MakespanBound, NoOptimumIsBelowIt) {
-  // One node, three copies on two cores, one node. The copies need two rounds, or three on one
-  // core.
+  // One node, three copies on two cores, one node: two rounds of copies, or three on one core.
   const TaskGroup group = staged_group({{"A", 1, 10}, {"B", 3, 10}, {"C", 1, 10}});
   EXPECT_EQ(least_between(30, 2, 0), 15);
   EXPECT_EQ(least_between(30, 2, 5), 20);

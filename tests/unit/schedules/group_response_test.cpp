@@ -51,8 +51,7 @@ TEST(GroupResponses, StateWhatTheyAreOf) {
   EXPECT_EQ(found[1].response_ns, 20 + 10);
 }
 
-// The group of higher priority occupies each of its cores for its full response and has two
-// wake-ups.
+// The higher-priority group occupies each of its cores for its full response; two wake-ups.
 TEST(GroupResponses, OfALessUrgentGroupCountAWideOneOnEachCoreThatBothUse) {
   Placed placed(2);
   placed.add("wide", 100, {0, 1});

@@ -136,8 +136,7 @@ TEST(GroupResponse, IsNeverExceededBySimulatedActivationsOnSeveralCores) {
     const auto bounds = group_responses(model, plan);
     if (!bounds[0].response_ns) continue;
 
-    // Simulates each nanosecond. The first release of the higher-priority group is simultaneous
-    // with the group's own.
+    // Simulates each nanosecond. Both groups are first released at the same time.
     const auto orders = core_orders(plan, 0);
     const int urgent_core = [&] {
       for (const PlannedNode& node : plan.nodes) {
@@ -211,8 +210,7 @@ TEST(GroupResponse, CountsOneWakeUpOnOneCoreAndTwoOnSeveral) {
   }
 }
 
-// Jitter and wake-up delay one release of the higher-priority group but not the next: both fall
-// into one window.
+// One release of the higher-priority group is delayed, the next is not: both are in one window.
 TEST(GroupResponse, CountsAnUrgentGroupsJitterAndWakeUpAmongItsReleases) {
   TaskModel model;
   model.groups.push_back(staged_group({{"Slow", 1, 83}}));
@@ -226,8 +224,7 @@ TEST(GroupResponse, CountsAnUrgentGroupsJitterAndWakeUpAmongItsReleases) {
     model.system.wake_up_ns = wake_up_ns;
     return group_responses(model, plan)[0].response_ns;
   };
-  // Own work and wake-up, plus the one or two releases of the higher-priority group in that time
-  // plus its jitter.
+  // Own work and wake-up, and one or two releases of the higher-priority group within its window.
   EXPECT_EQ(response(0, 0), 83 + 10);
   EXPECT_EQ(response(0, 3), 86 + 10);
   EXPECT_EQ(response(0, 4), 87 + 2 * 10) << "97 + 4 are more than its gap";

@@ -1,5 +1,4 @@
-// Sensitivity analysis: which bounds the factor scales, and the search for the largest factor that
-// meets all deadlines.
+// Sensitivity analysis: which bounds the factor scales, and the search for the largest factor.
 #include "schedules/sensitivity.hpp"
 
 #include <gtest/gtest.h>
@@ -56,8 +55,7 @@ TEST(Scaled, ByOneChangesNothing) {
   EXPECT_EQ(same.system.wake_up_ns, 101);
 }
 
-// For a predicate that holds up to a limit, the result is at most the limit and close to it, after
-// few evaluations.
+// For a predicate true up to a limit: just below the limit, after few evaluations.
 TEST(LargestFactor, IsTheLimitWithinATenThousandthAndHolds) {
   for (const double limit : {0.003, 0.25, 0.999, 1.0, 1.001, 1.38, 17.0, 400.0, 999.0}) {
     int asked = 0;

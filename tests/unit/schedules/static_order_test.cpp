@@ -71,8 +71,7 @@ TEST(Levels, AreTheLongestPathsToTheEnd) {
 TEST(ListSchedule, TakesTheHighestLevelFirstToTheCoreWhereItStartsFirst) {
   // C has a higher level than B and runs on A's core. B starts earlier on the other core.
   EXPECT_EQ(list_schedule(diamond(), 2, 4), (CoreOrders{{0, 2, 3}, {1}}));
-  // If the inter-core communication delay equals C's duration, B runs after C: of equal cores the
-  // first is chosen.
+  // With an inter-core delay equal to C, B runs after C: of equal cores the first is chosen.
   EXPECT_EQ(list_schedule(diamond(), 2, 30), (CoreOrders{{0, 2, 1, 3}, {}}));
   EXPECT_EQ(list_schedule(diamond(), 2, 29), (CoreOrders{{0, 2}, {1, 3}}));
 }
