@@ -92,8 +92,7 @@ TEST(CanButtons, StampAFrameWhenItArrivedNotWhenItWasRead) {
   EXPECT_LE(events[0].time, after + milliseconds(1));
 }
 
-// The kernel's time stamps use the Unix clock, which may be set before a frame arrives or while it
-// is queued.
+// The kernel uses the Unix clock, which may be set before a frame arrives or while it is queued.
 TEST(CanButtons, StampAFrameOnTheBoardsClockWhateverTheUnixClockDoes) {
   const Time board_now{10'000'000'000}, unix_then{1'700'000'000'000'000'000};
   const Duration hour = milliseconds(3'600'000), age = milliseconds(7);

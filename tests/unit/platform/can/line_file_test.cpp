@@ -101,8 +101,7 @@ TEST(LineFile, LeavesNoDescriptorOpen) {
   EXPECT_EQ(open_files(), before);
 }
 
-// A pipe whose reader does not read: exactly the frames beyond the queue's capacity are dropped and
-// counted.
+// The pipe's reader does not read: exactly the frames beyond the capacity are dropped and counted.
 TEST(LogSink, DropsWhatItsQueueHasNoRoomForAndWritesAllTheRest) {
   const TemporaryFolder folder;
   const auto pipe = folder.path() / "pipe";
