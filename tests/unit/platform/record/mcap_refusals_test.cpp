@@ -1,5 +1,4 @@
-// Hand-made MCAP files with one fault each: the message states the position, the fault and the
-// expectation.
+// Hand-made MCAP files with one fault each: the message states position, fault and expectation.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -59,8 +58,7 @@ bool decode_by_xor(std::string_view compression, std::span<const std::uint8_t> f
 
 class McapRefusals : public testing::Test {
  protected:
-  // The reader's message for these bytes without the path, or the number of messages if there is
-  // none.
+  // The reader's message for these bytes without the path; the number of messages if none.
   std::string said(const Bytes& bytes, ChunkDecoder decoder = nullptr,
                    McapEnding ending = McapEnding::required) {
     std::ofstream(path_, std::ios::binary)

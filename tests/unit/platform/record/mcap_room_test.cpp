@@ -68,8 +68,7 @@ std::size_t count(const std::vector<Record>& records, McapKind kind) {
       records.begin(), records.end(), [&](const Record& record) { return record.kind == kind; }));
 }
 
-// Number of messages in each chunk of a file with one channel. A record has 31 bytes plus the
-// payload.
+// Messages in each chunk of a file with one channel. A record has 31 bytes plus the payload.
 std::vector<std::size_t> messages_in_chunks(McapSettings settings,
                                             const std::vector<std::uint64_t>& times) {
   const TemporaryFolder folder;

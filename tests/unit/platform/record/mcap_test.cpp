@@ -367,8 +367,7 @@ TEST(Mcap, WithACompressedChunkIsRefusedByTheNameOfTheCompression) {
   }
 }
 
-// The checksum is correct, so another program wrote this. The reader discards the rest of the
-// chunk.
+// The checksum is correct: another program wrote this. The rest of the chunk is discarded.
 TEST(Mcap, WithAMessageOfNoChannelLosesTheRestOfItsChunk) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.mcap");

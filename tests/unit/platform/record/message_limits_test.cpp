@@ -1,5 +1,4 @@
-// Messages with more elements than their type allows, or with pixels that do not match their
-// rectangle.
+// Messages with more elements than their type allows, or pixels that do not match the rectangle.
 #include <gtest/gtest.h>
 
 #include <algorithm>

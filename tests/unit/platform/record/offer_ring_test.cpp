@@ -70,8 +70,7 @@ TEST(OfferRing, TakesWhatEverFitsWheneverItIsEmpty) {
   }
 }
 
-// A record of up to half the ring, heading included, fits in any state of the ring; a larger one
-// never.
+// A record of up to half the ring, heading included, always fits; a larger one never.
 TEST(OfferRing, EverTakesARecordOfHalfOfIt) {
   for (std::size_t blocks = 0; blocks <= 12; ++blocks) {
     OfferRing ring;

@@ -235,8 +235,7 @@ TEST(RecordingTopics, ShowNoPartOfAFrameAsAnImage) {
   EXPECT_EQ(messages_of(layout), 1u) << "the first of two is whole";
 }
 
-// ros2msg convention: the type's fields, then one section for each type that it contains, each
-// once.
+// ros2msg convention: the type's fields, then one section for each type in it, each once.
 TEST(Schemas, DefineEveryTypeThatTheyNameOnce) {
   for (const char* name :
        {"sensor_msgs/msg/Image", "geometry_msgs/msg/PoseStamped", "tf2_msgs/msg/TFMessage",
