@@ -118,8 +118,7 @@ TEST(ClockMap, RefusesAStepAndThenFollowsTheNewClock) {
   }
 }
 
-// Single time stamps that are off by a second are rejected and do not change the mapping of the
-// others.
+// Single time stamps that are off by a second are rejected and do not affect the others.
 TEST(ClockMap, RefusesSingleStampsWithoutAStep) {
   ClockMap map(k_delay);
   Stream stream;
