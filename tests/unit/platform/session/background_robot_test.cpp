@@ -1,5 +1,4 @@
-// Background group with a tracked robot: joint states that it receives, and status that it
-// publishes.
+// Background group with a tracked robot: joint states received, status published.
 #include <gtest/gtest.h>
 
 #include <algorithm>

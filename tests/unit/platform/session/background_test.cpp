@@ -95,8 +95,7 @@ TEST(BackgroundRun, InOrderGivesTheSameBytesWithAndWithoutOne) {
   EXPECT_EQ(other.background->map.pictures, 0);
 }
 
-// In simulated order every run executes the same slices, and their map equals that of the serial
-// chain.
+// In simulated order every run executes the same slices; the map equals the serial chain's.
 TEST(BackgroundRun, InOrderMakesTheMapThatTheChainMakesOfTheSamePictures) {
   const TemporaryFolder plain, first, again, pictures;
   DepthFolder folder(pictures.path());
@@ -181,8 +180,7 @@ TEST(BackgroundRun, LiveRunsItsSlicesTracesThemAndReplaysToTheSameHash) {
   EXPECT_EQ(replay(run.recording_file, {}).output_sha256, run.output_sha256);
 }
 
-// Schedule of three groups as in the tracker's task model: all on one core except the background
-// group.
+// Schedule of the tracker's three groups: all on one core except the background group.
 TEST(BackgroundRun, TakesItsCorePriorityAndBoundsFromAPlan) {
   const Cell cell = with_background(default_cell(), milliseconds(20), 1'000);
   Plan plan;

@@ -1,5 +1,4 @@
-// Decodes the pen's buttons from a CAN log by their bit positions, independently of Glint's own
-// decoder.
+// Decodes the pen's buttons from a CAN log by bit positions, without Glint's own decoder.
 #pragma once
 
 #include <gtest/gtest.h>

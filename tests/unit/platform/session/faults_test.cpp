@@ -1,5 +1,4 @@
-// Late, duplicate, reordered or backward-stamped frames are counted and never have state
-// `measured`.
+// Late, duplicate, reordered or backward-stamped frames: counted, never `measured`.
 #include "tests/unit/platform/session/short_run.hpp"
 
 namespace glint {

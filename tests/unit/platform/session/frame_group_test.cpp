@@ -1,5 +1,4 @@
-// Published estimates of the frame group for overrun frames, for any read pattern of the tick
-// group.
+// Published estimates of the frame group for overrun frames, for any read pattern.
 #include "platform/session/frame_group.hpp"
 
 #include <optional>

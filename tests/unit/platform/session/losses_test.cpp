@@ -1,5 +1,4 @@
-// Output losses are counted, named and reported on CAN. A tick that was not sent has no state and
-// no latency.
+// Output losses are counted, named and reported on CAN. An unsent tick has no state or latency.
 #include "platform/session/losses.hpp"
 
 #include <algorithm>

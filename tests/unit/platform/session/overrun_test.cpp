@@ -1,5 +1,4 @@
-// Overrun watch: no decision without a clock and injections; rejected injections; trace of a
-// simulated run.
+// Overrun watch: no decision without a clock and injections; rejected injections; trace.
 #include "graph/describe.hpp"
 #include "platform/budget/export/trace_file.hpp"
 #include "platform/input_error.hpp"
