@@ -1,5 +1,4 @@
-// Joint states, description, pose guess and buttons received over the network from another
-// participant.
+// Joint states, description, pose guess and buttons received from another participant.
 #include "platform/dds/dds_inputs.hpp"
 
 #include <gtest/gtest.h>

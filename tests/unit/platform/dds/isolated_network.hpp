@@ -1,5 +1,4 @@
-// Network namespace with a loopback interface only: no packet of a test leaves it, and none from
-// outside enters.
+// Network namespace with a loopback interface only: no packet of a test leaves or enters it.
 #pragma once
 
 #include <gtest/gtest.h>

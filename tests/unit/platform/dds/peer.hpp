@@ -126,8 +126,7 @@ class Peer {
   dds_entity_t participant_ = 0;
 };
 
-// Passes messages to `use` until `count` were received or the timeout passes. Returns the number
-// received.
+// Passes messages to `use` until `count` or the timeout. Returns the number received.
 template <class Message, class Use>
 [[nodiscard]] std::size_t take(dds_entity_t reader, std::size_t count, Use use) {
   std::size_t taken = 0;

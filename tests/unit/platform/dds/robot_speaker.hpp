@@ -1,5 +1,4 @@
-// Simulated robot driver and RViz: publishes joint states, description and pose guess from its own
-// participant.
+// Simulated robot driver and RViz, with its own participant.
 #pragma once
 
 #include <string>

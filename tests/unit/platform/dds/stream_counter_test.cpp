@@ -66,8 +66,7 @@ TEST(StreamCounters, BeginAnewWhenTheSinkWasRestarted) {
   EXPECT_EQ(counter.missed(), 1u);
 }
 
-// 300 Hz: the period is not a whole number of nanoseconds. Rounding errors must not accumulate over
-// a day.
+// 300 Hz: not a whole number of nanoseconds. Rounding errors must not accumulate over a day.
 TEST(StreamCounters, DoNotDriftWhereAPeriodIsNoWholeNumber) {
   StreamCounter counter;
   constexpr std::int64_t day = 300LL * 86'400;
