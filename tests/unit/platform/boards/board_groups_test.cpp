@@ -40,8 +40,7 @@ class BoardGroupsTest : public testing::Test {
   }
   ~BoardGroupsTest() override { std::filesystem::remove_all(folder_); }
 
-  // Some frames, then some ticks, each released when due. If `pressed`, the pen's button goes down
-  // first.
+  // Runs frames, then ticks, each released when due. If `pressed`, draw is pressed first.
   [[nodiscard]] BoardResult run_with(const BoardBounds& bounds, bool pressed = false,
                                      std::uint64_t first_tick = 0,
                                      std::uint64_t ticks = k_ticks) const {

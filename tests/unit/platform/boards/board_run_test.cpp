@@ -1,5 +1,4 @@
-// A companion computer's complete run: the cell's parts outside the two groups, and a replay of its
-// recording.
+// A companion computer's complete run: the cell's parts outside the groups, and a replay.
 #include "platform/boards/board_run.hpp"
 
 #include <gtest/gtest.h>
