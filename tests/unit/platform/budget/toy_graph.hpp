@@ -1,5 +1,4 @@
-// Chain of two nodes with budgets and a board file with their costs: small enough to calculate by
-// hand.
+// Chain of two nodes with budgets and a board file: small enough to calculate by hand.
 #pragma once
 
 #include "graph/graph.hpp"

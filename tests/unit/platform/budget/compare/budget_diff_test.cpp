@@ -46,8 +46,7 @@ TEST(TwoSamples, ShowNoneWhereThereIsNone) {
   EXPECT_LE(shown, 8);  // 2 expected
 }
 
-// Autocorrelated times carry less information: resampling single values would give too narrow an
-// interval.
+// Autocorrelated times carry less information: resampling single values would be overconfident.
 TEST(TwoSamples, WidenTheIntervalWhereTimesHangTogether) {
   const auto a = draws(3, 2000, 1, 0.9), b = draws(4, 2000, 1, 0.9);
   const RatioInterval together = median_ratio(a, b, 0.95, 400, 1);
