@@ -224,7 +224,7 @@ TEST(GroupResponse, CountsAnUrgentGroupsJitterAndWakeUpAmongItsReleases) {
     model.system.wake_up_ns = wake_up_ns;
     return group_responses(model, plan)[0].response_ns;
   };
-  // Own work and wake-up, and one or two releases of the higher-priority group within its window.
+  // Own work and wake-up, and one or two releases of the higher-priority group, with its jitter.
   EXPECT_EQ(response(0, 0), 83 + 10);
   EXPECT_EQ(response(0, 3), 86 + 10);
   EXPECT_EQ(response(0, 4), 87 + 2 * 10) << "97 + 4 are more than its gap";
