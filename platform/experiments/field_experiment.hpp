@@ -1,4 +1,4 @@
-// How accurate and how honest the output is for devices that differ from what their cells state.
+// Accuracy and consistency of the output for simulated devices with calibration errors.
 //
 // Each random seed draws one device, tool, headset and robot (platform/sim/field.hpp) and runs
 // them for 30 s with the shipped settings, uncalibrated. Judged at the output: every tick's pose

@@ -15,7 +15,7 @@ struct NoisyScene {
 struct NoisyFrame {
   PointView view;
   Pose truth;       // T_camera_tool
-  PosePrior prior;  // 10 mm and 5 degrees rms off the truth, and says so; of the markers' mean
+  PosePrior prior;  // of the markers' mean; error 10 mm and 5 degrees rms, as stated
 };
 
 // Half a metre away, the tool's normal tilted by up to 45 degrees; the strays anywhere in a box of

@@ -1,4 +1,4 @@
-// The recorded motions that experiments foretell: public benchmarks, found by their file names.
+// Recorded motions that experiments predict: public benchmarks, by file name.
 #pragma once
 
 #include <array>
