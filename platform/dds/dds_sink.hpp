@@ -17,6 +17,7 @@
 #include "kernels/wire/pose_sample.hpp"
 #include "platform/dds/dds_settings.hpp"
 #include "platform/dds/frame_transforms.hpp"
+#include "platform/dds/pose_output.hpp"
 
 namespace glint {
 
@@ -33,7 +34,7 @@ struct DdsCounts {
   [[nodiscard]] std::uint64_t lost() const { return ring_dropped + others_lost; }
 };
 
-class DdsSink {
+class DdsSink final : public PoseOutput {
  public:
   static constexpr int k_ring_capacity = 1024;  // 4 s of one tool at 250 Hz
   static constexpr int k_frame_capacity = 64;   // 1.4 s of frames
@@ -42,7 +43,7 @@ class DdsSink {
   // address; InputError if a setting is out of range or this process has opened the domain with
   // another configuration.
   explicit DdsSink(const DdsSettings& settings);
-  ~DdsSink();  // stop()
+  ~DdsSink() override;  // stop()
   DdsSink(const DdsSink&) = delete;
   DdsSink& operator=(const DdsSink&) = delete;
 
@@ -53,13 +54,8 @@ class DdsSink {
   // does not receive samples written before its discovery.
   [[nodiscard]] bool wait_for_readers(int count, Duration limit) const;
 
-  // Call from one thread only. Returns false if the sample was dropped and counted. The ticks of a
-  // tool must increase.
-  bool offer(const PoseSample& sample) noexcept;
-
-  // Call from one other thread only: the transforms of a frame. Returns false, and counts the loss,
-  // if the ring is full.
-  bool offer_frame(const FrameTransforms& frame) noexcept { return frames_.push(frame); }
+  bool offer(const PoseSample& sample) noexcept override;
+  bool offer_frame(const FrameTransforms& frame) noexcept override { return frames_.push(frame); }
 
   // Call from one other thread only: the newest pose of the followed robot, for tf_static.
   void offer_robot(const Pose& T_world_robot) noexcept {
@@ -77,6 +73,7 @@ class DdsSink {
 
   // Thread-safe. The identity above holds after stop().
   [[nodiscard]] DdsCounts counts() const noexcept;
+  [[nodiscard]] std::uint64_t lost() const noexcept override { return counts().lost(); }
 
  private:
   void run();

@@ -100,7 +100,7 @@ void FrameGroupOf<G>::process(const ArrivedFrame& arrived, const ChoiceRecord* r
     publish();
   }
   if (method_ == nullptr) runner_->settle(*tracker_);
-  tell_transforms(arrived.head);
+  publish_transforms(arrived.head);
   if (lane_ != nullptr) record(arrived);
 }
 
@@ -125,7 +125,7 @@ void FrameGroupOf<G>::answer(const ArrivedFrame& arrived) noexcept {
 }
 
 template <class G>
-void FrameGroupOf<G>::tell_transforms(const HeadPose& head) const noexcept {
+void FrameGroupOf<G>::publish_transforms(const HeadPose& head) const noexcept {
   if (dds_ == nullptr) return;
   const bool known = robot_on_body_ && newest_->reference_known;
   (void)dds_->offer_frame(

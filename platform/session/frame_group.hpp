@@ -8,7 +8,7 @@
 #include "graph/rate_group.hpp"
 #include "nodes/tracker.hpp"
 #include "platform/cells/cell.hpp"
-#include "platform/dds/dds_sink.hpp"
+#include "platform/dds/pose_output.hpp"
 #include "platform/record/recorder.hpp"
 #include "platform/session/choices.hpp"
 #include "platform/session/frame_source.hpp"
@@ -39,7 +39,7 @@ class FrameGroupOf {
 
   // Publishes the headset's pose to `dds` after each frame's estimates, and the robot's pose if the
   // robot is mounted on the reference body; null: publishes neither.
-  void tell_transforms_to(DdsSink* dds) noexcept { dds_ = dds; }
+  void publish_transforms_to(PoseOutput* dds) noexcept { dds_ = dds; }
 
   // Publishes the estimates before it offers anything to the recorder: latency first. After an
   // overrun, publishes the policy's substitute. In a replay, `recorded` decides instead of the
@@ -61,7 +61,7 @@ class FrameGroupOf {
   void publish() noexcept;
   void answer(const ArrivedFrame& arrived) noexcept;
   void record(const ArrivedFrame& arrived) noexcept;
-  void tell_transforms(const HeadPose& head) const noexcept;
+  void publish_transforms(const HeadPose& head) const noexcept;
 
   std::unique_ptr<G> tracker_ = std::make_unique<G>();
   graph::RateGroup<G> group_;
@@ -79,7 +79,7 @@ class FrameGroupOf {
   Clock now_;
   GroupRunner<G>* runner_;
   RecorderLane* lane_;
-  DdsSink* dds_ = nullptr;
+  PoseOutput* dds_ = nullptr;
   bool robot_on_body_;
   Pose T_body_robot_;  // in the reference body's frame
   Duration lost_after_;

@@ -8,7 +8,7 @@
 #include "kernels/units.hpp"
 #include "kernels/wire/node_frames.hpp"
 #include "platform/can/can_sink.hpp"
-#include "platform/dds/dds_sink.hpp"
+#include "platform/dds/pose_output.hpp"
 #include "platform/record/recorder.hpp"
 #include "platform/rt/loss_counters.hpp"
 #include "platform/session/file_sink.hpp"
@@ -18,7 +18,7 @@ namespace glint {
 // Each may be null. `counters` must outlive the watch.
 struct LossSources {
   const CanSink* can = nullptr;
-  const DdsSink* dds = nullptr;
+  const PoseOutput* dds = nullptr;
   const Recorder* recorder = nullptr;
   const FileSink* files = nullptr;
   LossCounters* counters = nullptr;
@@ -45,7 +45,7 @@ class LossWatch {
     if (sources_.counters == nullptr) return;
     LossCounters& counters = *sources_.counters;
     if (sources_.can != nullptr) counters.store(LossKind::can, sources_.can->counts().lost());
-    if (sources_.dds != nullptr) counters.store(LossKind::dds, sources_.dds->counts().lost());
+    if (sources_.dds != nullptr) counters.store(LossKind::dds, sources_.dds->lost());
     if (sources_.recorder != nullptr) {
       counters.store(LossKind::recording, sources_.recorder->lost());
     }

@@ -87,7 +87,7 @@ SessionGroups::SessionGroups(const Cell& cell, const SessionOptions& options, Ke
   robot_.write_slot() = declared_robot_frame(cell);
   robot_.publish(1, 0);
   outcomes_.resize(kept.outcomes);
-  frame_.tell_transforms_to(sinks.dds());
+  frame_.publish_transforms_to(sinks.dds());
   if (options.plan.background) {
     Recorder* const recorder = sinks.recorder();
     background_ = std::make_unique<BackgroundGroup>(

@@ -12,7 +12,7 @@
 #include "nodes/output.hpp"
 #include "platform/can/can_sink.hpp"
 #include "platform/cells/cell.hpp"
-#include "platform/dds/dds_sink.hpp"
+#include "platform/dds/pose_output.hpp"
 #include "platform/record/recorder.hpp"
 #include "platform/record/sha256.hpp"
 #include "platform/session/file_sink.hpp"
@@ -28,7 +28,7 @@ extern template class GroupRunner<Output>;  // in tick_group.cpp, once
 // Outputs of the tick group; each may be null.
 struct TickSinks {
   CanSink* can = nullptr;
-  DdsSink* dds = nullptr;
+  PoseOutput* dds = nullptr;
   FileSink* files = nullptr;
   RecorderLane* lane = nullptr;
   const Recorder* recorder = nullptr;  // of the lane

@@ -57,7 +57,7 @@ TEST_F(FrameTransformsOfARun, TellWhereTheRobotOnTheBodyIsWhileTheBodyIsKnown) {
   GroupRunner<Tracker> runner(RunnerSettings<Tracker>{});
   FrameGroup group(
       cell, tools, [] { return Time{}; }, runner, nullptr, std::make_unique<BodySeenLater>());
-  group.tell_transforms_to(sinks.dds());
+  group.publish_transforms_to(sinks.dds());
   for (std::uint32_t sequence = 1; sequence <= 2; ++sequence) {
     ArrivedFrame arrived;
     arrived.frame.sequence = sequence;
