@@ -5,10 +5,10 @@
 
 #include "platform/calibrate/align_refine.hpp"
 #include "platform/calibrate/align_start.hpp"
-#include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/robust.hpp"
 #include "platform/calibrate/say.hpp"
 #include "platform/calibrate/smooth_series.hpp"
+#include "platform/dense.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {

@@ -2,9 +2,9 @@
 
 #include <ceres/ceres.h>
 
-#include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/pose_block.hpp"
 #include "platform/calibrate/robust.hpp"
+#include "platform/dense.hpp"
 
 namespace glint {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "kernels/pose/best_rotation.hpp"
-#include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/robust.hpp"
+#include "platform/dense.hpp"
 
 namespace glint {
 namespace {

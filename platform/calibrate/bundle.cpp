@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "platform/calibrate/dense.hpp"
+#include "platform/dense.hpp"
 
 namespace glint {
 

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "platform/calibrate/correlation.hpp"
-#include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/pose_block.hpp"
 #include "platform/calibrate/robust.hpp"
+#include "platform/dense.hpp"
 
 namespace glint {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "platform/calibrate/dense.hpp"
+#include "platform/dense.hpp"
 
 namespace glint {
 namespace {

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "platform/calibrate/correlation.hpp"
-#include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/pivot_linear.hpp"
 #include "platform/calibrate/pivot_refine.hpp"
 #include "platform/calibrate/robust.hpp"
 #include "platform/calibrate/say.hpp"
+#include "platform/dense.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {

@@ -1,6 +1,6 @@
 #include "platform/calibrate/rotation_spread.hpp"
 
-#include "platform/calibrate/dense.hpp"
+#include "platform/dense.hpp"
 
 namespace glint {
 

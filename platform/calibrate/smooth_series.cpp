@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "platform/calibrate/dense.hpp"
+#include "platform/dense.hpp"
 
 namespace glint {
 namespace {

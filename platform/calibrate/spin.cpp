@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "platform/calibrate/correlation.hpp"
-#include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/robust.hpp"
 #include "platform/calibrate/say.hpp"
 #include "platform/calibrate/spin_refine.hpp"
+#include "platform/dense.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "kernels/pose/rigid_fit.hpp"
-#include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/frame_labels.hpp"
 #include "platform/calibrate/say.hpp"
+#include "platform/dense.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {

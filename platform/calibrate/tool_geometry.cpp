@@ -6,12 +6,12 @@
 #include <map>
 #include <numeric>
 
-#include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/frame_labels.hpp"
 #include "platform/calibrate/rotation_spread.hpp"
 #include "platform/calibrate/say.hpp"
 #include "platform/calibrate/tool_frame.hpp"
 #include "platform/calibrate/tool_round.hpp"
+#include "platform/dense.hpp"
 #include "platform/input_error.hpp"
 
 namespace glint {

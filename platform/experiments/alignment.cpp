@@ -1,10 +1,10 @@
 #include "platform/experiments/alignment.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <vector>
 
 #include "kernels/motion/interpolate.hpp"
 #include "platform/calibrate/robust.hpp"
+#include "platform/dense.hpp"
 
 namespace glint {
 namespace {
@@ -24,8 +24,8 @@ Quaternion mean_rotation(const std::vector<Quaternion>& rotations, const std::ve
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
   for (std::size_t i = 0; i < rotations.size(); ++i)
     if (kept[i]) sum += rotations[i].coeffs() * rotations[i].coeffs().transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(sum);
-  return Quaternion(Eigen::Vector4d(solver.eigenvectors().col(3))).normalized();
+  const SymmetricEigen axis = symmetric_eigen(sum);
+  return Quaternion(Eigen::Vector4d(axis.vectors.col(3))).normalized();
 }
 
 Vector3 mean_vector(const std::vector<Vector3>& vectors, const std::vector<bool>& kept) {

@@ -1,17 +1,13 @@
 #include "platform/reference/reference_checks.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
+#include "platform/dense.hpp"
+
 namespace glint {
 namespace {
-
-double largest_sigma(const Matrix3& covariance) {
-  return std::sqrt(
-      std::max(0.0, Eigen::SelfAdjointEigenSolver<Matrix3>(covariance).eigenvalues().maxCoeff()));
-}
 
 std::string percent(double share) {
   char text[16];

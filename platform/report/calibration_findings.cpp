@@ -1,12 +1,12 @@
 #include "platform/report/calibration_findings.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <utility>
+
+#include "platform/dense.hpp"
 
 namespace glint {
 namespace {
@@ -37,7 +37,7 @@ struct Estimate {
     if (world != nullptr) {
       // `world` contains the prior already, so it replaces the identity and the prior counts once.
       const Eigen::MatrixXd both =
-          world->covariance.llt().solve(Eigen::MatrixXd::Identity(k_shared, k_shared));
+          solve_symmetric(world->covariance, Eigen::MatrixXd::Identity(k_shared, k_shared));
       matrix.topLeftCorner(k_shared, k_shared) = both;
       pull.head(k_shared) = both * world->errors;
     }
@@ -53,7 +53,7 @@ struct Estimate {
       pull.segment(at, own) += tool.sums.pull.segment(k_common, own);
       at += own;
     }
-    covariance = matrix.llt().solve(Eigen::MatrixXd::Identity(size, size));
+    covariance = solve_symmetric(matrix, Eigen::MatrixXd::Identity(size, size));
     errors = covariance * pull;
   }
   [[nodiscard]] double shown(int error) const { return 1 - covariance(error, error); }
@@ -96,12 +96,12 @@ struct Size {
   Size(const Estimate& estimate, int first, int count) {
     const Eigen::MatrixXd shown = Eigen::MatrixXd::Identity(count, count) -
                                   estimate.covariance.block(first, first, count, count);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(shown);
+    const SymmetricEigen axis = symmetric_eigen(shown);
     for (int i = 0; i < count; ++i) {
-      const double part = solver.eigenvalues()(i);
+      const double part = axis.values(i);
       if (part < k_shown_least) continue;
       const double size =
-          solver.eigenvectors().col(i).dot(estimate.errors.segment(first, count)) / std::sqrt(part);
+          axis.vectors.col(i).dot(estimate.errors.segment(first, count)) / std::sqrt(part);
       largest = std::max(largest, std::abs(size));
       chi_square += size * size;
       ++axes;

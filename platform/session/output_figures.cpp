@@ -1,11 +1,11 @@
 #include "platform/session/output_figures.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "kernels/motion/cholesky.hpp"
 #include "kernels/motion/interpolate.hpp"
 #include "platform/session/gross.hpp"
 
@@ -21,17 +21,17 @@ void count(std::array<std::uint64_t, N>& bins, double at) {
 }
 
 bool inside(const Vector3& error, const Matrix3& covariance) {
-  const Eigen::LDLT<Matrix3> factor(covariance);
-  return factor.info() == Eigen::Success && error.dot(factor.solve(error)) <= k_chi_square_95;
+  const Cholesky<3> factor(covariance);
+  return factor.positive && factor.forward(error).squaredNorm() <= k_chi_square_95;
 }
 
 // Negative log-likelihood of the error. Returns 0 for a covariance that is not positive definite.
 double log_score(const Vector6& error, const Matrix6& covariance) {
-  const Eigen::LDLT<Matrix6> factor(covariance);
-  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0)) return 0;
+  const Cholesky<6> factor(covariance);
+  if (!factor.positive) return 0;
   constexpr double k_two_pi = 2 * std::numbers::pi;
-  return 0.5 * (6 * std::log(k_two_pi) + factor.vectorD().array().log().sum() +
-                error.dot(factor.solve(error)));
+  return 0.5 * (6 * std::log(k_two_pi) + factor.forward(error).squaredNorm()) +
+         factor.lower.diagonal().array().log().sum();
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "platform/calibrate/dense.hpp"
 #include "platform/calibrate/say.hpp"
+#include "platform/dense.hpp"
 #include "platform/input_error.hpp"
 #include "platform/report/statistics.hpp"
 #include "platform/verify/joint_covariance.hpp"

@@ -1,5 +1,5 @@
-// Dense linear algebra of run-time size for calibrations. Compiled once: Eigen's templates take one
-// to five seconds in each file that instantiates them.
+// Dense linear algebra of run-time size, for what is not on the run path. Compiled once: Eigen's
+// templates take one to eight seconds in each file that instantiates them.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-#include "platform/calibrate/dense.hpp"
+#include "platform/dense.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
