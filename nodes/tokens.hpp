@@ -248,9 +248,10 @@ struct RobotFrame {
 // Pen buttons that are held, in the bits of PoseSample::buttons.
 //
 // The formats define three bits and leave their order open. The order here is that of
-// button_event.hpp (platform/record) and of the CAN frame that may carry them. A fourth button,
-// finish, ends a path in the drawing program and is not published here. Buttons carry no tool
-// number: they belong to tool 0, which the topics call the pen and which draws paths by default.
+// button_event.hpp (platform/sinks/record) and of the CAN frame that may carry them. A fourth
+// button, finish, ends a path in the drawing program and is not published here. Buttons carry no
+// tool number: they belong to tool 0, which the topics call the pen and which draws paths by
+// default.
 struct PenButtons {
   std::uint8_t held = 0;
 

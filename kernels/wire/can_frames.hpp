@@ -26,7 +26,7 @@
 // Cost:     quantising 23 numbers and a CRC over 40 (FD: 64) bytes.
 // Worst:    data independent.
 // Accuracy: nearest step of each field; orientation within 0.0037 deg (FD: 1e-7 deg).
-// Source:   the layout is Glint's own, published in platform/can/glint.dbc.
+// Source:   the layout is Glint's own, published in platform/sinks/can/glint.dbc.
 #pragma once
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 #include "glint_built_in_boards.hpp"
 #include "platform/cells/toml_reader.hpp"
 #include "platform/input_error.hpp"
-#include "platform/record/sha256.hpp"
+#include "platform/sinks/record/sha256.hpp"
 
 namespace glint {
 namespace {

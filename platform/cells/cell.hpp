@@ -19,8 +19,8 @@
 #include "kernels/units.hpp"
 #include "platform/cells/named_file.hpp"
 #include "platform/cells/tool_changes.hpp"
-#include "platform/record/button_event.hpp"
-#include "platform/sensors/camera.hpp"
+#include "platform/formats/camera.hpp"
+#include "platform/sinks/record/button_event.hpp"
 
 namespace glint {
 

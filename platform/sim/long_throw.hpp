@@ -11,10 +11,10 @@
 
 #include <vector>
 
-#include "platform/robot/robot_model.hpp"
 #include "platform/sim/lens_rays.hpp"
 #include "platform/sim/room_drawer.hpp"
 #include "platform/sim/simulator.hpp"
+#include "platform/tools/robot/robot_model.hpp"
 
 namespace glint {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/geometry.hpp"
-#include "platform/sensors/trajectory.hpp"
+#include "platform/formats/trajectory.hpp"
 #include "platform/sim/motion.hpp"
 
 namespace glint::sim {

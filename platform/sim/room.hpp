@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "kernels/geometry.hpp"
-#include "platform/sensors/camera.hpp"
-#include "platform/sensors/frame_buffer.hpp"
+#include "platform/formats/camera.hpp"
+#include "platform/formats/frame_buffer.hpp"
 
 namespace glint::sim {
 

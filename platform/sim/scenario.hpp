@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernels/pose/tool.hpp"
-#include "platform/sensors/camera.hpp"
+#include "platform/formats/camera.hpp"
 #include "platform/sim/chessboard.hpp"
 #include "platform/sim/device_errors.hpp"
 #include "platform/sim/localisation.hpp"

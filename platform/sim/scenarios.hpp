@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/sensors/trajectory.hpp"
+#include "platform/formats/trajectory.hpp"
 #include "platform/sim/scenario.hpp"
 
 namespace glint::sim {

@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "platform/sensors/camera.hpp"
-#include "platform/sensors/frame_buffer.hpp"
+#include "platform/formats/camera.hpp"
+#include "platform/formats/frame_buffer.hpp"
 #include "platform/sim/lens_rays.hpp"
 #include "platform/sim/noise.hpp"
 #include "platform/sim/planes.hpp"

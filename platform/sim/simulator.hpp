@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "kernels/pose/head_pose.hpp"
-#include "platform/sensors/frame_buffer.hpp"
-#include "platform/sensors/frame_truth.hpp"
+#include "platform/formats/frame_buffer.hpp"
+#include "platform/formats/frame_truth.hpp"
 #include "platform/sim/planes.hpp"
 #include "platform/sim/scenario.hpp"
 

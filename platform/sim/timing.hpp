@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "kernels/units.hpp"
-#include "platform/sensors/camera.hpp"
+#include "platform/formats/camera.hpp"
 
 namespace glint::sim {
 

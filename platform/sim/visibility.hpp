@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "platform/sensors/camera.hpp"
+#include "platform/formats/camera.hpp"
 #include "platform/sim/scene.hpp"
 
 namespace glint::sim {

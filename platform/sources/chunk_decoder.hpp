@@ -7,8 +7,8 @@
 
 namespace glint {
 
-// Implements ChunkDecoder (platform/record/mcap_reader.hpp). Returns false unless `to` is filled
-// exactly.
+// Implements ChunkDecoder (platform/sinks/record/mcap_reader.hpp). Returns false unless `to` is
+// filled exactly.
 [[nodiscard]] bool decode_chunk(std::string_view compression, std::span<const std::uint8_t> from,
                                 std::span<std::uint8_t> to);
 

@@ -7,13 +7,13 @@
 #include <span>
 #include <utility>
 
-#include "platform/dds/messages.hpp"
-#include "platform/dds/network.hpp"
-#include "platform/dds/topic_names.hpp"
-#include "platform/dds/topic_types.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
-#include "platform/rt/clock.hpp"
+#include "platform/runtime/rt/clock.hpp"
+#include "platform/sinks/dds/messages.hpp"
+#include "platform/sinks/dds/network.hpp"
+#include "platform/sinks/dds/topic_names.hpp"
+#include "platform/sinks/dds/topic_types.hpp"
 #include "platform/sources/ros_images.hpp"
 
 namespace glint {

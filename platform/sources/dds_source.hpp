@@ -17,8 +17,8 @@
 #include <string>
 #include <thread>
 
-#include "platform/dds/participant.hpp"
-#include "platform/rt/release.hpp"
+#include "platform/runtime/rt/release.hpp"
+#include "platform/sinks/dds/participant.hpp"
 #include "platform/sources/live_source.hpp"
 #include "platform/sources/ros_frames.hpp"
 

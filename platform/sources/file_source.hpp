@@ -10,9 +10,9 @@
 #include <thread>
 #include <vector>
 
-#include "platform/rt/release.hpp"
-#include "platform/sensors/camera.hpp"
-#include "platform/session/frame_source.hpp"
+#include "platform/formats/camera.hpp"
+#include "platform/runtime/rt/release.hpp"
+#include "platform/runtime/session/frame_source.hpp"
 #include "platform/sources/frame_reader.hpp"
 #include "platform/sources/stamp_gate.hpp"
 

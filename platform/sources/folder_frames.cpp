@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <utility>
 
+#include "platform/formats/npy.hpp"
+#include "platform/formats/picture_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
 #include "platform/read_file.hpp"
-#include "platform/sensors/npy.hpp"
-#include "platform/sensors/picture_file.hpp"
 #include "platform/sources/planes.hpp"
 
 namespace glint {

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "platform/sensors/camera.hpp"
+#include "platform/formats/camera.hpp"
 #include "platform/sources/frame_reader.hpp"
 
 namespace glint {

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "platform/formats/picture_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
 #include "platform/read_file.hpp"
-#include "platform/sensors/picture_file.hpp"
 #include "platform/sources/file_time.hpp"
 #include "platform/sources/matrix_pose.hpp"
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "platform/record/input_file.hpp"
+#include "platform/sinks/record/input_file.hpp"
 #include "platform/sources/frame_reader.hpp"
 #include "platform/sources/planes.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "platform/input_error.hpp"
-#include "platform/rt/clock.hpp"
+#include "platform/runtime/rt/clock.hpp"
 #include "platform/sources/head_pose_check.hpp"
 
 namespace glint {

@@ -8,11 +8,11 @@
 #include <optional>
 #include <vector>
 
-#include "platform/rt/clock_map.hpp"
-#include "platform/rt/release.hpp"
-#include "platform/sensors/camera.hpp"
-#include "platform/sensors/frame_buffer.hpp"
-#include "platform/session/frame_source.hpp"
+#include "platform/formats/camera.hpp"
+#include "platform/formats/frame_buffer.hpp"
+#include "platform/runtime/rt/clock_map.hpp"
+#include "platform/runtime/rt/release.hpp"
+#include "platform/runtime/session/frame_source.hpp"
 
 namespace glint {
 

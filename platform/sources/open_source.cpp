@@ -9,9 +9,9 @@
 
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
-#include "platform/record/mcap_format.hpp"
-#include "platform/record/mcap_reader.hpp"
-#include "platform/record/recording_format.hpp"
+#include "platform/sinks/record/mcap_format.hpp"
+#include "platform/sinks/record/mcap_reader.hpp"
+#include "platform/sinks/record/recording_format.hpp"
 #include "platform/sources/file_source.hpp"
 #include "platform/sources/folder_frames.hpp"
 #include "platform/sources/hl2ss_frames.hpp"

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "platform/cells/cell.hpp"
-#include "platform/record/recording_reader.hpp"
-#include "platform/session/frame_source.hpp"
+#include "platform/runtime/session/frame_source.hpp"
+#include "platform/sinks/record/recording_reader.hpp"
 #include "platform/sources/live_source.hpp"
 
 namespace glint {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "platform/sensors/camera.hpp"
-#include "platform/sensors/frame_buffer.hpp"
+#include "platform/formats/camera.hpp"
+#include "platform/formats/frame_buffer.hpp"
 
 namespace glint {
 

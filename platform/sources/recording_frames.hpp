@@ -1,7 +1,7 @@
 // Reader of frames from Glint's own recordings (MCAP, levels full and roi).
 #pragma once
 
-#include "platform/record/recording_reader.hpp"
+#include "platform/sinks/record/recording_reader.hpp"
 #include "platform/sources/frame_reader.hpp"
 
 namespace glint {

@@ -8,11 +8,11 @@
 #include <cstring>
 #include <vector>
 
+#include "platform/formats/picture_file.hpp"
 #include "platform/input_error.hpp"
 #include "platform/printable.hpp"
-#include "platform/record/cdr.hpp"
-#include "platform/record/message_parts.hpp"
-#include "platform/sensors/picture_file.hpp"
+#include "platform/sinks/record/cdr.hpp"
+#include "platform/sinks/record/message_parts.hpp"
 
 namespace glint {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "platform/record/cdr.hpp"
-#include "platform/record/message_parts.hpp"
+#include "platform/sinks/record/cdr.hpp"
+#include "platform/sinks/record/message_parts.hpp"
 
 namespace glint {
 namespace {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "platform/cells/cell.hpp"
-#include "platform/record/mcap_reader.hpp"
-#include "platform/record/recording_reader.hpp"
+#include "platform/sinks/record/mcap_reader.hpp"
+#include "platform/sinks/record/recording_reader.hpp"
 #include "platform/sources/frame_reader.hpp"
 #include "platform/sources/ros_images.hpp"
 #include "platform/sources/stamp_pairs.hpp"

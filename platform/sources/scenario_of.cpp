@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "kernels/pose/rigid_fit.hpp"
+#include "platform/formats/frame_files.hpp"
 #include "platform/input_error.hpp"
-#include "platform/sensors/frame_files.hpp"
 #include "platform/sim/field.hpp"
 #include "platform/sim/scenarios.hpp"
 #include "platform/sim/tool_body.hpp"

@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "platform/input_error.hpp"
-#include "platform/rt/clock.hpp"
+#include "platform/runtime/rt/clock.hpp"
 #include "platform/sources/glint_frames.h"
 
 namespace glint {

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "platform/rt/clock.hpp"
+#include "platform/runtime/rt/clock.hpp"
 
 namespace glint {
 namespace {

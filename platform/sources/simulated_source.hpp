@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "platform/rt/release.hpp"
-#include "platform/session/frame_source.hpp"
+#include "platform/runtime/rt/release.hpp"
+#include "platform/runtime/session/frame_source.hpp"
 #include "platform/sim/simulator.hpp"
 
 namespace glint {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "platform/record/input_file.hpp"
+#include "platform/sinks/record/input_file.hpp"
 #include "platform/sources/frame_reader.hpp"
 
 namespace glint {

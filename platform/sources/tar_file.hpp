@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/record/input_file.hpp"
+#include "platform/sinks/record/input_file.hpp"
 
 namespace glint {
 

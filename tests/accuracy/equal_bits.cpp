@@ -8,9 +8,9 @@
 #include <exception>
 #include <memory>
 
-#include "platform/record/sha256.hpp"
-#include "platform/session/replay.hpp"
+#include "platform/runtime/session/replay.hpp"
 #include "platform/sim/simulator.hpp"
+#include "platform/sinks/record/sha256.hpp"
 #include "platform/sources/scenario_of.hpp"
 
 namespace glint {

@@ -16,7 +16,7 @@ import zlib
 
 ARRIVAL_NS = 9_000_000          # exposure / 2 and transport of Glint's AHAT preset
 FILE_TIME_OF_UNIX = 116_444_736_000_000_000
-# Of Glint's AHAT preset: platform/sensors/camera.cpp.
+# Of Glint's AHAT preset: platform/formats/camera.cpp.
 AHAT_LENS = """[camera]
 lens = "rational"
 width = 512

@@ -14,9 +14,9 @@
 #include <sstream>
 
 #include "kernels/pose/rigid_fit.hpp"
-#include "platform/sensors/c3d_reader.hpp"
-#include "platform/sensors/points_csv.hpp"
-#include "platform/tools/replay_points.hpp"
+#include "platform/formats/c3d_reader.hpp"
+#include "platform/formats/points_csv.hpp"
+#include "platform/tools/inspect/replay_points.hpp"
 #include "tests/unit/kernels/pose/scene.hpp"
 
 namespace glint {

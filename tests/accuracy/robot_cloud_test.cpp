@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "platform/experiments/robot_scenes.hpp"
-#include "platform/reference/find_reference.hpp"
-#include "platform/robot/sample_robot.hpp"
+#include "platform/lab/experiments/robot_scenes.hpp"
+#include "platform/tools/reference/find_reference.hpp"
+#include "platform/tools/robot/sample_robot.hpp"
 
 namespace glint {
 namespace {

@@ -16,7 +16,7 @@
 #include "cloud_agreement.hpp"
 #include "cloud_glint.hpp"
 #include "kernels/cloud/depth_points.hpp"
-#include "platform/sensors/npy.hpp"
+#include "platform/formats/npy.hpp"
 #include "rounds.hpp"
 
 namespace glint::bench {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "platform/rt/processor_name.hpp"
+#include "platform/runtime/rt/processor_name.hpp"
 
 namespace glint::bench {
 namespace {

@@ -10,7 +10,7 @@
 #include <x86intrin.h>
 #endif
 
-#include "platform/rt/trace_span.hpp"
+#include "platform/runtime/rt/trace_span.hpp"
 
 namespace glint::bench {
 

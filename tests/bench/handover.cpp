@@ -3,9 +3,9 @@
 #include <atomic>
 #include <vector>
 
-#include "platform/report/statistics.hpp"
-#include "platform/rt/cycle_clock.hpp"
-#include "platform/rt/real_time_thread.hpp"
+#include "platform/runtime/rt/cycle_clock.hpp"
+#include "platform/runtime/rt/real_time_thread.hpp"
+#include "platform/tools/report/statistics.hpp"
 
 namespace glint::bench {
 namespace {

@@ -10,7 +10,7 @@
 #include "kernels/pose/back_project.hpp"
 #include "kernels/pose/correspond.hpp"
 #include "kernels/pose/rigid_fit.hpp"
-#include "platform/experiments/glint_chain.hpp"
+#include "platform/lab/experiments/glint_chain.hpp"
 
 namespace glint::bench {
 namespace {

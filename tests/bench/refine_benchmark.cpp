@@ -10,7 +10,7 @@
 #include "kernels/pose/lever_arm.hpp"
 #include "kernels/pose/refine_pose.hpp"
 #include "kernels/pose/rigid_fit.hpp"
-#include "platform/experiments/point_view.hpp"
+#include "platform/lab/experiments/point_view.hpp"
 
 namespace glint::bench {
 namespace {

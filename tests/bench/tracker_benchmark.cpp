@@ -7,8 +7,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "bench_frames.hpp"
-#include "platform/experiments/glint_chain.hpp"
-#include "platform/seed/seed_tracker.hpp"
+#include "platform/lab/baseline/seed_tracker.hpp"
+#include "platform/lab/experiments/glint_chain.hpp"
 #include "ratios.hpp"
 
 namespace glint::bench {

@@ -7,7 +7,7 @@
 
 #include "kernels/pose/head_pose.hpp"
 #include "platform/cells/cell.hpp"
-#include "platform/sensors/frame_buffer.hpp"
+#include "platform/formats/frame_buffer.hpp"
 
 namespace glint::footprint {
 

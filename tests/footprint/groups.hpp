@@ -8,7 +8,7 @@
 #include "graph/rate_group.hpp"
 #include "nodes/output.hpp"
 #include "nodes/tracker.hpp"
-#include "platform/session/pipeline.hpp"
+#include "platform/runtime/session/pipeline.hpp"
 #include "tests/footprint/frames.hpp"
 
 namespace glint::footprint {

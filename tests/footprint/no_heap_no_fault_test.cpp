@@ -5,9 +5,9 @@
 
 #include <cstdlib>
 
-#include "platform/rt/allocation_counter.hpp"
-#include "platform/rt/memory_lock.hpp"
-#include "platform/rt/worker_pool.hpp"
+#include "platform/runtime/rt/allocation_counter.hpp"
+#include "platform/runtime/rt/memory_lock.hpp"
+#include "platform/runtime/rt/worker_pool.hpp"
 #include "tests/footprint/groups.hpp"
 #include "tests/footprint/page_faults.hpp"
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "kernels/wire/can_decode.hpp"
-#include "platform/can/button_frames.hpp"
-#include "platform/dds/heard.hpp"
-#include "platform/dds/topic_types.hpp"
+#include "platform/sinks/can/button_frames.hpp"
+#include "platform/sinks/dds/heard.hpp"
+#include "platform/sinks/dds/topic_types.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 namespace glint::fuzz {

@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "kernels/wire/output_record.hpp"
-#include "platform/record/glint_messages.hpp"
-#include "platform/record/recording_reader.hpp"
+#include "platform/sinks/record/glint_messages.hpp"
+#include "platform/sinks/record/recording_reader.hpp"
 #include "platform/sources/folder_frames.hpp"
 #include "platform/sources/hl2ss_frames.hpp"
 #include "platform/sources/ros_images.hpp"

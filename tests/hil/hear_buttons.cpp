@@ -9,8 +9,8 @@
 #include <string>
 #include <thread>
 
-#include "platform/can/can_buttons.hpp"
 #include "platform/input_error.hpp"
+#include "platform/sinks/can/can_buttons.hpp"
 
 namespace {
 

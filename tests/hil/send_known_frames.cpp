@@ -9,8 +9,8 @@
 
 #include "kernels/wire/can_frames.hpp"
 #include "kernels/wire/node_frames.hpp"
-#include "platform/can/can_sink.hpp"
 #include "platform/input_error.hpp"
+#include "platform/sinks/can/can_sink.hpp"
 #include "tests/unit/kernels/wire/samples.hpp"
 
 namespace {

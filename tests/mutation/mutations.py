@@ -11,7 +11,7 @@ import random
 import re
 
 # What is mutated. The robot's and the calibration's kernels are among kernels/.
-FOLDERS = ["kernels", "nodes", "graph", "schedules", "platform/can", "platform/record"]
+FOLDERS = ["kernels", "nodes", "graph", "schedules", "platform/sinks/can", "platform/sinks/record"]
 
 # code: comments, literals and what is outside of functions blanked; before: the last character of
 # code above the line.

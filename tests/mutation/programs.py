@@ -19,9 +19,9 @@ import tempfile
 import threading
 
 # Whose tests judge. Those of threads against real time and those of networks are not among them.
-TEST_FOLDERS = ["graph", "kernels", "nodes", "schedules", "platform/can", "platform/record",
-                "platform/session", "platform/boards", "platform/mapping", "platform/sim"]
-NETWORK = {"tests/unit/platform/dds/isolated_network.cpp"}
+TEST_FOLDERS = ["graph", "kernels", "nodes", "schedules", "platform/sinks/can", "platform/sinks/record",
+                "platform/runtime/session", "platform/apps/board", "platform/tools/mapping", "platform/sim"]
+NETWORK = {"tests/unit/platform/sinks/dds/isolated_network.cpp"}
 CASE_SECONDS_MAX = 8  # slower test cases judge no mutation
 MEMORY_MAX = 6 << 30
 ENVIRONMENT = {k: v for k, v in os.environ.items() if k != "GLINT_TEST_DATA"}  # the same anywhere

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "platform/rt/allocation_counter.hpp"
+#include "platform/runtime/rt/allocation_counter.hpp"
 
 namespace glint {
 

@@ -4,8 +4,8 @@
 #include <map>
 
 #include "nodes/tracker.hpp"
-#include "platform/report/plots.hpp"
-#include "platform/report/statistics.hpp"
+#include "platform/tools/report/plots.hpp"
+#include "platform/tools/report/statistics.hpp"
 #include "schedules/node_bounds.hpp"
 
 namespace glint {

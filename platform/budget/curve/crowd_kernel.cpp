@@ -1,6 +1,6 @@
 #include "platform/budget/curve/crowd_kernel.hpp"
 
-#include "platform/session/pipeline.hpp"
+#include "platform/runtime/session/pipeline.hpp"
 #include "platform/sim/crowded.hpp"
 
 namespace glint {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "platform/rt/trace_span.hpp"
+#include "platform/runtime/rt/trace_span.hpp"
 
 namespace glint {
 

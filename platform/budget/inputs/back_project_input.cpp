@@ -4,7 +4,7 @@
 
 #include "nodes/image_nodes.hpp"
 #include "platform/budget/inputs/image_inputs.hpp"
-#include "platform/sensors/camera.hpp"
+#include "platform/formats/camera.hpp"
 
 namespace glint {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "kernels/image/frame.hpp"
 #include "platform/budget/inputs/counter_random.hpp"
-#include "platform/sensors/frame_buffer.hpp"
+#include "platform/formats/frame_buffer.hpp"
 
 namespace glint {
 

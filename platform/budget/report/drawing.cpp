@@ -1,8 +1,8 @@
 #include "platform/budget/report/drawing.hpp"
 
 #include "platform/printable.hpp"
-#include "platform/report/axes.hpp"
-#include "platform/report/svg.hpp"
+#include "platform/tools/report/axes.hpp"
+#include "platform/tools/report/svg.hpp"
 
 namespace glint {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "platform/budget/report/drawing.hpp"
 #include "platform/budget/report/figures.hpp"
-#include "platform/report/statistics.hpp"
-#include "platform/report/svg.hpp"
+#include "platform/tools/report/statistics.hpp"
+#include "platform/tools/report/svg.hpp"
 
 namespace glint {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "platform/budget/report/drawing.hpp"
 #include "platform/budget/report/figures.hpp"
-#include "platform/report/svg.hpp"
+#include "platform/tools/report/svg.hpp"
 
 namespace glint {
 namespace {

@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "platform/input_error.hpp"
-#include "platform/record/sha256.hpp"
+#include "platform/sinks/record/sha256.hpp"
 
 namespace glint {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "platform/budget/report/figures.hpp"
 #include "platform/budget/report/sections.hpp"
-#include "platform/report/statistics.hpp"
+#include "platform/tools/report/statistics.hpp"
 
 namespace glint {
 namespace {

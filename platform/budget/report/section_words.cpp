@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "platform/budget/report/sections.hpp"
-#include "platform/report/svg.hpp"
+#include "platform/tools/report/svg.hpp"
 
 namespace glint {
 

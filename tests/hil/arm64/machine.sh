@@ -24,7 +24,7 @@ check_tools() {  # programs of the host that this case needs
 fetch_kernel() {
   local package folder
   [ ! -d "$work/kernel/boot" ] || return 0
-  board_apt() { "$root/platform/boards/board_apt" "$sysroot.apt" "$@"; }
+  board_apt() { "$root/platform/apps/board/board_apt" "$sysroot.apt" "$@"; }
   package=$(board_apt apt-cache depends linux-image-rt-arm64 2> /dev/null |
     awk '/Depends: linux-image/ {print $2; exit}')
   [ -n "$package" ] || return 1

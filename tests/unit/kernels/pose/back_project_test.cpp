@@ -7,8 +7,8 @@
 
 #include "kernels/image/blobs.hpp"
 #include "kernels/image/roi_threshold.hpp"
-#include "platform/sensors/camera.hpp"
-#include "platform/sensors/frame_buffer.hpp"
+#include "platform/formats/camera.hpp"
+#include "platform/formats/frame_buffer.hpp"
 
 namespace glint {
 namespace {

@@ -6,7 +6,7 @@
 #include <opencv2/calib3d.hpp>
 #include <random>
 
-#include "platform/sensors/camera.hpp"
+#include "platform/formats/camera.hpp"
 
 namespace glint {
 namespace {

@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "platform/sensors/camera.hpp"
+#include "platform/formats/camera.hpp"
 
 namespace glint {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "platform/sensors/camera.hpp"
+#include "platform/formats/camera.hpp"
 
 namespace glint {
 namespace {

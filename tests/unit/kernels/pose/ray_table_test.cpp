@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "platform/sensors/camera.hpp"
+#include "platform/formats/camera.hpp"
 
 namespace glint {
 namespace {

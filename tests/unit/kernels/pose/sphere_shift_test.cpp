@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "platform/sensors/camera.hpp"
+#include "platform/formats/camera.hpp"
 
 namespace glint {
 namespace {

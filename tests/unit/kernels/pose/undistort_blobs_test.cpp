@@ -7,7 +7,7 @@
 
 #include "kernels/image/blobs.hpp"
 #include "kernels/image/roi_threshold.hpp"
-#include "platform/sensors/camera.hpp"
+#include "platform/formats/camera.hpp"
 
 namespace glint {
 namespace {

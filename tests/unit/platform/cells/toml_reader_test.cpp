@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/unit/platform/calibrate/expect_message.hpp"
 #include "tests/unit/platform/cells/complaint.hpp"
+#include "tests/unit/platform/tools/calibrate/expect_message.hpp"
 
 namespace glint {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "platform/sensors/camera.hpp"
+#include "platform/formats/camera.hpp"
 #include "platform/sim/chessboard.hpp"
 #include "platform/sim/scenarios.hpp"
 #include "platform/sim/scene.hpp"

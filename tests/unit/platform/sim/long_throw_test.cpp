@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "platform/robot/primitives.hpp"
 #include "platform/sources/scenario_of.hpp"
+#include "platform/tools/robot/primitives.hpp"
 
 namespace glint {
 namespace {

@@ -14,7 +14,7 @@
 #include "platform/sources/matrix_pose.hpp"
 #include "platform/sources/stream_recorder_frames.hpp"
 #include "platform/sources/tar_file.hpp"
-#include "tests/unit/platform/sensors/temporary_folder.hpp"
+#include "tests/unit/platform/formats/temporary_folder.hpp"
 
 namespace glint {
 namespace {

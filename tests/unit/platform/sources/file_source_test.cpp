@@ -8,10 +8,10 @@
 #include <string>
 
 #include "platform/input_error.hpp"
-#include "platform/session/simulated_run.hpp"
+#include "platform/runtime/session/simulated_run.hpp"
 #include "platform/sim/simulator.hpp"
 #include "platform/sources/open_source.hpp"
-#include "tests/unit/platform/session/short_run.hpp"
+#include "tests/unit/platform/runtime/session/short_run.hpp"
 
 namespace glint {
 namespace {

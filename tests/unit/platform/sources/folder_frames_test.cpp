@@ -7,7 +7,7 @@
 #include <string>
 
 #include "platform/input_error.hpp"
-#include "tests/unit/platform/session/short_run.hpp"
+#include "tests/unit/platform/runtime/session/short_run.hpp"
 
 namespace glint {
 namespace {

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "platform/record/cdr.hpp"
-#include "platform/rt/allocation_counter.hpp"
-#include "platform/rt/clock.hpp"
+#include "platform/runtime/rt/allocation_counter.hpp"
+#include "platform/runtime/rt/clock.hpp"
+#include "platform/sinks/record/cdr.hpp"
 #include "platform/sources/stamp_pairs.hpp"
 
 namespace glint::ros_frames_test {

@@ -10,7 +10,7 @@
 
 #include "platform/cells/calibration_files.hpp"
 #include "platform/input_error.hpp"
-#include "platform/record/cdr.hpp"
+#include "platform/sinks/record/cdr.hpp"
 #include "platform/sources/chunk_decoder.hpp"
 #include "platform/sources/ros_images.hpp"
 #include "platform/sources/transform_tree.hpp"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "platform/budget/report/run_observations.hpp"
-#include "platform/report/statistics.hpp"
+#include "platform/tools/report/statistics.hpp"
 
 namespace glint {
 namespace {

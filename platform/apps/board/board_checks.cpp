@@ -1,0 +1,30 @@
+#include "platform/apps/board/board_checks.hpp"
+
+#include <string>
+
+#include "platform/input_error.hpp"
+
+namespace glint {
+void check_camera(const Cell& cell, const FrameLoop& loop) {
+  const FrameLoopHeader& header = loop.header();
+  const CameraModel& model = cell.camera.model;
+  const auto text = [](auto width, auto height, auto bits) {
+    return std::to_string(width) + " x " + std::to_string(height) + " pixels of " +
+           std::to_string(bits) + " bits";
+  };
+  const std::string found = text(header.width, header.height, header.reflectivity_bits);
+  const std::string expected = text(model.width, model.height, cell.camera.reflectivity_bits);
+  if (found != expected) {
+    throw InputError("the loop has frames of " + found + "; expected " + expected +
+                     ", as the cell's camera has");
+  }
+}
+
+void check_for_board(const Cell& cell) {
+  if (cell.tool_changes.empty()) return;
+  throw InputError(cell.file +
+                   ": has a [[tool_change]]; expected none, for a board keeps the tools that it "
+                   "starts with (absent = [..] leaves some out)");
+}
+
+}  // namespace glint

@@ -1,0 +1,19 @@
+#include "platform/apps/glint/budget_commands.hpp"
+#include "platform/apps/glint/commands.hpp"
+
+namespace glint {
+
+void add_budget(CLI::App& app, int& exit_code) {
+  CLI::App* budget = app.add_subcommand("budget", "how late an output can be, before it runs");
+  budget->require_subcommand(1);
+  budget->footer("Example: glint budget schedule --board x86-64-emulated --out plan.toml");
+  add_budget_measure(*budget, exit_code);
+  add_budget_curve(*budget, exit_code);
+  add_budget_schedule(*budget, exit_code);
+  add_budget_check(*budget, exit_code);
+  add_budget_report(*budget, exit_code);
+  add_budget_diff(*budget, exit_code);
+  add_budget_export(*budget, exit_code);
+}
+
+}  // namespace glint

@@ -1,0 +1,113 @@
+// glint experiment: accuracy of the estimates, case by case, compared with the baseline.
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "platform/apps/glint/commands.hpp"
+#include "platform/apps/glint/output_file.hpp"
+#include "platform/apps/glint/progress.hpp"
+#include "platform/in_range.hpp"
+#include "platform/lab/experiments/case_experiments.hpp"
+#include "platform/lab/experiments/experiment.hpp"
+#include "platform/lab/experiments/experiment_report.hpp"
+#include "platform/printable.hpp"
+
+namespace glint {
+namespace {
+
+struct ExperimentArguments {
+  std::string json, out = "out", data;
+  bool quick = false;
+  std::uint64_t seed = 1;
+  int tries = 0;
+};
+using Arguments = std::shared_ptr<ExperimentArguments>;
+
+int run_published(ExperimentKind kind, const ExperimentArguments& arguments) {
+  Progress progress("experiment " + name_of(kind));
+  ExperimentOptions options;
+  options.quick = arguments.quick;
+  options.seed = arguments.seed;
+  options.progress = [&](int done, int all) { progress.show(done, all); };
+  const ExperimentResult result =
+      kind == ExperimentKind::still ? run_static(options) : run_dynamic(options);
+  progress.clear();
+  std::fputs(printable_lines(experiment_table(result)).c_str(), stdout);
+  if (!arguments.json.empty()) write_text(arguments.json, experiment_json(result));
+  make_folder(arguments.out);
+  for (const std::string& file : write_experiment_plots(result, arguments.out)) {
+    std::printf("written  %s\n", file.c_str());
+  }
+  // A tenth of the frames is a smoke test.
+  return options.quick || missed_bars(result) == 0 ? 0 : 1;
+}
+
+int run_cases(const CaseExperiment& experiment, const ExperimentArguments& arguments) {
+  Progress progress(std::string("experiment ") + experiment.name);
+  CaseOptions options{arguments.quick,
+                      arguments.seed,
+                      arguments.out,
+                      arguments.data,
+                      [&](int done, int all) { progress.show(done, all); },
+                      arguments.tries};
+  make_folder(options.out);
+  const CaseList list = experiment.run(options);
+  progress.clear();
+  std::fputs(printable_lines(case_table(list)).c_str(), stdout);
+  if (!arguments.json.empty()) write_text(arguments.json, case_json(list, options));
+  for (const std::string& file : list.plots) std::printf("written  %s\n", file.c_str());
+  return missed_bars(list) == 0 ? 0 : 1;
+}
+
+CLI::App& add_one(CLI::App& command, const std::string& name, const char* what,
+                  const Arguments& arguments) {
+  CLI::App* sub = command.add_subcommand(name, what);
+  sub->add_flag("--quick", arguments->quick, "few samples: to see that it works");
+  sub->add_option("--random-seed,--seed", arguments->seed, "of the random numbers")
+      ->capture_default_str();
+  sub->add_option("--json", arguments->json, "write the figures here");
+  sub->add_option("--out", arguments->out, "folder of the plots")->capture_default_str();
+  sub->footer("Example: glint experiment " + name + " --json " + name + ".json");
+  return *sub;
+}
+
+void add_published(CLI::App& command, const char* name, const char* what, ExperimentKind kind,
+                   const Arguments& arguments, int& exit_code) {
+  add_one(command, name, what, arguments).callback([kind, arguments, &exit_code] {
+    exit_code = run_published(kind, *arguments);
+  });
+}
+
+}  // namespace
+
+void add_experiment(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "experiment", "How good the estimates are, beside the published method and other rivals");
+  command->require_subcommand(1);
+  command->footer(
+      "Example: glint experiment static --json static.json\n"
+      "Exit: 0 every bar is met (or the experiment has none), 1 one is missed, 2 bad use.");
+  auto arguments = std::make_shared<ExperimentArguments>();
+  add_published(*command, "static", "headset and pen still, an arm's length apart",
+                ExperimentKind::still, arguments, exit_code);
+  add_published(*command, "dynamic", "headset and pen both moving", ExperimentKind::moving,
+                arguments, exit_code);
+  for (const CaseExperiment& experiment : case_experiments()) {
+    CLI::App& sub = add_one(*command, experiment.name, experiment.what, arguments);
+    if (experiment.wants_data) {
+      sub.add_option("--data", arguments->data, "folder of the recordings")->required();
+      sub.footer(std::string("Example: glint experiment ") + experiment.name + " --data DIR");
+    }
+    if (experiment.counts_tries) {
+      sub.add_option("--tries", arguments->tries,
+                     "tries in all classes together (of field: devices), in place of the other "
+                     "cases; finished ones are in --out and not run again")
+          ->check(in_range(1, 1'000'000));
+    }
+    sub.callback(
+        [&experiment, arguments, &exit_code] { exit_code = run_cases(experiment, *arguments); });
+  }
+}
+
+}  // namespace glint

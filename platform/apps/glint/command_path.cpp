@@ -1,0 +1,184 @@
+// glint path: path drawn with the pen while its button was held, as a table and a robot program.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "platform/apps/glint/commands.hpp"
+#include "platform/apps/glint/losses_json.hpp"
+#include "platform/apps/glint/output_file.hpp"
+#include "platform/apps/glint/publishing.hpp"
+#include "platform/in_range.hpp"
+#include "platform/input_error.hpp"
+#include "platform/tools/programming/path_csv.hpp"
+#include "platform/tools/programming/press_times.hpp"
+#include "platform/tools/programming/recorded_path.hpp"
+#include "platform/tools/programming/ur_script.hpp"
+
+namespace glint {
+namespace {
+
+struct PathArguments {
+  std::string recording, button, csv, urscript, json;
+  RecordedPathOptions options;
+  UrScriptSettings script;
+  PublishOptions publish;
+};
+
+double largest_sigma_m(const DrawnPath& path) {
+  double most = 0;
+  for (const PathElement& element : path) {
+    for (const UncertainPose& point : element.points) {
+      most = std::max(most, point.covariance.topLeftCorner<3, 3>().trace() / 3);
+    }
+  }
+  return std::sqrt(most);
+}
+
+void print_table(const RecordedPath& drawn, double spacing_m) {
+  const CaptureCounts& counts = drawn.counts;
+  int number = 0;
+  for (const PathElement& element : drawn.path) {
+    const UncertainPose& first = element.points.front();
+    const Vector3& at = first.pose.translation;
+    std::printf("%3d  %-8s  %5zu points  at %9.3f s  from %+.4f %+.4f %+.4f m\n", ++number,
+                element.kind == PathKind::waypoint ? "waypoint" : "stroke", element.points.size(),
+                static_cast<double>(first.time.nanoseconds) * 1e-9, at.x(), at.y(), at.z());
+  }
+  std::printf("poses while held %lld, taken %lld; largest sigma an axis %.2f mm\n",
+              static_cast<long long>(counts.poses), static_cast<long long>(counts.taken),
+              1e3 * largest_sigma_m(drawn.path));
+  if (spacing_m < 2 * largest_sigma_m(drawn.path)) {
+    std::printf(
+        "notice  points are %.2f mm apart, less than twice their sigma: some follow the "
+        "noise, not the hand; a wider --spacing, or a reference body in view\n",
+        1e3 * spacing_m);
+  }
+  const auto notice = [](std::int64_t count, const char* what) {
+    if (count > 0) std::printf("notice  %lld %s\n", static_cast<long long>(count), what);
+  };
+  if (drawn.losses.any())
+    std::printf("notice  the recording lacks %s\n", text_of(drawn.losses).c_str());
+  notice(counts.not_measured, "poses left out: not measured");
+  notice(counts.not_in_robot, "poses left out: not in the robot's frame");
+  notice(counts.not_usable, "poses left out: out of order or a jump");
+  notice(counts.gaps, "strokes ended where the pen was lost; the next pose began another");
+  notice(counts.presses_in_vain, "presses without effect: no pose, or nothing to delete or undo");
+  notice(counts.points_left_out, "points left out: more than --points-max");
+  notice(counts.strokes_left_out, "elements left out: more than there is room for");
+}
+
+nlohmann::ordered_json figures(const RecordedPath& drawn) {
+  nlohmann::ordered_json elements = nlohmann::ordered_json::array();
+  for (const PathElement& element : drawn.path) {
+    elements.push_back({{"kind", element.kind == PathKind::waypoint ? "waypoint" : "stroke"},
+                        {"points", element.points.size()}});
+  }
+  const CaptureCounts& counts = drawn.counts;
+  return {{"tool", drawn.tool},
+          {"events", drawn.events},
+          {"elements", elements},
+          {"points", point_count(drawn.path)},
+          {"largest_sigma_mm", 1e3 * largest_sigma_m(drawn.path)},
+          {"poses", counts.poses},
+          {"taken", counts.taken},
+          {"not_measured", counts.not_measured},
+          {"not_in_robot", counts.not_in_robot},
+          {"not_usable", counts.not_usable},
+          {"gaps", counts.gaps},
+          {"presses_in_vain", counts.presses_in_vain},
+          {"points_left_out", counts.points_left_out},
+          {"strokes_left_out", counts.strokes_left_out},
+          {"missing", losses_json(drawn.losses)}};
+}
+
+void publish(const RecordedPath& drawn, const PublishOptions& options) {
+  if (options.seconds <= 0) return;
+  std::vector<UncertainPose> points;
+  for (const PathElement& element : drawn.path) {
+    points.insert(points.end(), element.points.begin(), element.points.end());
+  }
+  SurroundingsPublisher publisher(options.settings);
+  publisher.publish_path(points, drawn.unix_offset, publishing_time());
+  keep_publishing(publisher, options);
+}
+
+int make_path(PathArguments& arguments) {
+  if (!arguments.button.empty()) arguments.options.presses = press_times(arguments.button);
+  const RecordedPath drawn = recorded_path(arguments.recording, arguments.options);
+  // Makes both texts before either file: a rejected path leaves no file.
+  const std::string csv = path_csv(drawn.path);
+  const std::string script = ur_script(drawn.path, arguments.script);
+  print_table(drawn, arguments.options.capture.stroke.spacing_m);
+  const auto write = [](const std::string& file, const std::string& text) {
+    if (file.empty()) return;
+    write_text(file, text);
+    std::printf("written  %s\n", file.c_str());
+  };
+  write(arguments.csv, csv);
+  write(arguments.urscript, script);
+  write_json(arguments.json, figures(drawn));
+  publish(drawn, arguments.publish);
+  return drawn.losses.any() ? 1 : 0;
+}
+
+// Adds an option for a length in metres, given with its unit: 2mm, 0.5cm, 0.01m.
+void add_length(CLI::App* command, const std::string& name, double& metres, const std::string& what,
+                double least, double most) {
+  const std::map<std::string, double> units{{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}};
+  command->add_option(name, metres, what + ", with its unit: mm, cm or m")
+      ->transform(CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::UNIT_REQUIRED, "LENGTH"))
+      ->check(in_range(least, most))
+      ->default_str(std::to_string(static_cast<int>(1e3 * metres + 0.5)) + "mm");
+}
+
+}  // namespace
+
+void add_path(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "path", "Waypoints and strokes that were drawn with the pen, as a table and a robot program");
+  auto arguments = std::make_shared<PathArguments>();
+  command->footer(
+      "Examples:\n  glint path out/run.mcap --csv path.csv --urscript path.script\n"
+      "  glint path out/run.mcap --button 1.0..2.5,3.0..4.2 --spacing 2mm --csv path.csv\n"
+      "A button held draws a stroke, clicked it sets a waypoint. Reachability is not checked.\n"
+      "--dds: nav_msgs/Path on rt/glint/path, in the robot's frame.");
+  command->add_option("recording", arguments->recording, "a recording of `glint run`")->required();
+  command->add_option("--tool", arguments->options.tool, "the pen's name; default: the first tool");
+  command->add_option("--button", arguments->button,
+                      "when it was held, in place of what was recorded: FROM..TO in seconds, "
+                      "several with commas");
+  CaptureSettings& capture = arguments->options.capture;
+  add_length(command, "--spacing", capture.stroke.spacing_m, "from point to point of a stroke",
+             1e-4, 0.1);
+  command->add_option("--points-max", capture.points_max, "room for so many points")
+      ->check(in_range(1, 1 << 22))
+      ->capture_default_str();
+  command->add_option("--csv", arguments->csv, "write the points and their covariances here");
+  command->add_option("--urscript", arguments->urscript, "write the robot's program here");
+  UrScriptSettings& script = arguments->script;
+  command->add_option("--stroke-speed", script.stroke_m_s, "m/s along strokes")
+      ->check(in_range(1e-3, 2.0))
+      ->capture_default_str();
+  command->add_option("--travel-speed", script.travel_m_s, "m/s to waypoints and strokes")
+      ->check(in_range(1e-3, 2.0))
+      ->capture_default_str();
+  command->add_option("--acceleration", script.acceleration_m_s2, "m/s^2")
+      ->check(in_range(1e-2, 10.0))
+      ->capture_default_str();
+  add_length(command, "--blend", script.blend_m, "largest blend radius", 0, 0.1);
+  add_publish_options(*command, arguments->publish);
+  command->add_flag("--allow-truncated", arguments->options.tolerance.truncated,
+                    "read a file that was cut short or damaged but for what is not whole, and "
+                    "count what is missing: exit code 1");
+  command->add_flag("--allow-incomplete", arguments->options.tolerance.incomplete,
+                    "read a recording that dropped something or ended early");
+  command->add_option("--json", arguments->json, "write the figures here");
+  command->callback([arguments, &exit_code] { exit_code = make_path(*arguments); });
+}
+
+}  // namespace glint

@@ -1,0 +1,108 @@
+// glint reference: pose of a robot, from depth images of it and a rough pose.
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "platform/apps/glint/commands.hpp"
+#include "platform/apps/glint/output_file.hpp"
+#include "platform/apps/glint/publishing.hpp"
+#include "platform/apps/glint/reference_inputs.hpp"
+#include "platform/apps/glint/reference_report.hpp"
+#include "platform/in_range.hpp"
+#include "platform/tools/robot/sample_robot.hpp"
+
+namespace glint {
+namespace {
+
+void export_model(const ReferenceArguments& arguments, const RobotModel& robot) {
+  const RobotCloud cloud = sample_robot(robot, arguments.points);
+  write_robot_cloud(arguments.exported, cloud);
+  std::printf("model      %s: %zu points of %zu links, %.1f mm apart\n", arguments.exported.c_str(),
+              cloud.points.size(), cloud.links.size(), 1e3 * static_cast<double>(cloud.spacing_m));
+}
+
+int run_reference(ReferenceArguments arguments) {
+  check_given(arguments);
+  std::unique_ptr<ReferenceListener> listener = listener_of(arguments);
+  const AnyRobot robot = robot_of(arguments, listener.get());
+  const auto* const meshes = std::get_if<RobotModel>(&robot);
+  if (arguments.only_exports()) {
+    export_model(arguments, *meshes);
+    return 0;
+  }
+  const Pose start = start_of(arguments, robot, listener.get());
+  listener.reset();
+  const std::vector<SceneFrame> frames =
+      std::visit([&](const auto& any) { return read_scene(arguments.scene, any); }, robot);
+  const FindReferenceSettings settings = settings_of(arguments);
+  const Reference reference = find_reference(frames, start, settings);
+  const ReferenceFacts facts{std::visit([](const auto& any) { return any.name; }, robot),
+                             meshes != nullptr ? meshes->triangles_skipped : 0, frames.size(),
+                             settings.range};
+  print_reference(reference, facts);
+  if (!arguments.exported.empty()) export_model(arguments, *meshes);
+  write_json(arguments.json, reference_json(reference, facts));
+  return reference.verdict == ReferenceVerdict::accepted ? 0 : 1;
+}
+
+}  // namespace
+
+void add_reference(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("reference", "Where a robot stands, from depth pictures of it");
+  auto arguments = std::make_shared<ReferenceArguments>();
+  RobotFiles& robot = arguments->robot;
+  SceneFiles& scene = arguments->scene;
+  command->footer(
+      "Example:\n"
+      "  glint reference --urdf arm.urdf --package-dir meshes --export-model arm.ply\n"
+      "  glint reference --urdf arm.urdf --package-dir meshes --camera camera_info.yaml\n"
+      "    --depth a.npy b.npy --joints a.txt b.txt --seed 0.4,0.2,1.2,-1.6,0.1,0.8 --json r.json\n"
+      "  glint reference --listen 60 --package-dir meshes --camera camera_info.yaml --depth a.npy\n"
+      "Exit: 0 accepted, 1 ambiguous or refused, 2 bad use or input, 3 no such interface.");
+  auto* const urdf = command->add_option("--urdf", robot.urdf, "the robot's description");
+  command->add_option("--model", arguments->model, "in its place: what --export-model wrote")
+      ->excludes(urdf);
+  command->add_option("--package-dir", robot.package_dirs,
+                      "where package:// leads: folders, or NAME=FOLDER");
+  command->add_option("--joints", scene.joints,
+                      "joint positions, a file for each depth picture: .npy, or text");
+  command->add_option(
+      "--depth", scene.depth,
+      "depth: pictures .npy (m), .png (16 bit, mm); clouds .pcd, .ply in the camera's frame");
+  command->add_option("--camera", scene.camera, "ROS camera_info, YAML");
+  command->add_option("--mask", scene.masks, "the robot's pixels, a file for each depth");
+  command
+      ->add_option("--seed", arguments->seed,
+                   "x,y,z,roll,pitch,yaw of T_camera_base: metres, radians, fixed axes")
+      ->delimiter(',')
+      ->expected(6);
+  command
+      ->add_option("--search-range", arguments->range,
+                   "M,DEG  largest error of each coordinate and each turn of the rough pose "
+                   "(0.4,40)")
+      ->delimiter(',')
+      ->expected(2);
+  command
+      ->add_option("--depth-bias-mm", arguments->depth_bias_mm,
+                   "standard deviation of the depth error that a whole picture shares")
+      ->check(in_range(0.0, 100.0))
+      ->capture_default_str();
+  command
+      ->add_option("--listen", arguments->listen_s,
+                   "hear over DDS, for at most so many seconds, what is not given: the robot's "
+                   "description (/robot_description), joint positions for every picture "
+                   "(/joint_states), T_camera_base (/initialpose)")
+      ->check(in_range(0.1, 86400.0));
+  add_network_options(*command, arguments->network);
+  command->add_option("--export-model", arguments->exported,
+                      "write joints and points of the links' surfaces here, as PLY: what a board "
+                      "reads in place of URDF and meshes");
+  command->add_option("--points", arguments->points, "how many points that has")
+      ->capture_default_str();
+  command->add_flag("--visual", arguments->visual, "visual meshes in place of collision meshes");
+  command->add_option("--json", arguments->json, "write the figures here");
+  command->callback([arguments, &exit_code] { exit_code = run_reference(*arguments); });
+}
+
+}  // namespace glint

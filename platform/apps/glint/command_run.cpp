@@ -1,0 +1,227 @@
+// glint run: frames in, poses out over DDS and CAN, everything recorded. glint track: the same for
+// recorded frames, as fast as possible.
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "platform/apps/glint/cell_option.hpp"
+#include "platform/apps/glint/commands.hpp"
+#include "platform/apps/glint/output_file.hpp"
+#include "platform/apps/glint/planned_run.hpp"
+#include "platform/apps/glint/progress.hpp"
+#include "platform/apps/glint/run_output.hpp"
+#include "platform/apps/glint/run_report.hpp"
+#include "platform/cells/cell.hpp"
+#include "platform/folder_lock.hpp"
+#include "platform/in_range.hpp"
+#include "platform/input_error.hpp"
+#include "platform/runtime/session/node_probe.hpp"
+#include "platform/runtime/session/simulated_run.hpp"
+#include "platform/sources/open_live_source.hpp"
+#include "platform/sources/open_source.hpp"
+#include "platform/stop_signals.hpp"
+#include "platform/tools/inspect/recorded_frames.hpp"
+#include "platform/tools/programming/key_buttons.hpp"
+#include "platform/tools/programming/key_terminal.hpp"
+
+namespace glint {
+namespace {
+
+struct RunArguments {
+  std::string config, json, out = "out", can, level;
+  double duration_s = 0;
+  int workers = 0;
+  bool as_fast_as_can_be = false;
+  bool no_dds = false;
+  std::string method = "glint";
+  std::string board, plan;
+  std::vector<std::string> inject;
+  bool trace = false;
+  bool keys = false;
+  double source_frame_ms = 0;
+  bool recorded = false;  // glint track
+  std::string source, kind;
+  ReadTolerance tolerance;
+};
+
+Cell cell_of(const RunArguments& arguments) {
+  Cell cell = arguments.recorded ? recorded_source_cell(arguments.source, arguments.config,
+                                                        arguments.kind, arguments.tolerance)
+                                 : cell_or_default(arguments.config);
+  if (!arguments.can.empty()) cell.can.sink = arguments.can;
+  if (!arguments.level.empty()) cell.record.level = arguments.level;
+  if (arguments.duration_s > 0) cell.simulator.duration_s = arguments.duration_s;
+  if (arguments.workers > 0) cell.workers = arguments.workers;
+  if (arguments.as_fast_as_can_be) cell.realtime = false;
+  if (arguments.no_dds) cell.dds.on = false;
+  if (arguments.method == "seed") {
+    cell.method = Method::seed;
+    cell.record.level = "outputs";  // a run of the baseline cannot be replayed
+  }
+  return cell;
+}
+
+// Reads keys and prints their functions; does nothing without --keys.
+void listen_to_keys(const RunArguments& arguments, const Cell& cell,
+                    std::optional<KeyTerminal>& terminal) {
+  if (!arguments.keys) return;
+  if (!cell.realtime)
+    throw InputError(
+        "--keys: the run is not in real time; expected one that is (realtime = true, no --fast)");
+  terminal.emplace(STDIN_FILENO, "--keys: standard input");
+  std::printf("keys: %s\n", k_keys_text);
+  std::fflush(stdout);
+}
+
+// A write that fails, as on a full disk, loses only its own file.
+bool written(const std::function<void()>& write, SessionResult& result) {
+  try {
+    write();
+  } catch (const InputError& error) {
+    result.not_written.push_back(error.what());
+    return false;
+  }
+  return true;
+}
+
+// Writes the figures first, the plots last.
+int report(const Cell& cell, const SessionOptions& options, const std::string& json_file,
+           SessionResult& result) {
+  const auto write_summary = [&] { write_json(json_file, summary_of(cell, options.plan, result)); };
+  (void)written(write_summary, result);
+  print_table(summary_of(cell, options.plan, result), result);
+  const std::size_t printed = result.files.size();
+  const bool plotted = written([&] { draw_plots(options.out, result); }, result);
+  print_files(result, printed);
+  if (!plotted) (void)written(write_summary, result);
+  const std::vector<std::string> failures = failures_of(result);
+  std::fflush(stdout);
+  for (const std::string& line : failures) std::fprintf(stderr, "glint: %s\n", line.c_str());
+  return failures.empty() ? 0 : 1;
+}
+
+int run(const RunArguments& arguments) {
+  Cell cell = cell_of(arguments);
+  const std::atomic<bool>& stop = stop_on_signals();
+  const auto duration_ns = static_cast<std::int64_t>(std::llround(arguments.duration_s * 1e9));
+  const std::unique_ptr<FrameSource> source =
+      open_source(cell, arguments.tolerance, {Duration{duration_ns}, &stop});
+  SessionOptions options;
+  options.plan = planned_run(cell, arguments.board, arguments.plan);
+  for (const std::string& text : arguments.inject) {
+    options.injections.push_back(injection_of(text));
+  }
+  options.trace = arguments.trace;
+  options.stop = &stop;
+  std::optional<KeyTerminal> terminal;
+  listen_to_keys(arguments, cell, terminal);
+  if (terminal) options.keys = terminal->descriptor();
+  make_folder(arguments.out);
+  make_folder_of(arguments.json);
+  ReservedRoom room(arguments.json);
+  const FolderLock lock(arguments.out);
+  Progress progress("tracking");
+  options.out = arguments.out;
+  options.progress = [&](double done_s, double all_s) { progress.show(done_s, all_s); };
+  options.preparing = [&](int rendered, int wanted) {
+    progress.show(
+        0, 1,
+        "renders ahead: " + std::to_string(rendered) + " of " + std::to_string(wanted) + " frames");
+  };
+  const Duration frame_time{static_cast<std::int64_t>(arguments.source_frame_ms * 1e6)};
+  SessionResult result = run_source(cell, source.get(), options, frame_time);
+  progress.clear();
+  room.release();
+  return report(cell, options, arguments.json, result);
+}
+
+// Adds the options of both commands.
+void add_common(CLI::App& command, RunArguments& arguments) {
+  add_cell_option(command, arguments.config);
+  command
+      .add_option("--duration", arguments.duration_s,
+                  "seconds, instead of the cell's or of all recorded frames")
+      ->check(in_range(0.1, 3600.0));
+  command.add_option("--out", arguments.out, "folder of all files written")->capture_default_str();
+  command.add_option("--json", arguments.json, "write the table's figures here");
+  command.add_option("--can", arguments.can, "log:FILE or socketcan:IF, instead of the cell's");
+  command.add_option("--record-level", arguments.level, "full, roi, blobs or outputs");
+  command.add_option("--workers", arguments.workers, "threads of the frame group: 1 or 2")
+      ->check(in_range(1, 2));
+  command
+      .add_option("--method", arguments.method,
+                  "glint, or seed: the method as published, the baseline")
+      ->check(CLI::IsMember({"glint", "seed"}));
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("run", "Track: frames in, poses out over DDS and CAN, recorded");
+  auto arguments = std::make_shared<RunArguments>();
+  command->footer(
+      "Examples:\n  glint run --out out --json out/summary.json\n"
+      "  glint run --config my_cell.toml --can socketcan:can0\n"
+      "  glint run --keys && glint path out/run.mcap --csv path.csv\n"
+      "Frames are those of the cell's [source]: the simulator's, live ones (" +
+      live_kinds() +
+      ")\nor recorded ones (platform/sources/README.md).\n"
+      "Tools that this sensor cannot tell apart are refused; of those that it may confuse, and of\n"
+      "a tool's markers that may pass for others of its own, the table warns: `this cell`.");
+  add_common(*command, *arguments);
+  command->add_option("--board", arguments->board, "costs: a built-in board or a board file");
+  command->add_option("--plan", arguments->plan, "who runs what: of `glint budget schedule`");
+  command
+      ->add_option("--inject", arguments->inject,
+                   "a delay: node=FindBlobs,delay_us=200,frame=512 or node=..,tick=N; several")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--source-frame-ms", arguments->source_frame_ms,
+                   "time the source needs for each frame from when it is due, ms; default: 0")
+      ->check(in_range(0.0, 10'000.0));
+  command->add_flag("--trace", arguments->trace, "when every node ran: trace.spans in --out");
+  command->add_flag("--no-dds", arguments->no_dds, "send nothing over DDS");
+  command->add_flag("--keys", arguments->keys,
+                    std::string("keys of this terminal are the pen's buttons: ") + k_keys_text);
+  command->add_flag("--fast", arguments->as_fast_as_can_be,
+                    "as fast as can be instead of in real time: no DDS, the same bytes every time");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+void add_track(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "track", "Track recorded frames as fast as possible: poses, CAN log, plots");
+  auto arguments = std::make_shared<RunArguments>();
+  arguments->recorded = arguments->as_fast_as_can_be = true;
+  command->footer(
+      "Examples:\n  glint track sim/frames.mcap --out again\n"
+      "  glint track frames --config my_cell.toml --json poses.json\n"
+      "  glint track bag --config my_cell.toml\n"
+      "SOURCE: a recording of `glint run` or `glint simulate` (its own cell holds where no "
+      "--config\n"
+      "is given), a ROS 2 bag (MCAP), a folder with frames.csv, a capture of StreamRecorder or a\n"
+      "file of hl2ss (platform/sources/README.md).");
+  command->add_option("SOURCE", arguments->source, "instead of the cell's [source]");
+  command->add_option("--kind", arguments->kind,
+                      "of SOURCE: " + recorded_kinds() + "; default: by what is there");
+  add_common(*command, *arguments);
+  command->add_flag("--allow-truncated", arguments->tolerance.truncated,
+                    "read a recording that was cut short or damaged: exit code 1");
+  command->callback([arguments, &exit_code] {
+    arguments->tolerance.incomplete = arguments->tolerance.truncated;
+    exit_code = run(*arguments);
+  });
+}
+
+}  // namespace glint

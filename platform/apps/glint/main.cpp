@@ -1,0 +1,31 @@
+// glint COMMAND: main program of the tracker and its tools.
+#include "platform/apps/glint/cell_option.hpp"
+#include "platform/apps/glint/commands.hpp"
+#include "platform/apps/glint/version.hpp"
+#include "platform/exit_code.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app{"Glint: the pose of a pen with reflective markers, from a headset's camera"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", glint::version_text(), "version and commit");
+  app.footer("Example: glint run --out out --json out/summary.json");
+  int exit_code = 0;
+  glint::add_run(app, exit_code);
+  glint::add_track(app, exit_code);
+  glint::add_replay(app, exit_code);
+  glint::add_simulate(app, exit_code);
+  glint::add_experiment(app, exit_code);
+  glint::add_calibrate(app, exit_code);
+  glint::add_verify(app, exit_code);
+  glint::add_map(app, exit_code);
+  glint::add_reference(app, exit_code);
+  glint::add_path(app, exit_code);
+  glint::add_inspect(app, exit_code);
+  glint::add_export(app, exit_code);
+  glint::add_budget(app, exit_code);
+  glint::add_cell_check(app);
+  return glint::exit_code_of(app, "glint", [&] {
+    app.parse(argc, argv);
+    return exit_code;
+  });
+}

@@ -1,0 +1,32 @@
+// Baseline in place of Glint's tracker: the same frames, the same output at a constant rate. Tracks
+// one tool, the first of the cell.
+#pragma once
+
+#include "nodes/check_frame.hpp"
+#include "nodes/node_limits.hpp"
+#include "nodes/track_tools.hpp"
+#include "platform/cells/cell.hpp"
+#include "platform/lab/baseline/seed_tracker.hpp"
+#include "platform/runtime/session/frame_group.hpp"
+
+namespace glint {
+
+class SeedMethod final : public FrameMethod {
+ public:
+  explicit SeedMethod(const Cell& cell);
+
+  // Not for real time: OpenCV allocates.
+  [[nodiscard]] const Estimates& process(const ArrivedFrame& arrived) override;
+
+ private:
+  SeedTracker seed_;
+  CheckFrame check_;
+  TrackTools track_;
+  graph::Latest<ToolSet> tools_;
+  graph::Parts<FittedTools, k_tool_slices> fitted_;
+  Anchor anchor_;  // without a reference body, as published
+  graph::Parts<FollowedTools, k_tool_slices> followed_;
+  Estimates last_, estimates_;
+};
+
+}  // namespace glint

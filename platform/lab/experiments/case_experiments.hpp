@@ -1,0 +1,21 @@
+// Registry of the experiments that return a list of cases, by name. A new experiment is a line in
+// the table of case_experiments.cpp.
+#pragma once
+
+#include <span>
+
+#include "platform/lab/experiments/case_list.hpp"
+
+namespace glint {
+
+struct CaseExperiment {
+  const char* name;         // name of the subcommand
+  const char* what;         // one line of help
+  bool wants_data = false;  // needs recordings: --data DIR
+  CaseList (*run)(const CaseOptions& options) = nullptr;
+  bool counts_tries = false;  // accepts --tries N
+};
+
+[[nodiscard]] std::span<const CaseExperiment> case_experiments();
+
+}  // namespace glint

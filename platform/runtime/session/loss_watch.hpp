@@ -1,0 +1,78 @@
+// Counts the run's output losses at each tick and selects the kind that a CAN emergency frame
+// reports: at most one a second per kind, none for CAN losses.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "kernels/units.hpp"
+#include "kernels/wire/node_frames.hpp"
+#include "platform/runtime/rt/loss_counters.hpp"
+#include "platform/runtime/session/file_sink.hpp"
+#include "platform/sinks/can/can_sink.hpp"
+#include "platform/sinks/dds/pose_output.hpp"
+#include "platform/sinks/record/recorder.hpp"
+
+namespace glint {
+
+// Each may be null. `counters` must outlive the watch.
+struct LossSources {
+  const CanSink* can = nullptr;
+  const PoseOutput* dds = nullptr;
+  const Recorder* recorder = nullptr;
+  const FileSink* files = nullptr;
+  LossCounters* counters = nullptr;
+};
+
+// CANopen emergency: identifier 0x80 + node, error code FF80 + kind, error register 81, the kind in
+// the tool's byte, the rest 0.
+[[nodiscard]] inline CanFrame loss_frame(unsigned node, LossKind kind) noexcept {
+  constexpr std::uint8_t k_losses = 0x80;  // in the range of device-specific error codes
+  const auto number = static_cast<std::uint8_t>(kind);
+  CanFrame frame = overrun_frame(node, {number, 0, Reason::none, 0});
+  frame.data[0] = static_cast<std::uint8_t>(k_losses + number);
+  return frame;
+}
+
+class LossWatch {
+ public:
+  static constexpr Duration k_emergency_gap = milliseconds(1000);
+
+  explicit LossWatch(const LossSources& sources) : sources_(sources) {}
+
+  // Copies the sinks' counts into the counters. No lock, no heap.
+  void count() noexcept {
+    if (sources_.counters == nullptr) return;
+    LossCounters& counters = *sources_.counters;
+    if (sources_.can != nullptr) counters.store(LossKind::can, sources_.can->counts().lost());
+    if (sources_.dds != nullptr) counters.store(LossKind::dds, sources_.dds->lost());
+    if (sources_.recorder != nullptr) {
+      counters.store(LossKind::recording, sources_.recorder->lost());
+    }
+    if (sources_.files != nullptr) counters.store(LossKind::files, sources_.files->lost());
+  }
+  // Returns a kind that lost more than its last emergency frame reported, and marks the loss as
+  // reported.
+  [[nodiscard]] std::optional<LossKind> take_due(Time tick) noexcept {
+    if (sources_.counters == nullptr) return {};
+    for (const LossKind kind : {LossKind::dds, LossKind::recording, LossKind::files}) {
+      Reported& reported = reported_[static_cast<std::size_t>(kind)];
+      const std::uint64_t lost = sources_.counters->of(kind);
+      if (lost <= reported.lost || tick < reported.next) continue;
+      reported = {lost, tick + k_emergency_gap};
+      return kind;
+    }
+    return {};
+  }
+
+ private:
+  struct Reported {
+    std::uint64_t lost = 0;
+    Time next;  // earliest time of the next emergency frame
+  };
+
+  LossSources sources_;
+  std::array<Reported, k_loss_kinds> reported_{};
+};
+
+}  // namespace glint

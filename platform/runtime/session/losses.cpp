@@ -1,0 +1,98 @@
+#include "platform/runtime/session/losses.hpp"
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "platform/runtime/rt/loss_counters.hpp"
+
+namespace glint {
+namespace {
+
+// Adds "disk full" to the system's message if that is the cause.
+std::string cause(const std::string& words) {
+  const std::string full = std::generic_category().message(ENOSPC);
+  return words.find(full) == std::string::npos ? words : "disk full: " + words;
+}
+
+std::string counted(std::uint64_t count, const char* what) {
+  return std::to_string(count) + " " + what;
+}
+
+class Losses {
+ public:
+  void add(LossKind kind, std::uint64_t count, const std::string& text) {
+    items_.push_back({std::string(name_of(kind)), count, text});
+  }
+  [[nodiscard]] std::vector<Loss> take() { return std::move(items_); }
+
+ private:
+  std::vector<Loss> items_;
+};
+
+void add_can(const CanSinkCounts& can, Losses& losses) {
+  if (can.dropped > 0) {
+    losses.add(LossKind::can, can.dropped,
+               counted(can.dropped, "frames found the queue full: the bus or the disk is slow"));
+  }
+  if (can.failed > 0) {
+    losses.add(LossKind::can, can.failed,
+               counted(can.failed, "frames refused: ") +
+                   cause(std::generic_category().message(can.error)));
+  }
+}
+
+void add_dds(const SinkOutcome& outcome, Losses& losses) {
+  const DdsCounts& dds = outcome.dds;
+  if (dds.ring_dropped > 0) {
+    losses.add(LossKind::dds, dds.ring_dropped,
+               counted(dds.ring_dropped, "samples not written: no room, or refused by DDS"));
+  }
+  if (dds.others_lost > 0) {
+    losses.add(LossKind::dds, dds.others_lost,
+               counted(dds.others_lost, "poses and transforms not written"));
+  }
+  if (outcome.dds_was_read && outcome.dds_reader.missed > 0) {
+    losses.add(LossKind::dds, outcome.dds_reader.missed,
+               counted(outcome.dds_reader.missed, "samples written, but not received"));
+  }
+  if (!outcome.dds_not_read.empty()) {
+    losses.add(LossKind::dds, 0, "what was received is unknown: " + outcome.dds_not_read);
+  }
+}
+
+void add_recording(const RecordingOutcome& recording, Losses& losses) {
+  if (recording.dropped > 0) {
+    losses.add(LossKind::recording, recording.dropped,
+               counted(recording.dropped, "messages found no room in the queue"));
+  }
+  if (recording.ended_early) {
+    losses.add(LossKind::recording, recording.lost,
+               counted(recording.lost, "messages not written: ") + cause(recording.reason));
+  }
+}
+
+}  // namespace
+
+std::vector<Loss> losses_of(const SinkOutcome& outcome) {
+  Losses losses;
+  add_can(outcome.can, losses);
+  add_dds(outcome, losses);
+  add_recording(outcome.recording, losses);
+  if (outcome.files_lost > 0 || !outcome.files_wrong.empty()) {
+    const std::string why =
+        outcome.files_wrong.empty() ? "no room in the queue" : cause(outcome.files_wrong);
+    losses.add(LossKind::files, outcome.files_lost,
+               counted(outcome.files_lost, "lines not written: ") + why);
+  }
+  for (const std::string& file : outcome.not_written) losses.add(LossKind::files, 0, cause(file));
+  return losses.take();
+}
+
+std::vector<std::string> lines_of(const std::vector<Loss>& losses) {
+  std::vector<std::string> lines;
+  for (const Loss& loss : losses) lines.push_back("lost, " + loss.kind + ": " + loss.text);
+  return lines;
+}
+
+}  // namespace glint

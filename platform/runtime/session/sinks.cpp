@@ -1,0 +1,200 @@
+#include "platform/runtime/session/sinks.hpp"
+
+#include <exception>
+#include <filesystem>
+#include <vector>
+
+#include "platform/input_error.hpp"
+#include "platform/runtime/session/recorded_cell.hpp"
+#include "schedules/bus_load.hpp"
+
+namespace glint {
+namespace {
+
+constexpr Duration k_reader_limit = milliseconds(10'000);
+
+std::string in_folder(const std::string& folder, const std::string& file) {
+  const std::filesystem::path path(file);
+  return path.is_absolute() ? file : (std::filesystem::path(folder) / path).string();
+}
+
+std::vector<std::string> names_of(const ToolSet& tools) {
+  std::vector<std::string> names;
+  for (int t = 0; t < tools.count; ++t) {
+    names.emplace_back(tools.items[static_cast<std::size_t>(t)].name.data());
+  }
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += (text.empty() ? "" : "\n") + line;
+  return text;
+}
+
+Duration tick_period(const Cell& cell) { return {static_cast<std::int64_t>(1e9 / cell.tick_hz)}; }
+
+double checked_bus_load(const Cell& cell) {
+  const CanTraffic traffic{cell.tools.count, cell.tick_hz,
+                           cell.can.fd ? CanFormat::fd : CanFormat::classic};
+  const CanBitRates rates{static_cast<double>(cell.can.bit_rate),
+                          static_cast<double>(cell.can.data_bit_rate)};
+  if (const auto refusal = check_bus_load(traffic, rates)) {
+    throw InputError(cell.file + ": can: " + *refusal);
+  }
+  return bus_load(traffic, rates).fraction;
+}
+
+DdsSettings dds_settings(const Cell& cell, std::int64_t unix_offset_ns) {
+  DdsSettings settings;
+  settings.domain = cell.dds.domain;
+  settings.interface = cell.dds.interface;
+  settings.tool_names = names_of(cell.tools);
+  settings.hears_tool_changes = cell.dds.tool_changes;
+  settings.button_timeout = cell.button_timeout;
+  settings.tick_period = tick_period(cell);
+  settings.actuation_delay = cell.actuation_delay;
+  settings.unix_minus_board = {unix_offset_ns};
+  if (cell.robot_given && !cell.robot_in_reference) {
+    settings.static_transforms.push_back(
+        {settings.frames.world, settings.frames.robot, cell.T_world_robot});
+  }
+  return settings;
+}
+
+}  // namespace
+
+Sinks::Sinks(const Cell& cell, const SinkOptions& options, std::int64_t unix_offset_ns)
+    : out_(options.out), can_bus_load_(checked_bus_load(cell)) {
+  CanSinkOptions can;
+  can.directory = out_;
+  can.unix_offset_ns = unix_offset_ns;
+  can.format = cell.can.fd ? CanFormat::fd : CanFormat::classic;
+  can.when_full = cell.realtime ? WhenFull::drop : WhenFull::wait;
+  can_ = open_can_sink(cell.can.sink, can);
+  if (cell.can.sink.rfind("log:", 0) == 0) can_file_ = in_folder(out_, cell.can.sink.substr(4));
+
+  if (!cell.record.file.empty()) {
+    recording_file_ = in_folder(out_, cell.record.file);
+    RecordingInfo info;
+    info.level = recording_level(cell.record.level, cell.file);
+    info.nominal_tick = tick_period(cell);
+    info.unix_offset = {unix_offset_ns};
+    info.tool_names = names_of(cell.tools);
+    info.facts = {{"compiler", __VERSION__},
+                  {"cell", cell.file},
+                  {"best_effort", joined(options.best_effort)}};
+    info.attachments = attachments_of(cell);
+    RecorderSettings settings;
+    settings.when_full = can.when_full;
+    recorder_ = std::make_unique<Recorder>(recording_file_, info, settings);
+  }
+
+  if (!cell.files.tum.empty()) tum_file_ = in_folder(out_, cell.files.tum);
+  if (!cell.files.csv.empty()) csv_file_ = in_folder(out_, cell.files.csv);
+  if (!tum_file_.empty() || !csv_file_.empty() || options.by_rate) {
+    files_ = std::make_unique<FileSink>(tum_file_, csv_file_, can.when_full, cell, options.truth);
+    by_rate_ = options.by_rate;
+  }
+
+  if (cell.can.buttons) {
+    // No bus input without real time: a person cannot keep up with such a run.
+    if (cell.realtime) {
+      buttons_ = open_can_buttons(
+          cell.can.sink, *cell.can.buttons, {unix_offset_ns},
+          [this](const ButtonEvent& event) { offer_button(event); }, cell.button_timeout);
+    }
+    if (buttons_ == nullptr) {
+      can_not_heard_ = std::string("can.buttons: ") +
+                       (cell.realtime ? cell.can.sink + " is no bus" : "not in real time") +
+                       "; expected socketcan:IF in real time";
+    }
+  }
+
+  // A run that is faster than real time would only overrun its DDS readers.
+  if (cell.dds.on && cell.realtime) {
+    DdsSettings settings = dds_settings(cell, unix_offset_ns);
+    settings.best_effort = joined(options.best_effort);
+    settings.overruns = &overruns_;
+    settings.losses = &losses_;
+    settings.calibration = &calibration_notes_;
+    if (cell.mapping && !cell.mapping->model.empty()) settings.robot = &robot_notes_;
+    dds_ = std::make_unique<DdsSink>(settings);
+    if (options.with_reader) {
+      reader_ = std::make_unique<ReaderProcess>(settings, in_folder(out_, "dds_reader.json"));
+    }
+    const auto record_button = [this](const ButtonEvent& event) { offer_button(event); };
+    tool_orders_.resize(settings.tool_names.size());
+    const auto hand_on = [this](int tool, bool there) {
+      ToolOrders& orders = tool_orders_[static_cast<std::size_t>(tool)];
+      ++(there ? orders.added : orders.removed);
+      tool_requests_.ask(tool, there);
+    };
+    inputs_ = std::make_unique<DdsInputs>(dds_->participant(), settings, record_button, hand_on);
+    inputs_->start();
+    dds_->start();
+    if (reader_ != nullptr && !dds_->wait_for_readers(1, k_reader_limit)) {
+      throw MissingDevice("the DDS reader did not find the topics on interface " +
+                          cell.dds.interface + "; expected it within 10 s");
+    }
+  }
+}
+
+void Sinks::offer_button(const ButtonEvent& event) {
+  const std::lock_guard lock(one_button_);
+  RecorderLane* const lane = recorder_ != nullptr ? &recorder_->input_lane() : nullptr;
+  if (lane != nullptr) (void)lane->offer_button(event);
+  held_buttons_.take(event, lane);
+}
+
+void Sinks::close(SinkOutcome& result) {
+  can_->flush();
+  result.can = can_->counts();
+  losses_.store(LossKind::can, result.can.lost());
+  result.can_bus_load = can_bus_load_;
+  can_.reset();
+  if (!can_file_.empty()) result.files.push_back(can_file_);
+  result.can_not_heard = can_not_heard_;
+  if (buttons_ != nullptr) {
+    buttons_->stop();
+    result.can_heard = buttons_->counts();
+    buttons_.reset();
+  }
+  if (inputs_ != nullptr) {
+    inputs_->stop();
+    result.heard = inputs_->counts();
+    result.tool_orders = tool_orders_;
+    inputs_.reset();  // the sink leaves the domain when nothing else holds it
+  }
+  if (files_ != nullptr) {
+    result.files_wrong = files_->close();
+    result.files_lost = files_->lost();
+    if (by_rate_) result.by_rate = std::make_shared<const OutputByRate>(files_->by_rate());
+    losses_.store(LossKind::files, result.files_lost);
+    for (const std::string& file : {tum_file_, csv_file_}) {
+      if (!file.empty()) result.files.push_back(file);
+    }
+  }
+  if (recorder_ != nullptr) {
+    recorder_->add_closing_fact("output_sha256", result.output_sha256);
+    result.recording = recorder_->close();
+    losses_.store(LossKind::recording, result.recording.dropped + result.recording.lost);
+    result.recording_file = recording_file_;
+    result.files.push_back(recording_file_);
+  }
+  // Last, so that the last diagnostics include every loss.
+  if (dds_ != nullptr) {
+    dds_->stop();
+    result.dds = dds_->counts();
+    if (reader_ != nullptr) {
+      try {
+        result.dds_reader = reader_->finish(k_reader_limit);
+        result.dds_was_read = true;
+      } catch (const std::exception& error) {
+        result.dds_not_read = error.what();
+      }
+    }
+  }
+}
+
+}  // namespace glint

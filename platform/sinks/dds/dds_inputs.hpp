@@ -1,0 +1,102 @@
+// DDS inputs, read on a thread of their own: joint states, robot description, initial guess of the
+// robot's pose, the pen's buttons, and tool changes.
+//
+// States go to triple buffers, read as Latest<>: only the newest counts. Each change of a button
+// goes to a callback, and so does each tool change, if the settings allow them. A held button is
+// released when its sender leaves the domain, cleanly or by its lease, or is silent for the
+// settings' timeout. Each message's size is checked before it is deserialised; an oversized or
+// invalid message is rejected and counted.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "graph/latest.hpp"
+#include "platform/sinks/dds/heard.hpp"
+#include "platform/sinks/dds/participant.hpp"
+#include "platform/sinks/record/button_event.hpp"
+
+namespace glint {
+
+struct HeardCounts {
+  // Received messages.
+  std::uint64_t joints = 0, descriptions = 0, guesses = 0, buttons = 0, tools = 0;
+  std::uint64_t refused = 0;
+  std::uint64_t released = 0;  // buttons whose sender left or timed out
+  [[nodiscard]] bool any() const {
+    return joints + descriptions + guesses + buttons + tools + refused > 0;
+  }
+};
+
+class DdsInputs {
+ public:
+  using OnButton = std::function<void(const ButtonEvent&)>;
+  // The tool with this index in the settings is present from now on, or removed.
+  using OnTool = std::function<void(int tool, bool there)>;
+
+  // Both may be empty; the reading thread calls them at each change. Throws as Participant.
+  DdsInputs(std::shared_ptr<Participant> participant, const DdsSettings& settings,
+            OnButton on_button, OnTool on_tool = {});
+  ~DdsInputs();  // stop()
+  DdsInputs(const DdsInputs&) = delete;
+  DdsInputs& operator=(const DdsInputs&) = delete;
+
+  void start();
+  void stop();
+  // Without start(): waits at most `limit` for messages and processes all that are available.
+  void read(Duration limit);
+
+  // Each buffer allows one reader.
+  [[nodiscard]] graph::TripleBuffer<HeardJoints>& joints() noexcept { return *joints_; }
+  [[nodiscard]] graph::TripleBuffer<HeardGuess>& guess() noexcept { return *guess_; }
+  [[nodiscard]] graph::TripleBuffer<HeardDescription>& description() noexcept {
+    return *description_;
+  }
+
+  // Thread-safe.
+  [[nodiscard]] HeardCounts counts() const noexcept;
+
+ private:
+  struct ButtonReader {
+    dds_entity_t reader = 0;
+    bool pressed = false;
+    dds_instance_handle_t sender = 0;  // of the last message
+    Time last;                         // its arrival time
+  };
+
+  dds_entity_t add_reader(const TopicType& type, const std::string& topic, const Quality& quality);
+  void take_joints();
+  void take_descriptions();
+  void take_guesses();
+  void take_button(Button button);
+  void release_if_gone(Button button);
+  void take_tools(dds_entity_t reader, bool there);
+  [[nodiscard]] Time now() const;
+
+  std::shared_ptr<Participant> participant_;
+  Duration unix_minus_board_;
+  Duration board_minus_steady_;  // constant: steps of the Unix clock do not change arrival times
+  OnButton on_button_;
+  OnTool on_tool_;
+  Duration button_timeout_;
+  std::vector<std::string> tool_names_;
+  dds_entity_t waitset_ = 0, joints_reader_ = 0, description_reader_ = 0, guess_reader_ = 0;
+  dds_entity_t add_reader_ = 0, remove_reader_ = 0;
+  std::array<ButtonReader, k_button_count> buttons_;
+  std::unique_ptr<graph::TripleBuffer<HeardJoints>> joints_;
+  std::unique_ptr<graph::TripleBuffer<HeardGuess>> guess_;
+  std::unique_ptr<graph::TripleBuffer<HeardDescription>> description_;
+  using Counter = std::atomic<std::uint64_t>;
+  Counter joints_count_{0}, description_count_{0}, guess_count_{0}, button_count_{0},
+      tool_count_{0}, refused_{0}, released_{0};
+  std::atomic<bool> stopping_{false};
+  std::thread thread_;
+};
+
+}  // namespace glint

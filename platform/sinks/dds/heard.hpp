@@ -1,0 +1,58 @@
+// Validation and fixed-size storage of received messages about the robot and the pen.
+//
+// An incomplete, non-finite or oversized message is rejected, never truncated: a partial joint
+// state is invalid.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "kernels/geometry.hpp"
+#include "kernels/units.hpp"
+#include "platform/sinks/dds/messages.hpp"
+#include "platform/sinks/dds/topic_types.hpp"
+
+namespace glint {
+
+inline constexpr int k_heard_joints_max = 64;
+inline constexpr std::size_t k_heard_name_max = 63;  // characters of a joint's or a frame's name
+inline constexpr std::size_t k_heard_description_max = std::size_t{4} << 20;
+
+using HeardName = std::array<char, k_heard_name_max + 1>;  // zero-terminated
+
+struct HeardJoints {
+  Time time;  // session time: the message's time stamp, or its arrival if it has none
+  int count = 0;
+  std::array<HeardName, k_heard_joints_max> names{};
+  std::array<double, k_heard_joints_max> positions{};  // rad or m, by joint type
+};
+
+// Initial guess of the robot's pose, from RViz.
+struct HeardGuess {
+  Time time;
+  HeardName frame{};
+  Pose pose;                             // T_frame_robot
+  Matrix6 covariance = Matrix6::Zero();  // x, y, z, rotation about fixed axes x, y, z
+};
+
+struct HeardDescription {
+  std::string urdf;
+};
+
+// `arrival`: arrival in session time. Returns false for a rejected message; `to` is then
+// unspecified.
+[[nodiscard]] bool hear(const JointStateMessage& message, Duration unix_minus_board, Time arrival,
+                        HeardJoints& to);
+[[nodiscard]] bool hear(const PoseCovarianceMessage& message, Duration unix_minus_board,
+                        Time arrival, HeardGuess& to);
+[[nodiscard]] bool hear(const TextMessage& message, HeardDescription& to);
+
+// Finds the positions of the named joints; ignores all others. Returns names.size(), or the index
+// of the first name that does not occur exactly once.
+[[nodiscard]] std::size_t positions_of(const HeardJoints& joints,
+                                       std::span<const std::string> names,
+                                       std::span<double> positions) noexcept;
+
+}  // namespace glint

@@ -1,0 +1,136 @@
+#include "platform/sinks/dds/participant.hpp"
+
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "platform/input_error.hpp"
+#include "platform/sinks/dds/network.hpp"
+
+namespace glint {
+namespace {
+
+// Maximum blocking time of a write without free space: it blocks the sink's only thread.
+constexpr dds_duration_t k_blocking_max = DDS_MSECS(10);
+constexpr int k_domain_max = 232;  // highest with ports within 16 bits (DDSI-RTPS 2.2, 9.6.1)
+
+struct FreeQos {
+  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
+};
+using Qos = std::unique_ptr<dds_qos_t, FreeQos>;
+
+dds_entity_t checked(dds_entity_t entity, const std::string& what) {
+  if (entity < 0) throw std::runtime_error("dds: " + what + ": " + dds_strretcode(-entity));
+  return entity;
+}
+
+Qos qos_of(const TopicType& type, const Quality& quality) {
+  Qos qos(dds_create_qos());
+  dds_qset_reliability(qos.get(),
+                       quality.reliability == Reliability::reliable ? DDS_RELIABILITY_RELIABLE
+                                                                    : DDS_RELIABILITY_BEST_EFFORT,
+                       k_blocking_max);
+  const bool keep_all = quality.depth == k_keep_all;
+  const auto history = keep_all ? DDS_HISTORY_KEEP_ALL : DDS_HISTORY_KEEP_LAST;
+  const int depth = keep_all ? DDS_LENGTH_UNLIMITED : quality.depth;
+  dds_qset_history(qos.get(), history, depth);
+  if (quality.durability == Durability::transient_local) {
+    dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
+    // Late readers get this history; without it Cyclone keeps one sample.
+    dds_qset_durability_service(qos.get(), 0, history, depth, DDS_LENGTH_UNLIMITED,
+                                DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  }
+  // Fast DDS readers match a writer that offers only XCDR2, but receive nothing from it.
+  const dds_data_representation_id_t xcdr1 = DDS_DATA_REPRESENTATION_XCDR1;
+  dds_qset_data_representation(qos.get(), 1, &xcdr1);
+  const std::string user_data = std::string("typehash=RIHS01_") + type.type_hash + ";";
+  dds_qset_userdata(qos.get(), user_data.data(), user_data.size());
+  return qos;
+}
+
+dds_entity_t topic_of(dds_entity_t participant, const TopicType& type, const std::string& name) {
+  return checked(dds_create_topic(participant, type.descriptor, name.c_str(), nullptr, nullptr),
+                 "topic " + name);
+}
+
+}  // namespace
+
+// A domain of this process; it exists until its last participant leaves.
+struct Participant::Domain {
+  Domain(dds_domainid_t id, const std::string& text)
+      : configuration(text), entity(dds_create_domain(id, text.c_str())) {}
+  ~Domain() {
+    if (entity > 0) dds_delete(entity);
+  }
+  Domain(const Domain&) = delete;
+  Domain& operator=(const Domain&) = delete;
+  std::string configuration;
+  dds_entity_t entity;
+};
+
+// Cyclone allows one configuration per domain.
+std::shared_ptr<Participant::Domain> Participant::domain_of(const DdsSettings& settings) {
+  static std::mutex one_opens;
+  static std::map<int, std::weak_ptr<Domain>> open;
+  const std::lock_guard lock(one_opens);
+  const std::string configuration = cyclone_configuration(settings);
+  const std::string where = "dds.domain: domain " + std::to_string(settings.domain) +
+                            " on interface " + settings.interface;
+  std::shared_ptr<Domain> domain = open[settings.domain].lock();
+  if (domain != nullptr && domain->configuration != configuration) {
+    throw InputError(where + ": this process is in it by another; expected the same for both");
+  }
+  if (domain != nullptr) return domain;
+  domain = std::make_shared<Domain>(static_cast<dds_domainid_t>(settings.domain), configuration);
+  if (domain->entity < 0) {
+    throw InputError(where + ": " + dds_strretcode(-domain->entity) +
+                     "; expected one that this process has not yet opened");
+  }
+  open[settings.domain] = domain;
+  return domain;
+}
+
+Participant::Participant(const DdsSettings& settings) {
+  if (settings.domain < 0 || settings.domain > k_domain_max) {
+    throw InputError("dds.domain: found " + std::to_string(settings.domain) +
+                     "; expected 0 to 232");
+  }
+  require_network_interface(settings.interface);
+  const auto id = static_cast<dds_domainid_t>(settings.domain);
+  domain_ = domain_of(settings);
+  // rmw_cyclonedds shows only participants that state their security enclave.
+  constexpr std::string_view enclave = "enclave=/;";
+  Qos qos(dds_create_qos());
+  dds_qset_userdata(qos.get(), enclave.data(), enclave.size());
+  participant_ = dds_create_participant(id, qos.get(), nullptr);
+  if (participant_ < 0) {
+    const int code = -participant_;
+    throw InputError("dds: cannot join domain " + std::to_string(settings.domain) +
+                     " on interface " + settings.interface + ": " + dds_strretcode(code) +
+                     "; expected free UDP ports and an interface that can send");
+  }
+}
+
+Participant::~Participant() { dds_delete(participant_); }
+
+dds_entity_t Participant::writer(const TopicType& type, const std::string& topic,
+                                 const Quality& quality) {
+  const Qos qos = qos_of(type, quality);
+  dds_qset_writer_data_lifecycle(qos.get(), false);
+  return checked(
+      dds_create_writer(participant_, topic_of(participant_, type, topic), qos.get(), nullptr),
+      "writer of " + topic);
+}
+
+dds_entity_t Participant::reader(const TopicType& type, const std::string& topic,
+                                 const Quality& quality) {
+  const Qos qos = qos_of(type, quality);
+  dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PROCESS);
+  return checked(
+      dds_create_reader(participant_, topic_of(participant_, type, topic), qos.get(), nullptr),
+      "reader of " + topic);
+}
+
+dds_entity_t Participant::waitset() { return checked(dds_create_waitset(participant_), "waitset"); }
+
+}  // namespace glint

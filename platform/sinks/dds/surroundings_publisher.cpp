@@ -1,0 +1,165 @@
+#include "platform/sinks/dds/surroundings_publisher.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+
+#include "platform/input_error.hpp"
+#include "platform/sinks/dds/messages.hpp"
+#include "platform/sinks/dds/network.hpp"
+#include "platform/sinks/dds/topic_names.hpp"
+#include "platform/sinks/dds/topic_types.hpp"
+
+namespace glint {
+namespace {
+
+constexpr std::uint8_t k_float32 = 7;  // sensor_msgs/PointField
+// Upper limit of a message's size without its points: names, fields, lengths.
+constexpr std::size_t k_heading_bytes = 1024;
+
+template <class Sequence, class Item>
+void borrow(Sequence& sequence, std::vector<Item>& items) {
+  sequence._length = sequence._maximum = static_cast<std::uint32_t>(items.size());
+  sequence._buffer = items.data();
+}
+
+std::vector<PointFieldMessage> fields_of(bool normals) {
+  std::vector<PointFieldMessage> fields;
+  constexpr const char* names[] = {"x", "y", "z", "normal_x", "normal_y", "normal_z"};
+  const std::size_t count = normals ? 6 : 3;
+  for (std::size_t i = 0; i < count; ++i) {
+    fields.push_back({borrowed(names[i]), static_cast<std::uint32_t>(4 * i), k_float32, 1});
+  }
+  return fields;
+}
+
+std::vector<std::uint8_t> rows_of(FloatTriples points, FloatTriples normals) {
+  const std::size_t step = normals.empty() ? 12 : 24;
+  std::vector<std::uint8_t> bytes(points.size() * step);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::memcpy(bytes.data() + i * step, points[i].data(), 12);
+    if (!normals.empty()) std::memcpy(bytes.data() + i * step + 12, normals[i].data(), 12);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+SurroundingsPublisher::SurroundingsPublisher(const DdsSettings& settings)
+    : settings_(settings), participant_(settings) {}
+
+dds_entity_t SurroundingsPublisher::add_writer(const TopicType& type, const std::string& topic,
+                                               int depth) {
+  const dds_entity_t writer = participant_.writer(
+      type, topic, {Reliability::reliable, Durability::transient_local, std::max(1, depth)});
+  writers_.push_back(writer);
+  return writer;
+}
+
+void SurroundingsPublisher::write(dds_entity_t writer, const void* message,
+                                  const std::string& what) {
+  const dds_return_t code = dds_write(writer, message);
+  if (code != DDS_RETCODE_OK) {
+    throw std::runtime_error("dds: " + what + " was not written: " + dds_strretcode(-code));
+  }
+}
+
+std::size_t SurroundingsPublisher::publish_cloud(FloatTriples points, FloatTriples normals,
+                                                 Time unix_time) {
+  const bool with_normals = normals.size() == points.size() && !normals.empty();
+  const std::uint32_t step = with_normals ? 24 : 12;
+  const std::size_t most = (k_cloud_message_bytes - k_heading_bytes) / step;
+  const std::size_t all = (points.size() + most - 1) / most;
+  const std::size_t messages = std::min(all, std::size_t{k_cloud_messages_max});
+  const dds_entity_t writer =
+      add_writer(cloud_type(), topic_under(settings_.topic_prefix, k_map_points_name),
+                 static_cast<int>(messages));
+  std::vector<PointFieldMessage> fields = fields_of(with_normals);
+  for (std::size_t i = 0; i < messages; ++i) {
+    const std::size_t first = i * most, count = std::min(most, points.size() - first);
+    std::vector<std::uint8_t> data =
+        rows_of(points.subspan(first, count),
+                with_normals ? normals.subspan(first, count) : FloatTriples{});
+    CloudMessage message{};
+    message.header = header_message(unix_time, settings_.frames.world.c_str());
+    message.height = 1;
+    message.width = static_cast<std::uint32_t>(count);
+    borrow(message.fields, fields);
+    message.point_step = step;
+    message.row_step = message.width * step;
+    borrow(message.data, data);
+    message.is_dense = true;
+    write(writer, &message, "a map's points");
+  }
+  return points.size() - std::min(points.size(), messages * most);
+}
+
+void SurroundingsPublisher::publish_octomap(std::span<const std::int8_t> data, double resolution_m,
+                                            Time unix_time) {
+  if (data.size() + k_heading_bytes > k_message_bytes_max) {
+    throw InputError("octomap: " + std::to_string(data.size()) +
+                     " bytes; expected at most 16 MiB in one message: a coarser resolution");
+  }
+  const dds_entity_t writer =
+      add_writer(octomap_type(), topic_under(settings_.topic_prefix, k_octomap_name), 1);
+  std::vector<std::int8_t> bytes(data.begin(), data.end());
+  OctomapMessage message{};
+  message.header = header_message(unix_time, settings_.frames.world.c_str());
+  message.binary = true;
+  message.id = borrowed("OcTree");
+  message.resolution = resolution_m;
+  borrow(message.data, bytes);
+  write(writer, &message, "an octomap");
+}
+
+void SurroundingsPublisher::publish_path(std::span<const UncertainPose> points,
+                                         Duration unix_minus_board, Time unix_time) {
+  const dds_entity_t writer =
+      add_writer(path_type(), topic_under(settings_.topic_prefix, k_path_name), 1);
+  const char* const frame = settings_.frames.robot.c_str();
+  std::vector<PoseStampedMessage> poses;
+  poses.reserve(points.size());
+  for (const UncertainPose& point : points) {
+    poses.push_back(
+        {header_message(point.time + unix_minus_board, frame), pose_message(point.pose)});
+  }
+  PathMessage message{};
+  message.header = header_message(unix_time, frame);
+  borrow(message.poses, poses);
+  write(writer, &message, "a path");
+}
+
+void SurroundingsPublisher::publish_static(std::span<const StaticTransform> transforms,
+                                           Time unix_time) {
+  const dds_entity_t writer = add_writer(tf_type(), k_tf_static_topic, 1);
+  std::vector<TransformMessage> all;
+  for (const StaticTransform& one : transforms) {
+    all.push_back(transform_message(header_message(unix_time, one.parent.c_str()),
+                                    one.child.c_str(), one.T_parent_child));
+  }
+  TfMessage message{};
+  borrow(message.transforms, all);
+  write(writer, &message, "tf_static");
+}
+
+int SurroundingsPublisher::listeners() const {
+  std::uint32_t fewest = writers_.empty() ? 0 : UINT32_MAX;
+  for (const dds_entity_t writer : writers_) {
+    dds_publication_matched_status_t status{};
+    if (dds_get_publication_matched_status(writer, &status) != DDS_RETCODE_OK) return 0;
+    fewest = std::min(fewest, status.current_count);
+  }
+  return static_cast<int>(fewest);
+}
+
+bool SurroundingsPublisher::wait_for_receipts(Duration limit) const {
+  const dds_time_t deadline = dds_time() + limit.nanoseconds;
+  bool all = true;
+  for (const dds_entity_t writer : writers_) {
+    const dds_duration_t left = std::max<dds_duration_t>(0, deadline - dds_time());
+    all = dds_wait_for_acks(writer, left) == DDS_RETCODE_OK && all;
+  }
+  return all;
+}
+
+}  // namespace glint

@@ -1,0 +1,183 @@
+#include "platform/tools/inspect/frame_export.hpp"
+
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include "kernels/pose/lever_arm.hpp"
+#include "platform/input_error.hpp"
+#include "platform/sim/simulator.hpp"
+#include "platform/sinks/record/trajectory_files.hpp"
+#include "platform/sources/scenario_of.hpp"
+
+namespace glint {
+namespace {
+
+Pose with_origin(const Pose& T_frame_tool, const Tool& tool, PoseOrigin origin) {
+  if (origin == PoseOrigin::tool) return T_frame_tool;
+  return {T_frame_tool.rotation, T_frame_tool * tool.tip_m};
+}
+
+// Covariance of the exported pose: translation of its origin, rotation about the frame's axes.
+Matrix6 covariance_of(const FittedTool& fit, const Track& track, const Tool& tool,
+                      PoseOrigin origin) {
+  TipPlace tip = tip_of(tool);
+  if (origin == PoseOrigin::tool) tip.sigma_m = 0;  // no tip error in the tool's origin
+  Matrix6 covariance = tip_covariance(track, fit, tip);
+  if (origin == PoseOrigin::tool) {
+    covariance = moved_covariance(covariance, track.T_camera_tool.rotation * (-tool.tip_m));
+  }
+  if (track.base != ReferenceFrame::world) return covariance;
+  const Quaternion world_camera =
+      track.newest.pose.rotation * track.T_camera_tool.rotation.conjugate();
+  // head_covariance refers to the centroid of the markers.
+  const Vector3 to = (origin == PoseOrigin::tip ? tool.tip_m : Vector3(Vector3::Zero()));
+  return turned_covariance(covariance, world_camera) +
+         moved_covariance(track.head_covariance,
+                          track.newest.pose.rotation * (to - tool.middle_m()));
+}
+
+FramePose frame_pose(const ArrivedFrame& arrived, Tracker& tracker, const Tool& tool, std::size_t t,
+                     PoseOrigin origin) {
+  const Track& track = tracker.output<Estimates>().tracks[t];
+  FramePose pose;
+  pose.time = arrived.frame.mid_exposure;
+  pose.sequence = arrived.frame.sequence;
+  pose.tool = tool.name.data();
+  pose.reason = track.reason;
+  pose.state = track.seen_now                  ? TrackState::measured
+               : track.alive && !track.doubted ? TrackState::predicted
+                                               : TrackState::lost;
+  if (!track.seen_now) return pose;
+  const FittedTool& fit = tracker.parts<FittedTools>(static_cast<int>(t) % k_tool_slices).tools[t];
+  pose.frame = track.base;
+  pose.marker_mask = track.marker_mask;
+  pose.rms_m = track.rms_m;
+  pose.pose = with_origin(track.newest.pose, tool, origin);
+  pose.covariance = covariance_of(fit, track, tool, origin);
+  return pose;
+}
+
+bool same_place(const HeadPose& one, const HeadPose& other) {
+  constexpr double k_rounding_m = 1e-9;
+  return one.valid == other.valid &&
+         (one.T_world_camera.translation - other.T_world_camera.translation).norm() < k_rounding_m;
+}
+
+ExportedRows with_source(ExportedRows rows, TrackedFrames tracked) {
+  rows.frames = tracked.frames;
+  rows.failures = std::move(tracked.failures);
+  return rows;
+}
+
+}  // namespace
+
+ExportedRows export_points(RecordedFrames& recorded, std::size_t tool, const LineOut& out) {
+  ExportedRows rows;
+  const Tool& kind = recorded.cell.tools.items[tool];
+  out(k_points_heading);
+  TrackedFrames tracked = track_frames(
+      recorded, Search::everywhere, [&](const ArrivedFrame& arrived, Tracker& tracker) {
+        for (const Vector3& centre : marker_centres(tracker.token<Markers>(), kind)) {
+          out(points_line(arrived.frame.mid_exposure, centre));
+          ++rows.rows;
+        }
+      });
+  if (rows.rows == 0) {
+    throw InputError(recorded.path + ": no marker with a range in " +
+                     std::to_string(tracked.frames) +
+                     " frames; expected bright spots of a "
+                     "marker's size: `glint inspect --recording` names the cause");
+  }
+  return with_source(std::move(rows), std::move(tracked));
+}
+
+ExportedRows export_tum(RecordedFrames& recorded, const PoseExport& wanted, const LineOut& out) {
+  ExportedRows rows;
+  const Tool& tool = recorded.cell.tools.items[wanted.tool];
+  const bool world = wanted.frame == ReferenceFrame::world;
+  TrackedFrames tracked =
+      track_frames(recorded, Search::tracked, [&](const ArrivedFrame& arrived, Tracker& tracker) {
+        const Track& track = tracker.output<Estimates>().tracks[wanted.tool];
+        if (!track.seen_now) return;
+        if (world && track.base != ReferenceFrame::world) {
+          ++rows.without_head_pose;
+          return;
+        }
+        const Pose& pose = world ? track.newest.pose : track.T_camera_tool;
+        out(tum_line(arrived.frame.mid_exposure, with_origin(pose, tool, wanted.origin)));
+        ++rows.rows;
+      });
+  if (rows.rows == 0 && rows.without_head_pose > 0) {
+    throw InputError(recorded.path + ": no head pose with any of " +
+                     std::to_string(rows.without_head_pose) +
+                     " tracked frames; expected one, or --frame camera");
+  }
+  if (rows.rows == 0) {
+    throw InputError(recorded.path + ": the tool \"" + tool.name.data() +
+                     "\" was tracked in none of " + std::to_string(tracked.frames) +
+                     " frames; expected it in view: `glint inspect --recording` names the cause");
+  }
+  return with_source(std::move(rows), std::move(tracked));
+}
+
+ExportedRows export_csv(RecordedFrames& recorded, const std::vector<std::size_t>& tools,
+                        PoseOrigin origin, const LineOut& out) {
+  ExportedRows rows;
+  out(frame_pose_heading());
+  TrackedFrames tracked =
+      track_frames(recorded, Search::tracked, [&](const ArrivedFrame& arrived, Tracker& tracker) {
+        for (const std::size_t t : tools) {
+          const Tool& tool = recorded.cell.tools.items[t];
+          out(frame_pose_line(frame_pose(arrived, tracker, tool, t, origin)));
+          ++rows.rows;
+        }
+      });
+  return with_source(std::move(rows), std::move(tracked));
+}
+
+ExportedRows export_truth(RecordedFrames& recorded, const PoseExport& wanted, const LineOut& out) {
+  // The duration limits the simulator's frames, not its motion.
+  Cell cell = recorded.cell;
+  constexpr double k_longest_s = 3600;
+  cell.simulator.duration_s = k_longest_s;
+  const sim::Simulator simulator(scenario_of(cell));
+  std::map<std::uint64_t, int> deliveries;  // index by frame number
+  for (int i = 0; i < simulator.frame_count(); ++i) {
+    deliveries.emplace(simulator.timing(i).sequence, i);
+  }
+  ExportedRows rows;
+  const Tool& tool = cell.tools.items[wanted.tool];
+  int alike = 0;
+  sim::SimFrame made;
+  FrameSource& source = *recorded.source;
+  source.start({});
+  ArrivedFrame arrived;
+  while (source.wait(arrived)) {
+    ++rows.frames;
+    const Time time = arrived.frame.mid_exposure;
+    const auto delivery = deliveries.find(arrived.frame.sequence);
+    source.give_back(arrived);
+    if (delivery == deliveries.end()) continue;
+    simulator.describe(delivery->second, made);
+    if (made.mid_exposure != time) continue;
+    // A delayed live run has other arrival times.
+    alike += made.arrival == arrived.frame.arrival && same_place(made.head, arrived.head) ? 1 : 0;
+    Pose pose = simulator.truth_tool(static_cast<int>(wanted.tool), time);
+    if (wanted.frame == ReferenceFrame::camera) {
+      pose = simulator.truth_camera(time).inverse() * pose;
+    }
+    out(tum_line(time, with_origin(pose, tool, wanted.origin)));
+    ++rows.rows;
+  }
+  if (2 * alike < rows.frames) {
+    throw InputError(recorded.path + ": no truth: " + std::to_string(alike) + " of " +
+                     std::to_string(rows.frames) +
+                     " frames are those of its cell's simulator; expected a recording of "
+                     "`glint simulate`, or of `glint run` on simulated frames");
+  }
+  rows.failures = source.report().failures;
+  return rows;
+}
+
+}  // namespace glint

@@ -1,0 +1,91 @@
+// write_known_samples FOLDER: writes a CAN log of known poses, classic and FD, and the poses as one
+// JSON object a line. The reader of the log must not share code with its writer.
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+
+#include "kernels/wire/can_frames.hpp"
+#include "kernels/wire/node_frames.hpp"
+#include "platform/sinks/can/can_sink.hpp"
+#include "tests/unit/kernels/wire/samples.hpp"
+
+namespace {
+
+using namespace glint;
+
+constexpr int k_random_samples = 400;
+constexpr std::int64_t k_unix_offset_ns = 1'700'000'000'000'000'000;
+
+void print(std::FILE* file, const char* name, const Vector3& v) {
+  std::fprintf(file, "\"%s\": [%.17g, %.17g, %.17g], ", name, v.x(), v.y(), v.z());
+}
+
+void print(std::FILE* file, const PoseSample& s) {
+  std::fprintf(file, "{\"tool\": %d, \"tick\": %u, \"sequence\": %u, \"state\": %d, ", s.tool,
+               static_cast<std::uint32_t>(s.tick_number),
+               static_cast<std::uint32_t>(s.frame_sequence), static_cast<int>(s.state));
+  std::fprintf(file, "\"registration\": %d, \"reason\": %d, \"marker_mask\": %d, \"buttons\": %d, ",
+               static_cast<int>(s.registration), static_cast<int>(s.reason), s.marker_mask,
+               s.buttons);
+  print(file, "position_m", s.pose.translation);
+  print(file, "velocity_m_s", s.velocity_m_s);
+  print(file, "angular_velocity_rad_s", s.angular_velocity_rad_s);
+  const Quaternion& q = s.pose.rotation;
+  std::fprintf(file, "\"rotation_xyzw\": [%.17g, %.17g, %.17g, %.17g], ", q.x(), q.y(), q.z(),
+               q.w());
+  std::fprintf(file, "\"sigma_position_m\": %.17g, \"sigma_orientation_rad\": %.17g, ",
+               s.sigma_position_m, s.sigma_orientation_rad);
+  std::fprintf(file, "\"registration_rms_m\": %.17g, \"age_ns\": %lld, \"unix_ns\": %lld}\n",
+               s.registration_rms_m, static_cast<long long>(s.age().nanoseconds),
+               static_cast<long long>(s.measurement.nanoseconds + k_unix_offset_ns));
+}
+
+// Beside the random samples: values at the end of a field's range and beyond it.
+PoseSample edge_sample(int edge, std::mt19937& random) {
+  PoseSample s = random_sample(random);
+  if (edge == 0) s.pose.translation = Vector3(3.27675, -3.2768, 0);
+  if (edge == 1) s.pose.translation = Vector3(3.4, 0, 0);
+  if (edge == 2) s.velocity_m_s = Vector3(3.2767, -3.2767, 0);
+  if (edge == 3) s.velocity_m_s = Vector3(0, 4, 0);
+  if (edge == 4) s.angular_velocity_rad_s = Vector3(0, 0, -40);
+  if (edge == 5) s.sigma_position_m = s.sigma_orientation_rad = s.registration_rms_m = 2;
+  if (edge == 6) s.state = TrackState::lost;
+  if (edge == 7) s.state = TrackState::none;
+  return s;
+}
+constexpr int k_edges = 8;
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 2) return 2;
+  CanSinkOptions options;
+  options.directory = arguments[1];
+  options.unix_offset_ns = k_unix_offset_ns;
+  options.when_full = WhenFull::wait;
+  const auto sink = open_can_sink("log:can.log", options);
+  std::FILE* const truth = std::fopen((options.directory / "samples.jsonl").c_str(), "w");
+  if (truth == nullptr) return 2;
+
+  std::mt19937 random(51);
+  for (int i = 0; i < k_random_samples + k_edges; ++i) {
+    const PoseSample s =
+        i < k_random_samples ? random_sample(random) : edge_sample(i - k_random_samples, random);
+    print(truth, s);
+    CanFrames frames;
+    for (const CanFormat format : {CanFormat::classic, CanFormat::fd})
+      add_pose_frames(s, {format, k_can_base_default, k_unix_offset_ns}, frames);
+    frames.add(heartbeat_frame(32, CanNodeState::operational));
+    frames.add(emergency_frame(32, s));
+    const std::int64_t unix_ns = s.measurement.nanoseconds + k_unix_offset_ns;
+    const auto counter = static_cast<std::uint8_t>(i % 16);
+    frames.add(time_sync_frame({}, counter, unix_ns).value);
+    frames.add(time_follow_up_frame({}, counter, unix_ns, unix_ns + 1'500'000'000).value);
+    for (const CanFrame& frame : frames.frames()) sink->send(frame, s.tick);
+  }
+  std::fclose(truth);
+  sink->flush();
+  return sink->counts().all_sent() ? 0 : 1;
+}
